@@ -228,6 +228,15 @@ class World:
         at_once = {"thermal": self.truth()}
         return OnDemand(self._rig.due(self._tick), partial(self._truth_at, self._tick), at_once)
 
+    def robot_state(self) -> PlanarState:
+        """Tell where the robot is, how it moves, and how wide it is, as people see it."""
+        pose, (speed, _) = self._robot.pose(), self._robot.velocity()
+        heading = np.array([np.cos(pose.heading), np.sin(pose.heading)])
+        place = np.array([pose.x, pose.y])
+        return PlanarState(
+            position=place, velocity=speed * heading, radius_m=RADIUS_M, heading_rad=pose.heading
+        )
+
     def step(self, linear_m_s: float, angular_rad_s: float, *, is_emergency: bool = False) -> None:
         """Drive the robot by a velocity command for one control step; people and light move on too.
 
@@ -254,7 +263,7 @@ class World:
             BadInput: the command is not finite.
         """
         self._robot.command(linear_m_s, angular_rad_s, is_emergency=is_emergency)
-        self._crowd.step(self.time_s, 1.0 / self.config.control_hz, self._robot_state())
+        self._crowd.step(self.time_s, 1.0 / self.config.control_hz, self.robot_state())
 
     def end_step(self, touched: Collection[str], *, is_settled: bool = False) -> None:
         """Take over what physics made of the step.
@@ -269,15 +278,6 @@ class World:
             self._forget()
         else:
             self._settle()
-
-    def _robot_state(self) -> PlanarState:
-        """Tell people where the robot is, how it moves, and how wide it is."""
-        pose, (speed, _) = self._robot.pose(), self._robot.velocity()
-        heading = np.array([np.cos(pose.heading), np.sin(pose.heading)])
-        place = np.array([pose.x, pose.y])
-        return PlanarState(
-            position=place, velocity=speed * heading, radius_m=RADIUS_M, heading_rad=pose.heading
-        )
 
     def _build(self) -> None:
         config, physics = self.config, self._physics

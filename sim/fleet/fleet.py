@@ -23,7 +23,7 @@ from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.kinematic.kinematic import Kinematic
 from peopleboy.sim.physics.kinematic.solids import Array
-from peopleboy.sim.robot.robot_body import WHEEL_RADIUS_M
+from peopleboy.sim.robot.robot_body import RADIUS_M, WHEEL_RADIUS_M
 from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.truth.scenes import SCENE, Scenes
 from peopleboy.sim.world import World
@@ -92,9 +92,17 @@ class Fleet:
             if not self._walks.is_scripted[number]:
                 self._worlds[number].begin_step(*command)
         times_s = self._times(going)
-        self._walks.step(going, times_s, self._control_s, self._joined.bodies.places[self._own[going], :2])
+        self._walks.step(going, times_s, self._control_s, self._robots(going))
         if self._limbs is not None:
             self._limbs.move(going, times_s, self._control_s)
+
+    def _robots(self, going: Numbers) -> Array:
+        """(G, 5) where robots are and how they move, as people see them, and how wide they are."""
+        robots = np.zeros((len(going), 5))
+        robots[:, :2], robots[:, 4] = self._joined.bodies.places[self._own[going], :2], RADIUS_M
+        for row in np.flatnonzero(self._walks.makes_way[going]).tolist():
+            robots[row, 2:4] = self._worlds[going[row]].robot_state().velocity
+        return robots
 
     def _end(self, going: Numbers, touched: NDArray[np.bool_], is_other: NDArray[np.bool_]) -> None:
         """Tell worlds what came of the step, by which bodies were touched and which people come or go."""

@@ -1,4 +1,4 @@
-"""The people of many worlds, walking together where nothing but scripts and the robot guide them."""
+"""The people of many worlds, walking together where scripts and who is in the way alone guide them."""
 
 from __future__ import annotations
 
@@ -25,6 +25,7 @@ class Walks:
         first: (B + 1,) where the people of each world begin.
         world: (Q,) where everybody is.
         is_scripted: (B,) in which worlds all are.
+        makes_way: (B,) in which of these somebody makes way.
         records: (Q,) WALK of everybody; of those who walk by themselves only where they are, how they move,
             and whether they are there.
     """
@@ -37,11 +38,15 @@ class Walks:
         self.is_scripted = np.array([each is not None for each in own], np.bool_)
         scripts: list[Script] = []
         records: list[Records] = []
+        walls = [np.empty((0, 4)) if each is None else each.walls for each in own]
+        self._walls = np.concatenate([np.empty((0, 4)), *walls])
+        self._first_wall = ends([len(each) for each in walls])
         for each, count in zip(own, counts, strict=True):
             scripts += [_NO_SCRIPT] * count if each is None else each.scripts
             records.append(np.zeros(count, WALK) if each is None else each.records)
         self._scripts = join_scripts(scripts)
         self.records = join_records(records, WALK)
+        self.makes_way = np.array([each is not None and bool(each.records["yields"].any()) for each in own])
         for crowd, each, first, end in zip(self._crowds, own, self.first, self.first[1:], strict=False):
             if each is not None:
                 crowd.lay_into(self.records[first:end])
@@ -54,11 +59,11 @@ class Walks:
             going: (G,) numbers of the worlds.
             times_s: (G,) [s] in each of them at the start of the step.
             dt_s: [s] length of the step.
-            robots: (G, 2) [m] where their robots are.
+            robots: (G, 5) their robots, as of `RobotMotion`; velocities count where somebody makes way.
         """
         _walk_worlds(
             going, self.is_scripted, self.first, self.records, self._scripts, times_s, dt_s,
-            robots, _TWO,
+            robots, self._walls, self._first_wall, _TWO,
         )  # fmt: skip
         records = self.records
         headings, present = records["heading"].tolist(), records["is_present"].tolist()
@@ -88,10 +93,13 @@ def _walk_worlds(
     times_s: Array,
     dt_s: float,
     robots: Array,
+    walls: Array,
+    first_wall: Numbers,
     two: float,
 ) -> None:
     for row in range(len(going)):
         world = going[row]
         if is_scripted[world]:
-            robot = (robots[row, 0], robots[row, 1])
-            walk_on(first[world], first[world + 1], walks, scripts, times_s[row], dt_s, robot, two)
+            robot = (robots[row, 0], robots[row, 1], robots[row, 2], robots[row, 3], robots[row, 4])
+            own = walls[first_wall[world] : first_wall[world + 1]]
+            walk_on(first[world], first[world + 1], walks, scripts, times_s[row], dt_s, robot, own, two)

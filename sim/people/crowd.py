@@ -71,18 +71,20 @@ class Crowd:
             self._add(person)
 
     def follow_scripts(self, *, has_begun: bool) -> ScriptedWalk | None:
-        """Walk by records from now on, where scripts and the robot alone guide everybody.
+        """Walk by records from now on, where scripts and who is in the way alone guide everybody.
 
         Args:
             has_begun: whether anybody has walked otherwise before; then they go on as they did.
         """
-        is_alone = all(is_scripted(person.config) for person in self.people)
+        configs = [person.config for person in self.people]
+        stands_still = not (self._place.movers and any(config.yields for config in configs))
+        is_alone = stands_still and all(is_scripted(config) for config in configs)
         if self._walk is None and is_alone and not has_begun:
             records = np.zeros(len(self.people), WALK)
             for person, record in zip(self.people, records, strict=True):
                 start_walk(person.config, person.walker, person.radius_m, record)
             scripts = [write_script(person.config, person.walker) for person in self.people]
-            self._walk = ScriptedWalk(scripts, records)
+            self._walk = ScriptedWalk(scripts, records, self._place.obstacles)
         return self._walk
 
     def lay_into(self, records: Records) -> None:

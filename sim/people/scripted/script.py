@@ -25,6 +25,7 @@ WAYPOINT: Final = np.dtype(
         ("posture", np.int64),  # there, its number in `POSTURES`
         ("faces", np.int64),
         ("face", np.float64, 2),  # [m]
+        ("speed", np.float64),  # [m/s] on the way there, as planned
         ("first_piece", np.int64),  # of the way on from here to the next stop
         ("end_piece", np.int64),
     ]
@@ -63,9 +64,11 @@ WALK: Final = np.dtype(
         ("enter_s", np.float64),
         ("leave_s", np.float64),  # inf for never
         ("radius_m", np.float64),
+        ("yields", np.bool_),
+        ("blocked_s", np.float64),  # for how long it has got on badly
     ]
 )
-"""What a `Walker` knows of itself while nothing but its script and the robot decides where it goes."""
+"""What a `Walker` knows of itself while its script and who is in its way alone decide where it goes."""
 
 
 class Script(NamedTuple):
@@ -81,15 +84,19 @@ class Script(NamedTuple):
 
 
 class ScriptedWalk(NamedTuple):
-    """What the people of one world are to do, and (N,) records WALK of how far they are."""
+    """What the people of one world are to do, and (N,) records WALK of how far they are.
+
+    Its walls are (K, 4) [m] rectangles min_x, min_y, max_x, max_y.
+    """
 
     scripts: list[Script]
     records: Records
+    walls: NDArray[np.float64]
 
 
 def is_scripted(config: PersonConfig) -> bool:
-    """Whether nothing but the script and where the robot stands decides where a person goes and looks."""
-    is_alone = not config.yields and config.reacts is None and config.leads is None and config.group is None
+    """Whether nothing decides where a person goes and looks but its script and who is in its way."""
+    is_alone = config.reacts is None and config.leads is None and config.group is None
     return is_alone and all(
         waypoint.until_robot_within_m is None
         and (not isinstance(waypoint.face, str) or waypoint.face == "robot")
@@ -104,6 +111,7 @@ def write_script(config: PersonConfig, walker: Walker) -> Script:
     waypoints = np.zeros(len(path), WAYPOINT)
     for index, (waypoint, row) in enumerate(zip(path, waypoints, strict=True)):
         row["at"], row["pause_s"] = waypoint.at_m, walker.pause_of(index)
+        row["speed"] = waypoint.speed_m_s
         row["has_pause"] = walker.has_pause(index)
         row["posture"] = POSTURES[Posture(waypoint.posture)]
         if waypoint.face is not None:
@@ -132,7 +140,7 @@ def start_walk(config: PersonConfig, walker: Walker, radius_m: float, walk: np.v
     walk["is_present"] = config.enter_s <= 0.0
     walk["enter_s"] = config.enter_s
     walk["leave_s"] = np.inf if config.leave_s is None else config.leave_s
-    walk["radius_m"] = radius_m
+    walk["radius_m"], walk["yields"] = radius_m, config.yields
 
 
 class Scripts(NamedTuple):

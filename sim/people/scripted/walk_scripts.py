@@ -1,33 +1,34 @@
-"""One control step of people whom nothing but their scripts and the robot guide (numba kernels).
+"""One control step of people whom nothing guides but their scripts and who is in their way (numba kernels).
 
-Does to the last bit what `Walker` does, of which it is the part without errands, crowds and wishes.
+Does to the last bit what `Walker` does, of which it is the part without errands and wishes.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
 
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.angles import remainder
 from peopleboy.sim.people.body.postures import RISE_S, Posture
 from peopleboy.sim.people.body.stance import POSTURES
+from peopleboy.sim.people.scripted.make_way import make_way, motion_of
 from peopleboy.sim.people.scripted.script import NOTHING, POINT, Records, Scripts
+from peopleboy.sim.people.scripted.walk_records import Record, arrive, braking_speed, turn_to
+from peopleboy.sim.people.walking.giving_way import RobotMotion
 from peopleboy.sim.people.walking.walk import (
     ACCELERATION_M_S2,
     BRAKE_M_S2,
     KEEP_CLEAR_M,
     LONGEST_STEP_S,
     START_WITHIN_RAD,
-    STEER_GAIN,
-    TURN_RATE_RAD_S,
 )
-from peopleboy.sim.robot.robot_body import RADIUS_M
+
+Array = NDArray[np.float64]
 
 STANDING = POSTURES[Posture.STANDING]
-
-Record = Any  # a row of records
 
 
 @njit(cache=True, nogil=True)
@@ -38,10 +39,11 @@ def walk_on(
     scripts: Scripts,
     time_s: float,
     dt_s: float,
-    robot: tuple[float, float],
+    robot: RobotMotion,
+    walls: Array,
     two: float,
 ) -> None:
-    """Let some people walk on, come and go.
+    """Let the people of a world walk on, come and go.
 
     Args:
         first: number of the first of them.
@@ -50,14 +52,17 @@ def walk_on(
         scripts: of all people.
         time_s: [s] at the start of the step.
         dt_s: [s] length of the step.
-        robot: [m] where it is now.
+        robot: where it is now, and how it moves.
+        walls: (K, 4) [m] rectangles min_x, min_y, max_x, max_y, for those who make way.
         two: 2, told so late that squares are made by the library's power, as Python makes them.
     """
     now_s = time_s + dt_s
     count = max(math.ceil(dt_s / LONGEST_STEP_S - 1e-9), 1)
+    people, row = motion_of(first, end, walks), -1
     for q in range(first, end):
         walk = walks[q]
         was_present = walk.is_present
+        row += was_present
         walk.has_moved = False
         walk.is_present = walk.enter_s <= now_s + 1e-9 and not now_s > walk.leave_s - 1e-9
         if not walk.is_present:
@@ -65,7 +70,9 @@ def walk_on(
         if was_present:
             walk.has_moved = True
             for _ in range(count):
-                if walk.piece >= 0:
+                if walk.piece >= 0 and walk.yields:
+                    make_way(walk, scripts, q, dt_s / count, people, row, robot, walls, two)
+                elif walk.piece >= 0:
                     _follow(walk, scripts, q, dt_s / count, robot, two)
                 else:
                     _pause(walk, scripts, q, dt_s / count, robot)
@@ -76,13 +83,13 @@ def walk_on(
 
 
 @njit(cache=True)
-def _pause(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: tuple[float, float]) -> None:
+def _pause(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: RobotMotion) -> None:
     """See `Walker._pause`."""
     walk.velocity[0] = walk.velocity[1] = walk.speed = 0.0
     walk.pause_left -= dt_s
     waypoint = scripts.waypoints[scripts.first_waypoint[q] + walk.reached]
     if walk.pause_left > 1e-9:
-        _turn(walk, dt_s, walk.heading if waypoint.faces == NOTHING else _faced(walk, waypoint, robot))
+        turn_to(walk, dt_s, walk.heading if waypoint.faces == NOTHING else _faced(walk, waypoint, robot))
         return
     if walk.posture != STANDING:
         walk.posture = STANDING
@@ -90,16 +97,14 @@ def _pause(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: tuple[flo
     walk.on_feet_in -= dt_s
     following = scripts.waypoints[scripts.first_waypoint[q] + walk.reached + 1]
     bearing = _bearing(walk, following.at[0], following.at[1])
-    _turn(walk, dt_s, bearing)
+    turn_to(walk, dt_s, bearing)
     if walk.on_feet_in <= 0.0 and abs(remainder(bearing - walk.heading)) < START_WITHIN_RAD:
         walk.piece, walk.end_piece = waypoint.first_piece, waypoint.end_piece
         walk.along = walk.pause_left = 0.0
 
 
 @njit(cache=True)
-def _follow(
-    walk: Record, scripts: Scripts, q: int, dt_s: float, robot: tuple[float, float], two: float
-) -> None:
+def _follow(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: RobotMotion, two: float) -> None:
     """See `Walker._follow`."""
     pieces, first = scripts.pieces, scripts.first_piece[q]
     piece = pieces[first + walk.piece]
@@ -111,14 +116,17 @@ def _follow(
     while walk.along >= pieces[first + walk.piece].length - 1e-4:
         walk.along -= pieces[first + walk.piece].length
         if walk.piece + 1 == walk.end_piece:
-            _arrive(walk, scripts, q, pieces[first + walk.piece].goal)
+            goal = pieces[first + walk.piece].goal
+            end = scripts.waypoints[scripts.first_waypoint[q] + goal]
+            walk.position[0], walk.position[1] = end.at[0], end.at[1]
+            arrive(walk, scripts, q, goal)
             return
         walk.piece += 1
         walk.reached = pieces[first + walk.piece].goal - 1
     direction = _put(walk, pieces[first + walk.piece])
     walk.velocity[0] = walk.speed * math.cos(direction)
     walk.velocity[1] = walk.speed * math.sin(direction)
-    _turn(walk, dt_s, direction)
+    turn_to(walk, dt_s, direction)
 
 
 @njit(cache=True)
@@ -137,17 +145,6 @@ def _put(walk: Record, piece: Record) -> float:
 
 
 @njit(cache=True)
-def _arrive(walk: Record, scripts: Scripts, q: int, goal: int) -> None:
-    """See `Walker._arrive`."""
-    waypoint = scripts.waypoints[scripts.first_waypoint[q] + goal]
-    walk.position[0], walk.position[1] = waypoint.at[0], waypoint.at[1]
-    walk.velocity[0] = walk.velocity[1] = walk.speed = 0.0
-    walk.pause_left, walk.reached, walk.piece = waypoint.pause_s, goal, -1
-    if waypoint.has_pause:
-        walk.posture = waypoint.posture
-
-
-@njit(cache=True)
 def _speed_limit(walk: Record, scripts: Scripts, q: int, dt_s: float, two: float) -> float:
     """See `Walker._speed_limit`."""
     first = scripts.first_piece[q]
@@ -156,24 +153,18 @@ def _speed_limit(walk: Record, scripts: Scripts, q: int, dt_s: float, two: float
     ahead = piece.length - walk.along
     for k in range(first + walk.piece + 1, first + walk.end_piece):
         piece = scripts.pieces[k]
-        limit = min(limit, _braking_speed(ahead, piece.speed_squared, dt_s, two))
+        limit = min(limit, braking_speed(ahead, piece.speed_squared, dt_s, two))
         ahead += piece.length
-    return min(limit, _braking_speed(ahead, 0.0, dt_s, two))
+    return min(limit, braking_speed(ahead, 0.0, dt_s, two))
 
 
 @njit(cache=True)
-def _braking_speed(distance: float, final_squared: float, dt_s: float, two: float) -> float:
-    lost = ACCELERATION_M_S2 * dt_s / 2.0
-    return math.sqrt(lost**two + 2.0 * ACCELERATION_M_S2 * max(distance, 0.0) + final_squared) - lost
-
-
-@njit(cache=True)
-def _limit_by_robot(walk: Record, robot: tuple[float, float], direction: float, two: float) -> float:
+def _limit_by_robot(walk: Record, robot: RobotMotion, direction: float, two: float) -> float:
     """See `Walker._limit_by_robot`."""
     x, y = robot[0] - walk.position[0], robot[1] - walk.position[1]
     ahead = x * math.cos(direction) + y * math.sin(direction)
     aside = abs(y * math.cos(direction) - x * math.sin(direction))
-    reach = walk.radius_m + RADIUS_M
+    reach = walk.radius_m + robot[4]
     if ahead < 0.0 or aside > reach:
         return math.inf
     clear = ahead - math.sqrt(max(reach**two - aside**two, 0.0)) - KEEP_CLEAR_M
@@ -181,7 +172,7 @@ def _limit_by_robot(walk: Record, robot: tuple[float, float], direction: float, 
 
 
 @njit(cache=True)
-def _faced(walk: Record, waypoint: Record, robot: tuple[float, float]) -> float:
+def _faced(walk: Record, waypoint: Record, robot: RobotMotion) -> float:
     """Direction [rad] of what a waypoint says is to be faced."""
     if waypoint.faces == POINT:
         return _bearing(walk, waypoint.face[0], waypoint.face[1])
@@ -194,12 +185,3 @@ def _bearing(walk: Record, x: float, y: float) -> float:
     dx, dy = x - walk.position[0], y - walk.position[1]
     heading: float = walk.heading
     return heading if math.hypot(dx, dy) < 1e-6 else math.atan2(dy, dx)
-
-
-@njit(cache=True)
-def _turn(walk: Record, dt_s: float, wanted: float) -> None:
-    """See `Walker._turn`."""
-    turn = remainder(wanted - walk.heading) * min(STEER_GAIN * dt_s, 1.0)
-    turn = min(max(turn, -TURN_RATE_RAD_S * dt_s), TURN_RATE_RAD_S * dt_s)
-    walk.turn_rate = turn / dt_s
-    walk.heading = remainder(walk.heading + turn)

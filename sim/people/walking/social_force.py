@@ -26,7 +26,6 @@ TOUCH_STRENGTH = 8.0  # [m/s2]
 TOUCH_RANGE_M = 0.08
 # Ours: who comes head-on is passed on the right, so that nobody gets stuck; a force bends by this much.
 KEEP_RIGHT_RAD = 0.25
-MOST_M_S2 = 4.0
 POINT_RADIUS_M = 0.25  # the size of the bodies that the constants were made for
 
 
@@ -45,30 +44,6 @@ class PlanarState:
     velocity: Array
     radius_m: float = 0.25
     heading_rad: float = 0.0
-
-
-@njit(cache=True, nogil=True)
-def velocity_by_force(
-    at: tuple[float, float],
-    velocity: tuple[float, float],
-    goal: tuple[float, float],
-    wanted_m_s: float,
-    people: Array,
-    walker: int,
-    robot: tuple[float, float, float, float, float],
-    walls: Array,
-    bend_rad: float,
-    dt_s: float,
-) -> tuple[float, float]:
-    """Give the velocity [m/s] after a step of a person who wants to a goal [m], at a speed.
-
-    Nobody's is changed by more than `MOST_M_S2`; for the rest see `social_force`.
-    """
-    gap_x, gap_y = goal[0] - at[0], goal[1] - at[1]
-    pace = wanted_m_s / max(math.hypot(gap_x, gap_y), 1e-9)
-    x, y = social_force(at, velocity, (gap_x * pace, gap_y * pace), people, walker, robot, walls, bend_rad)
-    share = dt_s * min(MOST_M_S2 / max(math.hypot(x, y), 1e-9), 1.0)
-    return velocity[0] + share * x, velocity[1] + share * y
 
 
 @njit(cache=True, nogil=True)

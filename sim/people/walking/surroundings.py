@@ -54,13 +54,5 @@ class Surroundings:
         row = self.people.rows.get(face)
         return None if row is None else self.people.motion[row, :2]
 
-    def is_taken(self, place: tuple[float, float], within_m: float) -> bool:
-        """Whether anybody else is within a distance [m] of a place [m]."""
-        gaps = self.people.motion[:, :2] - place
-        is_near = np.hypot(gaps[:, 0], gaps[:, 1]) < within_m
-        if self.walker >= 0:
-            is_near[self.walker] = False
-        return bool(is_near.any())
-
 
 ALONE: Final = Surroundings(people=NOBODY, walker=-1, robot=None, walls=np.empty((0, 4)))

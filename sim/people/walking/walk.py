@@ -4,19 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.postures import RISE_S, Posture
-from peopleboy.sim.people.walking.path import PathPiece, Point, is_about_turn, route, turn_between
-from peopleboy.sim.people.walking.social_force import (
-    KEEP_RIGHT_RAD,
-    POINT_RADIUS_M,
-    PlanarState,
+from peopleboy.sim.people.walking.giving_way import (
+    ARRIVED_M,
+    HURRY,
+    NO_ROBOT,
+    PASSED_M,
+    PASSED_TAKEN_M,
+    SETTLES_M_S,
+    TAKEN_WITHIN_M,
+    TURNS_M_S,
+    RobotMotion,
+    bend_rad,
+    blocked_s,
+    is_taken,
     velocity_by_force,
 )
+from peopleboy.sim.people.walking.path import PathPiece, Point, is_about_turn, route, turn_between
+from peopleboy.sim.people.walking.social_force import POINT_RADIUS_M, PlanarState
 from peopleboy.sim.people.walking.surroundings import Surroundings
 from peopleboy.sim.people.walking.waypoint import Waypoint
 from peopleboy.sim.people.walking.wish import AS_PLANNED, Wish
@@ -30,14 +39,9 @@ BRAKE_M_S2 = 2.0
 KEEP_CLEAR_M = 0.25  # of the robot, where a person that waits for it comes to stand
 STEER_GAIN = 8.0  # [1/s]
 START_WITHIN_RAD = math.radians(25.0)
-_TRY_SIDE_S = 2.0  # how long one tries to pass on one side
 _ERRAND_M_S = 1.2  # how fast one goes where no script sends one
-_TAKEN_WITHIN_M = 1.0  # how near to a waypoint one looks whether somebody stands on it
-_TAKEN_BY_M = 0.6  # how near to it somebody stands then
 _NEARLY_M = 0.1  # how near to the goal of an errand one has arrived
 _SIDESTEP_M = 0.8  # the last of an errand, on which one does not turn away from what one faces
-_HURRY = 1.3  # who gives way may be this much faster than planned (Helbing and Molnar 1995, eq. 11)
-_NO_ROBOT = (0.0, 0.0, 0.0, 0.0, -1.0)
 
 
 class Walker:
@@ -202,7 +206,7 @@ class Walker:
             self._on_feet_in = RISE_S
         self._is_astray, self._is_turned_away, self._pieces = True, False, ()
         self._on_feet_in -= dt_s
-        distance = math.dist(goal.tolist(), self.position.tolist())
+        distance = self._gap(_pair(goal))
         if self._on_feet_in > 0.0 or distance < _NEARLY_M:
             self._halt(dt_s, around, wish)
             return
@@ -309,60 +313,54 @@ class Walker:
         is_last = goal == self._pieces[-1].goal
         wanted = speed
         if is_last:
-            distance = math.dist(target, self.position.tolist())
-            wanted = min(speed, _braking_speed(distance, 0.0, ACCELERATION_M_S2, dt_s))
+            wanted = min(speed, _braking_speed(self._gap(target), 0.0, ACCELERATION_M_S2, dt_s))
         wanted = wish.pace * wanted
         robot = self._be_pushed(dt_s, target, wanted, speed, around, wish)
-        is_blocked = self._speed < 0.5 * wanted
-        self._blocked_s = self._blocked_s + dt_s if is_blocked else max(self._blocked_s - dt_s, 0.0)
-        self._pass_waypoint(target, is_last, around, robot)
+        self._blocked_s = blocked_s(self._blocked_s, self._speed, wanted, dt_s)
+        if self._gap(target) < TAKEN_WITHIN_M:
+            is_occupied = is_taken(target, around.people.motion, around.walker, robot)
+            self._pass_waypoint(target, is_last, is_occupied)
 
     def _be_pushed(
         self, dt_s: float, goal: Point, wanted: float, speed: float, around: Surroundings, wish: Wish
-    ) -> PlanarState | None:
+    ) -> RobotMotion:
         """Move by social force towards a goal [m], a little faster than a speed [m/s] at most.
 
         Returns:
-            The robot as it made way for it; None if it does not heed it, or there is none.
+            The robot as it made way for it.
         """
-        robot = None if around.robot is None else _as_wished(around.robot, wish)
+        robot = _as_wished(around.robot, wish)
         x, y = velocity_by_force(
             _pair(self.position), _pair(self.velocity), goal, wanted, around.people.motion, around.walker,
-            _NO_ROBOT if robot is None else _motion(robot), around.walls, self._bend(), dt_s,
+            robot, around.walls, bend_rad(self._blocked_s), dt_s,
         )  # fmt: skip
-        limit = _HURRY * speed
-        if robot is None:
+        limit = HURRY * speed
+        if not wish.heeds_robot:
             limit = min(limit, self._limit_by_robot(around.robot, math.atan2(y, x)))
-        fast = math.hypot(x, y)
+        fast = math.sqrt(x * x + y * y)
         self._speed = min(fast, limit)
         self.velocity = np.array([x, y]) * (1.0 if fast <= limit else limit / fast)
         self.position = self.position + self.velocity * dt_s
-        if self._speed > 0.15:
+        if self._speed > TURNS_M_S:
             self._turn(dt_s, math.atan2(y, x))
         return robot
 
-    def _bend(self) -> float:
-        """To which side to give way [rad]: to the right; if that does not help, left and right in turn."""
-        side = 1.0 if int(self._blocked_s / _TRY_SIDE_S) % 2 == 0 else -1.0
-        return side * KEEP_RIGHT_RAD * (1.0 + min(self._blocked_s / _TRY_SIDE_S, 4.0))
-
-    def _pass_waypoint(
-        self, target: Point, is_last: bool, around: Surroundings, robot: PlanarState | None
-    ) -> None:
+    def _pass_waypoint(self, target: Point, is_last: bool, is_occupied: bool) -> None:
         """Go on to the next waypoint where this one is reached, or where others stand on it."""
-        distance = math.dist(target, self.position.tolist())
-        if distance >= _TAKEN_WITHIN_M:
-            return
-        is_taken = around.is_taken(target, _TAKEN_BY_M)
-        if robot is not None:
-            is_taken = is_taken or math.dist(robot.position.tolist(), target) < _TAKEN_BY_M
+        distance = self._gap(target)
         if is_last:
-            if distance < 0.04 or (is_taken and self._speed < 0.4):
+            if distance < ARRIVED_M or (is_occupied and self._speed < SETTLES_M_S):
                 self._arrive()
-        elif distance < (0.9 if is_taken else 0.35):
+        elif distance < (PASSED_TAKEN_M if is_occupied else PASSED_M):
             goal = self._pieces[0].goal
             self.reached = goal
             self._pieces = tuple(piece for piece in self._pieces if piece.goal > goal)
+
+    def _gap(self, target: Point) -> float:
+        """Distance [m] of a point."""
+        x, y = self.position.tolist()
+        x, y = target[0] - x, target[1] - y
+        return math.sqrt(x * x + y * y)
 
     def _bearing(self, target: Array) -> float:
         """Direction [rad] of a point; the present heading if it is here."""
@@ -377,26 +375,20 @@ class Walker:
         self.heading = math.remainder(self.heading + turn, 2.0 * math.pi)
 
 
-def _as_wished(robot: PlanarState, wish: Wish) -> PlanarState | None:
-    """The robot as one makes way for it: larger for who keeps farther away; None for who does not care."""
-    if not wish.heeds_robot:
-        return None
-    if wish.clear_m is None:
-        return robot
-    return replace(robot, radius_m=max(robot.radius_m, wish.clear_m - POINT_RADIUS_M))
+def _as_wished(robot: PlanarState | None, wish: Wish) -> RobotMotion:
+    """The robot as one makes way for it: larger for who keeps farther away; none for who does not care."""
+    if robot is None or not wish.heeds_robot:
+        return NO_ROBOT
+    radius_m = robot.radius_m
+    if wish.clear_m is not None:
+        radius_m = max(radius_m, wish.clear_m - POINT_RADIUS_M)
+    return *_pair(robot.position), *_pair(robot.velocity), radius_m
 
 
 def _braking_speed(distance: float, final: float, brake: float, dt_s: float) -> float:
     """Highest speed [m/s] for this step from which the final one is reached within a distance."""
     lost = brake * dt_s / 2.0
     return math.sqrt(lost**2 + 2.0 * brake * max(distance, 0.0) + final**2) - lost
-
-
-def _motion(robot: PlanarState) -> tuple[float, float, float, float, float]:
-    """Tell where a robot is, how it moves, and how wide it is, as `social_force` asks for it."""
-    x, y = robot.position.tolist()
-    along_x, along_y = robot.velocity.tolist()
-    return x, y, along_x, along_y, robot.radius_m
 
 
 def _pair(vector: Array) -> tuple[float, float]:
