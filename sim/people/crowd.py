@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -32,6 +33,7 @@ from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Shape, ShapeKind
 _SOLID = "solid"
 
 _POSTURES = tuple(POSTURES)
+_OUT_OF_REACH_M = 1.5  # nobody who is so far away and the robot meet within a control step
 
 
 class Crowd:
@@ -114,8 +116,10 @@ class Crowd:
         present = those_present(self.people)
         obstacles = self._place.obstacles_at(time_s)
         members = [(p, p.progress) for p in self.people if p.present and p.config.group is not None]
+        self._before.clear()
         for person in self.people:
-            self._before[person.name] = person.position.copy()
+            if person.name in self._solid and math.dist(person.position, robot.position) < _OUT_OF_REACH_M:
+                self._before[person.name] = person.position.copy()
             company = [
                 progress
                 for other, progress in members
@@ -124,10 +128,13 @@ class Crowd:
             person.step(time_s, dt_s, present, robot, obstacles, company)
 
     def move_bodies(self, share: float) -> None:
-        """Move the solid capsules to where people are when this share of the control step has passed."""
+        """Move the solid capsules to where people are when this share of the control step has passed.
+
+        Those whom the robot may meet: all others are put where they are when it is over.
+        """
         for person in self.people:
-            if person.name in self._solid:
-                before = self._before[person.name]
+            before = self._before.get(person.name)
+            if before is not None:
                 self._place_solid(person, before + share * (person.position - before))
 
     @property
