@@ -11,16 +11,15 @@ from numpy.typing import NDArray
 from peopleboy.sim.people.scripted.script import Records, Scripts
 from peopleboy.sim.people.scripted.walk_records import Record, arrive, braking_speed, turn_to
 from peopleboy.sim.people.walking.giving_way import (
-    ARRIVED_M,
     HURRY,
     PASSED_M,
     PASSED_TAKEN_M,
-    SETTLES_M_S,
     TAKEN_WITHIN_M,
     TURNS_M_S,
     RobotMotion,
     bend_rad,
     blocked_s,
+    has_arrived,
     is_taken,
     velocity_by_force,
 )
@@ -60,15 +59,16 @@ def make_way(
     goal = pieces[first + walk.piece].goal
     waypoint = scripts.waypoints[scripts.first_waypoint[q] + goal]
     target = (waypoint.at[0], waypoint.at[1])
-    wanted = waypoint.speed
+    wanted, limit = waypoint.speed, HURRY * waypoint.speed
     is_last = goal == pieces[first + walk.end_piece - 1].goal
     if is_last:
-        wanted = min(wanted, braking_speed(_gap(walk, target), 0.0, dt_s, two))
+        braking = braking_speed(_gap(walk, target), 0.0, dt_s, two)
+        wanted, limit = min(wanted, braking), min(limit, braking)
     x, y = velocity_by_force(
         (walk.position[0], walk.position[1]), (walk.velocity[0], walk.velocity[1]), target, wanted, people,
         own, robot, walls, bend_rad(walk.blocked_s), dt_s,
     )  # fmt: skip
-    fast, limit = math.sqrt(x * x + y * y), HURRY * waypoint.speed
+    fast = math.sqrt(x * x + y * y)
     share = 1.0 if fast <= limit else limit / fast
     walk.speed = min(fast, limit)
     walk.velocity[0], walk.velocity[1] = x * share, y * share
@@ -94,7 +94,7 @@ def _pass_waypoint(
     """See `Walker._pass_waypoint`."""
     distance = _gap(walk, target)
     if is_last:
-        if distance < ARRIVED_M or (is_occupied and walk.speed < SETTLES_M_S):
+        if has_arrived(distance, walk.blocked_s, walk.speed, is_occupied):
             arrive(walk, scripts, q, goal)
     elif distance < (PASSED_TAKEN_M if is_occupied else PASSED_M):
         walk.reached = goal

@@ -19,11 +19,13 @@ NO_ROBOT: Final[RobotMotion] = (0.0, 0.0, 0.0, 0.0, -1.0)
 HURRY: Final = 1.3  # who gives way may be this much faster than planned (Helbing and Molnar 1995, eq. 11)
 TAKEN_WITHIN_M: Final = 1.0  # how near to a waypoint one looks whether somebody stands on it
 TAKEN_BY_M: Final = 0.6  # how near to it somebody stands then
-ARRIVED_M: Final = 0.04  # how near to where one stops one does
-SETTLES_M_S: Final = 0.4  # so slow one settles beside a place that is taken
+_SETTLES_M_S: Final = 0.4  # so slow one settles beside a place that is taken
 PASSED_M: Final = 0.35  # how near to a waypoint one goes on to the next
 PASSED_TAKEN_M: Final = 0.9  # the same where others stand on it
 TURNS_M_S: Final = 0.15  # who is slower keeps facing where he does
+_ARRIVED_M: Final = 0.02  # how near to where one stops one does
+_STUCK_M: Final = 0.5  # the same of who gets no nearer, as a wall or others are too near
+_STUCK_S: Final = 1.0
 _MOST_M_S2: Final = 4.0
 _TRY_SIDE_S: Final = 2.0  # how long one tries to pass on one side
 
@@ -63,6 +65,14 @@ def bend_rad(blocked_s: float) -> float:
 def blocked_s(blocked_s: float, speed_m_s: float, wanted_m_s: float, dt_s: float) -> float:
     """Give for how long one has been slower than half as fast as one wanted to be, a step later."""
     return blocked_s + dt_s if speed_m_s < 0.5 * wanted_m_s else max(blocked_s - dt_s, 0.0)
+
+
+@njit(cache=True)
+def has_arrived(distance_m: float, blocked_s: float, speed_m_s: float, is_occupied: bool) -> bool:
+    """Whether one stops where one is, so far from where the script says."""
+    if is_occupied and speed_m_s < _SETTLES_M_S:
+        return True
+    return distance_m < (_STUCK_M if blocked_s > _STUCK_S else _ARRIVED_M)
 
 
 @njit(cache=True)

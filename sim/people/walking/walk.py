@@ -10,17 +10,16 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.postures import RISE_S, Posture
 from peopleboy.sim.people.walking.giving_way import (
-    ARRIVED_M,
     HURRY,
     NO_ROBOT,
     PASSED_M,
     PASSED_TAKEN_M,
-    SETTLES_M_S,
     TAKEN_WITHIN_M,
     TURNS_M_S,
     RobotMotion,
     bend_rad,
     blocked_s,
+    has_arrived,
     is_taken,
     velocity_by_force,
 )
@@ -211,7 +210,7 @@ class Walker:
             self._halt(dt_s, around, wish)
             return
         wanted = min(_ERRAND_M_S, _braking_speed(distance, 0.0, ACCELERATION_M_S2, dt_s))
-        self._be_pushed(dt_s, _pair(goal), wanted, _ERRAND_M_S, around, wish)
+        self._be_pushed(dt_s, _pair(goal), wanted, HURRY * _ERRAND_M_S, around, wish)
         if wish.faces is not None and distance < _SIDESTEP_M:
             self._turn(dt_s, self._bearing(wish.faces))
 
@@ -311,20 +310,21 @@ class Walker:
         goal = self._pieces[0].goal
         target, speed = self._path[goal].at_m, self._path[goal].speed_m_s
         is_last = goal == self._pieces[-1].goal
-        wanted = speed
+        wanted, limit = speed, HURRY * speed
         if is_last:
-            wanted = min(speed, _braking_speed(self._gap(target), 0.0, ACCELERATION_M_S2, dt_s))
+            braking = _braking_speed(self._gap(target), 0.0, ACCELERATION_M_S2, dt_s)
+            wanted, limit = min(wanted, braking), min(limit, braking)
         wanted = wish.pace * wanted
-        robot = self._be_pushed(dt_s, target, wanted, speed, around, wish)
+        robot = self._be_pushed(dt_s, target, wanted, limit, around, wish)
         self._blocked_s = blocked_s(self._blocked_s, self._speed, wanted, dt_s)
         if self._gap(target) < TAKEN_WITHIN_M:
             is_occupied = is_taken(target, around.people.motion, around.walker, robot)
             self._pass_waypoint(target, is_last, is_occupied)
 
     def _be_pushed(
-        self, dt_s: float, goal: Point, wanted: float, speed: float, around: Surroundings, wish: Wish
+        self, dt_s: float, goal: Point, wanted: float, limit: float, around: Surroundings, wish: Wish
     ) -> RobotMotion:
-        """Move by social force towards a goal [m], a little faster than a speed [m/s] at most.
+        """Move by social force towards a goal [m], as fast as is wanted, up to a limit [m/s].
 
         Returns:
             The robot as it made way for it.
@@ -334,7 +334,6 @@ class Walker:
             _pair(self.position), _pair(self.velocity), goal, wanted, around.people.motion, around.walker,
             robot, around.walls, bend_rad(self._blocked_s), dt_s,
         )  # fmt: skip
-        limit = HURRY * speed
         if not wish.heeds_robot:
             limit = min(limit, self._limit_by_robot(around.robot, math.atan2(y, x)))
         fast = math.sqrt(x * x + y * y)
@@ -349,7 +348,7 @@ class Walker:
         """Go on to the next waypoint where this one is reached, or where others stand on it."""
         distance = self._gap(target)
         if is_last:
-            if distance < ARRIVED_M or (is_occupied and self._speed < SETTLES_M_S):
+            if has_arrived(distance, self._blocked_s, self._speed, is_occupied):
                 self._arrive()
         elif distance < (PASSED_TAKEN_M if is_occupied else PASSED_M):
             goal = self._pieces[0].goal

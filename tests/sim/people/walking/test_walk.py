@@ -264,3 +264,22 @@ def test_four_people_cross_without_touching():
     assert closest(track) > 0.5
     for person in people:
         assert math.dist(person.position, person.config.path[-1].at_m) < 0.06
+
+
+def test_who_yields_brakes_as_gently_as_others():
+    for yields in (True, False):
+        way = (*path((0.0, 0.0)), Waypoint(at_m=(4.0, 0.0), pause_s=1.0), *path((4.0, 3.0)))
+        person = make_person(path=way, yields=yields)
+        speeds = np.array([np.hypot(*person.velocity) for _ in walk(person, 12.0, dt=1 / 15)])
+        assert np.diff(speeds).min() > -0.3
+        np.testing.assert_allclose(person.position, (4.0, 3.0), atol=0.03)
+
+
+@pytest.mark.parametrize("gap", [0.3, 0.5, 1.0])
+def test_who_yields_stops_before_a_wall_that_is_too_near_and_goes_on(gap):
+    way = (*path((0.0, 0.0)), Waypoint(at_m=(4.0, 0.0), pause_s=1.0), *path((0.0, 0.0)))
+    person = make_person(path=way, yields=True)
+    wall = np.array([[4.0 + gap, -3.0, 4.2 + gap, 3.0]])
+    farthest = max(person.position[0] for _ in walk(person, 12.0, walls=wall))
+    assert farthest > 3.5
+    np.testing.assert_allclose(person.position, (0.0, 0.0), atol=0.03)
