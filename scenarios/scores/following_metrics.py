@@ -90,7 +90,12 @@ class FollowingScore:
             ("in band and facing", 100.0 * self.in_band_and_facing, "%", "both at once"),
             ("distance error", self.mean_distance_error_m, "m", "mean of the absolute error since found"),
             ("distance error RMS", self.rms_distance_error_m, "m", "root mean square since found"),
-            ("nearest", self.min_distance_m, "m", "smallest distance in the run, centre to centre"),
+            (
+                "nearest",
+                self.min_distance_m,
+                "m",
+                "smallest distance to the person to follow, centre to centre",
+            ),
             ("collisions", float(self.collisions), "", "contacts begun in the run"),
             ("times lost", float(self.times_lost), "", "periods without track since found"),
             ("longest lost", self.longest_lost_s, "s", "longest period without track since found"),

@@ -112,11 +112,18 @@ def whose_tracks(tick: Tick, boxes: BoxKind = BoxKind.TORSO) -> tuple[int, bool]
 
 
 def track_on(spot: Spot | None, tracks: Iterable[Track]) -> int:
-    """Give the number of the track that lies best on a person, 0 if none does well enough."""
+    """Give the number of the track that lies best on a person, 0 if none does well enough.
+
+    One of somebody hidden, who is only believed to be there, comes after all others.
+    """
     if spot is None:
         return 0
-    overlaps = ((_overlap(track, spot), track.id) for track in _sure(tracks))
-    return max(((_LEAST_IOU, 0), *overlaps))[1]
+    lying = [
+        (track.status is not Status.TOTALLY_OCCLUDED, overlap, track.id)
+        for track in _sure(tracks)
+        if (overlap := _overlap(track, spot)) > _LEAST_IOU
+    ]
+    return max(lying)[2] if lying else 0
 
 
 def _is_wrong(spots: dict[int, Spot], tick: Tick) -> bool:

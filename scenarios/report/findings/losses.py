@@ -140,15 +140,24 @@ def _shown_again(story: RunStory, number: int, owner: Story | None, gap: tuple[i
     shown = f"shown again after {seconds((again - end) / story.run.rate_hz)}"
     break_at = np.flatnonzero(~story.shown[number][again:])
     until = again + int(break_at[0]) if len(break_at) else story.run.frames
-    lying = [
-        (int(at[0]), p) for p in story.people if len(at := np.flatnonzero(p.track[again:until] == number))
-    ]
-    first, person = min(lying, key=lambda one: one[0], default=(0, None))
+    steadily, at_all = (
+        _first_on(
+            [(p, numbers[again:until] == number) for p, numbers in zip(story.people, column, strict=True)]
+        )
+        for column in ([p.track for p in story.people], [p.matched for p in story.people])
+    )
+    first, person = steadily or at_all or (0, None)
     if person is None:
         return f"{shown}, on nobody", owner is None
     late = f", on nobody for {seconds(first / story.run.rate_hz)}" if first > story.steady else ""
     same = person is owner
     return f"{shown}{late}, {'same number' if same else f'on {spoken(person.name)}'}", same or owner is None
+
+
+def _first_on(lies: Sequence[tuple[Story, Flags]]) -> tuple[int, Story] | None:
+    """Give when and on whom a track lay first, of flags (N,) for each person; None if it lay on nobody."""
+    first = [(int(at[0]), person) for person, flags in lies if len(at := np.flatnonzero(flags))]
+    return min(first, key=lambda one: one[0], default=None)
 
 
 def _afterwards(story: RunStory, person: Story, number: int, end: int) -> tuple[str, bool]:
