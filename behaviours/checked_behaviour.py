@@ -51,7 +51,7 @@ def make_own_behaviour(name: str) -> CheckedBehaviour:
     behaviour, who = load_own("behaviour", name, "without an argument")(), f"behaviour {name!r}"
     with blamed(who):
         if not isinstance(behaviour, Behaviour):
-            raise BadInput("is none; give it `command(percept)`, `mode`, `reason` and `following`")
+            raise BadInput("is no behaviour; give it `command(percept)`, `mode`, `reason` and `following`")
         return CheckedBehaviour(behaviour, who)
 
 

@@ -82,6 +82,7 @@ def main(arguments: Sequence[str] | None = None) -> Any:
     except click.ClickException as error:
         code = _complain(error.format_message())
     except click.Abort:
+        click.echo("peopleboy: interrupted", err=True)
         code = 130
     except BadInput as error:
         code = _complain(str(error))

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import fields
 
 from docs.generate.markdown import sentence, table
 from peopleboy.scenarios.scores.comfort.comfort_metrics import ComfortScore
+from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
+from peopleboy.scenarios.scores.following_metrics import FollowingScore
 from peopleboy.tracker.evaluation.table import FIGURES
 
 
@@ -32,3 +36,24 @@ def comfort() -> str:
     )
     rows = [(f"**{name}**", unit or "count", sentence(meaning)) for name, _, unit, meaning in score.rows()]
     return table(("figure", "unit", "meaning"), rows)
+
+
+def following() -> str:
+    """List the figures of following a person."""
+    names = [field.name for field in fields(FollowingScore)]
+    return _driving(names, FollowingScore(**dict.fromkeys(names, 0)))  # type: ignore[arg-type]
+
+
+def corridor() -> str:
+    """List the figures of following corridors."""
+    names = [field.name for field in fields(CorridorScore)]
+    return _driving(names, CorridorScore(**dict.fromkeys(names, 0)))  # type: ignore[arg-type]
+
+
+def _driving(keys: Sequence[str], score: FollowingScore | CorridorScore) -> str:
+    """List figures with their keys, which are in the same order."""
+    rows = [
+        (f"**{name}**", f"`{key}`", unit or "count", sentence(meaning))
+        for key, (name, _, unit, meaning) in zip(keys, score.rows(), strict=True)
+    ]
+    return table(("figure", "in `metrics.json`", "unit", "meaning"), rows)

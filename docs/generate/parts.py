@@ -10,7 +10,7 @@ from pathlib import Path
 from benchmarks.results.tables import read_tables
 from docs.generate import choices
 from docs.generate.commands import commands
-from docs.generate.metrics import comfort, metrics
+from docs.generate.metrics import comfort, corridor, following, metrics
 from docs.generate.random_worlds import bearings, distribution
 from docs.generate.results import results
 from docs.generate.scenario_keys import scenario_keys
@@ -37,6 +37,8 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "metrics floor": partial(metrics, "floor"),
     "metrics counts": partial(metrics, "counts"),
     "metrics comfort": comfort,
+    "metrics following": following,
+    "metrics corridor": corridor,
     "sources": lambda: overview(SourceRun.read()),
     **{f"results {name}": partial(results, table) for name, table in read_tables().tables.items()},
 }

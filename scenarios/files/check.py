@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.bad_input import BadInput, Key, dotted, found_in
+from peopleboy.bad_input import BadInput, Key, found_in
+from peopleboy.scenarios.files.check_people import (
+    BODY_M,
+    ROBOT_M,
+    check_company,
+    check_distance,
+    check_person,
+)
 from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.moves.check_moves import MovedThings
 from peopleboy.scenarios.files.place_things import describe_floor, name_things
 from peopleboy.scenarios.files.schema.people import PersonSpec, WaypointSpec
 from peopleboy.scenarios.files.schema.robot import ORACLE, CameraSpec, RobotSpec
 from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
-from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import check_rate
 from peopleboy.sim.cameras.overlap import colour_from_thermal
@@ -26,10 +31,6 @@ from peopleboy.sim.places.place import Place
 from peopleboy.sim.places.rectangle import Rectangle
 from peopleboy.sim.places.thing_kinds import KINDS
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.truth.truth import BORDER
-
-BODY_M = 0.2  # clearance that the middle of a person keeps from walls and things
-ROBOT_M = 0.27  # radius of the circle around the robot
 
 # Names that cameras must leave to other folders, entities and arrays.
 _TAKEN = ("truth", "tracks", "scene", "body", "sonar", "odometry")
@@ -125,20 +126,18 @@ def check_scenario(spec: ScenarioSpec, people: Sequence[tuple[Key, PersonSpec]],
         BadInput: with the key of what it is.
     """
     _check_duration(spec.duration_s)
-    _check_names(people, ground.moved.place)
-    _check_groups(people)
+    check_company(people, ground.moved.place)
     _check_robot(spec, ground)
     _check_cameras(spec.robot)
     _check_order("at_s", [light.at_s for light in spec.lights], ("lights",))
+    _check_faults(spec)
     for key, person in people:
         with found_in(*key):
-            _check_times(person, spec.duration_s)
-            _check_lead(person)
-            _check_faces(person, [other.name for _, other in people])
+            check_person(person, spec.duration_s, [other.name for _, other in people])
             fault = ground.fault(person)
             if fault is not None:
                 raise fault
-            _check_distance(person, spec.robot)
+            check_distance(person, spec.robot)
     ground.moved.check(people, spec.robot.at_m, ROBOT_M)
 
 
@@ -161,45 +160,6 @@ def _check_duration(duration_s: float) -> None:
     if round(duration_s * CONTROL_HZ) < 1:
         raise BadInput(
             f"{duration_s:g} is less than a frame; give 1/{CONTROL_HZ} s at least", key=("duration_s",)
-        )
-
-
-def _check_names(people: Sequence[tuple[Key, PersonSpec]], place: Place) -> None:
-    """Refuse people whom the truth could not tell from each other, or from what else it names."""
-    standing = {fixture.name.split("/")[0] for fixture in place.fixtures}
-    seen: dict[str, Key] = {}
-    for key, person in people:
-        if person.name in standing:
-            raise BadInput(f"name {person.name!r} is that of something in the place; choose another", key=key)
-        if person.name == BORDER:
-            raise BadInput(f"name {BORDER!r} is taken by the image's border; choose another", key=key)
-        if person.name == "robot":
-            raise BadInput("name 'robot' is taken by the robot; choose another", key=key)
-        if person.name in seen:
-            other = dotted(seen[person.name])
-            raise BadInput(f"name {person.name!r} is also that of {other}; give each its own", key=key)
-        seen[person.name] = key
-
-
-def _check_groups(people: Sequence[tuple[Key, PersonSpec]]) -> None:
-    """Refuse people who are to keep together and cannot compare how far they have got."""
-    first: dict[str, PersonSpec] = {}
-    for key, person in people:
-        if person.group is None:
-            continue
-        other = first.setdefault(person.group, person)
-        if len(other.path) != len(person.path):
-            raise BadInput(
-                f"{person.group!r}: {person.name!r} has {len(person.path)} points of its path, and "
-                f"{other.name!r} {len(other.path)}; give them as many",
-                key=(*key, "group"),
-            )
-
-
-def _check_lead(person: PersonSpec) -> None:
-    if person.leads is not None and person.reacts is not None:
-        raise BadInput(
-            "who leads the robot looks out for it already; leave out reacts, or leads", key=("leads",)
         )
 
 
@@ -241,6 +201,15 @@ def _check_tracker(name: str) -> None:
         raise BadInput(f"unknown name {name!r}; there are {known}", key=("tracker",))
 
 
+def _check_faults(spec: ScenarioSpec) -> None:
+    for index, fault in enumerate(spec.faults):
+        if fault.from_s >= spec.duration_s:
+            raise BadInput(
+                f"{fault.from_s:g} must be before the end, duration_s {spec.duration_s:g}",
+                key=("faults", index, "from_s"),
+            )
+
+
 def _check_cameras(robot: RobotSpec) -> None:
     with found_in("robot", "cameras"):
         for name, camera in robot.cameras.items():
@@ -276,37 +245,6 @@ def _check_order(unit_key: str, times: Sequence[float], key: Key) -> None:
             raise BadInput(
                 f"{times[index]:g} must be after {times[index - 1]:g} before it", key=(*key, index, unit_key)
             )
-
-
-def _check_times(person: PersonSpec, duration_s: float) -> None:
-    if person.leave_s is not None and person.leave_s <= person.enter_s:
-        raise BadInput(f"{person.leave_s:g} must be after enter_s {person.enter_s:g}", key=("leave_s",))
-    if person.enter_s >= duration_s:
-        raise BadInput(
-            f"{person.enter_s:g} must be before the end, duration_s {duration_s:g}", key=("enter_s",)
-        )
-    for index in range(1, len(person.path)):
-        if math.dist(person.path[index - 1].at_m, person.path[index].at_m) < 0.05:
-            raise BadInput("it is the point before; use pause_s there to stay", key=("path", index, "at_m"))
-
-
-def _check_faces(person: PersonSpec, names: Sequence[str]) -> None:
-    known = [*(name for name in names if name != person.name), "robot"]
-    for index, waypoint in enumerate(person.path):
-        if isinstance(waypoint.face, str) and waypoint.face not in known:
-            raise BadInput(
-                f"unknown name {waypoint.face!r}; {hint(waypoint.face, known)}", key=("path", index, "face")
-            )
-
-
-def _check_distance(person: PersonSpec, robot: RobotSpec) -> None:
-    distance = math.dist(person.path[0].at_m, robot.at_m)
-    if distance < ROBOT_M + BODY_M:
-        raise BadInput(
-            f"{person.name!r} starts {distance:.2g} m from the robot's middle, inside it; "
-            f"keep {ROBOT_M + BODY_M:g} m",
-            key=("path", 0, "at_m"),
-        )
 
 
 def _rectangle(row: NDArray[np.float64]) -> Rectangle:

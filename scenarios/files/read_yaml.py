@@ -86,8 +86,11 @@ def _parse(text: str) -> dict[Any, Any]:
     try:
         data = yaml.load(text, Loader=_Loader)
     except yaml.MarkedYAMLError as error:
-        line = f"line {error.problem_mark.line + 1}: " if error.problem_mark else ""
-        raise BadInput(f"{line}{_one_line(str(error.problem))}") from error
+        mark = error.problem_mark
+        line = f"line {mark.line + 1}: " if mark else ""
+        is_tab = mark and "".join(text.split("\n")[mark.line : mark.line + 1])[mark.column :][:1] == "\t"
+        problem = "a tab, which YAML does not take; indent by spaces" if is_tab else str(error.problem)
+        raise BadInput(f"{line}{_one_line(problem)}") from error
     except RecursionError as error:
         raise BadInput("it is nested too deeply to be a scenario") from error
     except (yaml.YAMLError, ValueError, OverflowError) as error:

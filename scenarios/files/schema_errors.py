@@ -93,9 +93,12 @@ def _what(kind: str, context: Any, fault: Any, label: str) -> str:
     if kind in ("literal_error", "union_tag_invalid"):
         known = re.findall(r"'([^']*)'", context.get("expected") or context["expected_tags"])
         word = context.get("tag", fault["input"])
-        return f"unknown {label} {word!r}; {hint(str(word), known)}"
+        what = context.get("discriminator", label).strip("'")
+        return f"unknown {what} {word!r}; {hint(str(word), known)}"
     if kind == "union_tag_not_found":
         return "missing key 'kind'"
+    if kind == "string_pattern_mismatch" and label in ("tracker", "behaviour") and ":" in fault["input"]:
+        return f"{value} is a class of your own, which no file names; give --{label} {fault['input']} instead"
     if kind == "string_pattern_mismatch":
         return f"{value} is not a name: use letters, digits, _ and start with a letter"
     if kind == "missing":

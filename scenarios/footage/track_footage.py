@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from peopleboy.bad_input import BadInput
-from peopleboy.own_code import at_frame
+from peopleboy.own_code import at_frame, traceback_to
 from peopleboy.scenarios.footage.footage_log import FootageLog
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.views import Views, open_views
@@ -31,7 +31,7 @@ class Tracked:
 
     Attributes:
         frames: pictures read.
-        per_second: pictures a second of wall time, reading and drawing included.
+        per_second: pictures a second of wall time, over the later half, reading and drawing included.
         tracks: number of track ids.
         scores: against the truth; None without one.
         notes: what was taken as something else than it is.
@@ -56,7 +56,8 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
     Raises:
         BadInput: footage, truth or an option cannot be used, or the tracker gave what cannot be; nothing is
             written then.
-        OwnCodeFailed: the tracker raised an error; nothing is written either.
+        OwnCodeFailed: the tracker raised an error; nothing is written then but the traceback, beside the
+            folder.
     """
     _check_apart(options)
     views = open_views(options)
@@ -66,8 +67,12 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
         _tracker_of(options, views, truth, kind), f"tracker {options.tracker!r}", views.cameras
     )
     about = _about(options, views) | {"boxes": kind}
-    began = time.perf_counter()
-    with whole_folder(options.out, about, overwrite=options.overwrite, kind="run") as folder:
+    times = [time.perf_counter()]
+    trace = options.out.with_name(f"{options.out.name}-traceback.txt")
+    with (
+        traceback_to(trace),
+        whole_folder(options.out, about, overwrite=options.overwrite, kind="run") as folder,
+    ):
         log = FootageLog(folder, options, views, truth)
         with log:
             for frame in views:
@@ -75,12 +80,18 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
                     tracks = tracker.update(frame)
                     explanation = explanation_of(tracker)
                 log.add(frame, boxed_whole(tracks, frame) if kind is BoxKind.WHOLE else tracks, explanation)
+                times.append(time.perf_counter())
                 report(log.frames, views.expected)
         scores = log.finish()
         about |= {"frames": log.frames, "width": log.size[1], "height": log.size[0]}
         about["notes"] = notes = [*views.notes, *_notes_on(truth, log.size)]
-    per_second = log.frames / max(time.perf_counter() - began, 1e-9)
-    return Tracked(log.frames, per_second, log.tracks, scores, tuple(notes), kind)
+    return Tracked(log.frames, _rate_hz(times), log.tracks, scores, tuple(notes), kind)
+
+
+def _rate_hz(times_s: Sequence[float]) -> float:
+    """Give the pictures a second of the later half: kernels are compiled at the first ones."""
+    half = len(times_s) // 2
+    return (len(times_s) - 1 - half) / max(times_s[-1] - times_s[half], 1e-9)
 
 
 def _check_apart(options: TrackOptions) -> None:

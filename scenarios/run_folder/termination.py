@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any, NoReturn
 
+from peopleboy.own_code import Terminated
+
 
 @contextmanager
 def left_by_sigterm() -> Iterator[None]:
@@ -32,4 +34,4 @@ def left_by_sigterm() -> Iterator[None]:
 def _leave(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
     # A second one must not cut the clean-up short.
     signal.signal(number, signal.SIG_IGN)
-    raise SystemExit(128 + number)
+    raise Terminated(128 + number)

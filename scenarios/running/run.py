@@ -17,6 +17,7 @@ from peopleboy.scenarios.loop.tracker_by_name import check_cameras, make_eyes
 from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versions
 from peopleboy.scenarios.run_folder.gains import about_gains
+from peopleboy.scenarios.run_folder.termination import left_by_sigterm
 from peopleboy.scenarios.running.watchers import Watchers
 from peopleboy.scenarios.scores.following_score import following_task
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
@@ -104,6 +105,7 @@ def run(
     if scenario.own_behaviour is not None:
         about["behaviour"] = scenario.own_behaviour
     with ExitStack() as stack:
+        stack.enter_context(left_by_sigterm())
         world = stack.enter_context(World(config))
         stack.enter_context(traceback_in(options.out / "run.json"))
         claim_folder(options.out, overwrite=options.overwrite)

@@ -72,6 +72,10 @@ def load_own(what: str, name: str, call: str) -> Callable[..., Any]:
     return make
 
 
+class Terminated(SystemExit):
+    """The process was told to end by a signal, whatever code it was in."""
+
+
 @contextmanager
 def blamed(who: str) -> Iterator[None]:
     """Tell of an error in the block whose it is, such as "tracker 'my_module:MyTracker'".
@@ -84,6 +88,8 @@ def blamed(who: str) -> Iterator[None]:
         yield
     except BadInput as error:
         raise BadInput(f"{who}: {error}") from error
+    except Terminated:
+        raise
     except (Exception, SystemExit) as error:  # it may not end the program, least of all with exit code 0
         raise OwnCodeFailed(f"{who} failed: {in_one_line(error)}") from error
 
@@ -115,6 +121,22 @@ def traceback_in(path: Path) -> Iterator[None]:
         yield
     except OwnCodeFailed as error:
         raise OwnCodeFailed(f"{error}; the traceback is in {path}") from error.__cause__
+
+
+@contextmanager
+def traceback_to(path: Path) -> Iterator[None]:
+    """Keep the traceback of an error of such a class in the block, and tell where; an earlier one goes.
+
+    Raises:
+        OwnCodeFailed: it was raised in the block.
+    """
+    path.unlink(missing_ok=True)
+    with traceback_in(path):
+        try:
+            yield
+        except OwnCodeFailed as error:
+            path.write_text(traceback_of(error), encoding="utf-8")
+            raise
 
 
 def in_one_line(error: BaseException) -> str:

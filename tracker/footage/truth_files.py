@@ -80,6 +80,8 @@ def load_truth(path: Path, frames: int | None, numbers: range | None = None) -> 
     Raises:
         BadInput: the file cannot be read, or does not belong to the pictures.
     """
+    if not path.exists():
+        raise BadInput(f"{path}: there is no such file")
     try:
         lines = path.read_text(encoding="utf-8").split("\n")
     except (OSError, UnicodeDecodeError) as error:

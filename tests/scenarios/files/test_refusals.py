@@ -56,6 +56,26 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
         lambda d: d.update(groups=[{"names": ["eve", "fay"], "path": [{"at_m": [3.0, 2.0]}]}]),
         ("groups[0].path: must have at least 2 entries",),
     ),
+    "two in one place": (
+        lambda d: d["people"].append({"name": "carl", "path": [{"at_m": [3.0, 1.0]}, {"at_m": [5.0, 1.0]}]}),
+        ("people[2].path[0].at_m: 'carl' starts where 'anna' does",),
+    ),
+    "a group of one": (
+        lambda d: d["people"][0].update(group="us"),
+        ("people[0].group: 'us' has nobody but 'anna'",),
+    ),
+    "a fault when all is over": (
+        lambda d: d.update(faults=[{"kind": "camera_black", "from_s": 20.0}]),
+        ("faults[0].from_s: 20 must be before the end, duration_s 20",),
+    ),
+    "a camera of an unknown kind": (
+        lambda d: d["robot"].update(cameras={"rear": {"kind": "termal"}}),
+        ("robot.cameras.rear: unknown kind 'termal'; did you mean 'thermal'?",),
+    ),
+    "a tracker of one's own": (
+        lambda d: d["robot"].update(tracker="mine:Mine"),
+        ("robot.tracker: 'mine:Mine' is a class of your own", "--tracker mine:Mine"),
+    ),
     "a person named as a thing": (
         lambda d: d["people"][1].update(name="table_1"),
         ("people[1]: name 'table_1' is that of something in the place",),

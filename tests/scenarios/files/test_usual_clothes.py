@@ -5,14 +5,14 @@ import pytest
 from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 
-PATH = [{"at_m": [4.0, 1.0]}, {"at_m": [4.0, -1.0]}]
+PATH, BESIDE, BEYOND = ([{"at_m": [x, 1.0]}, {"at_m": [x, -1.0]}] for x in (4.0, 5.0, 6.0))
 
 
 def scenario(detail: str, surroundings_c: float = 21.0) -> Scenario:
     people = [
         {"name": "ann", "sex": "female", "path": PATH},
-        {"name": "ben", "sex": "male", "clothes": {"top": "lab_coat", "bottom": "skirt"}, "path": PATH},
-        {"name": "cleo", "path": PATH},
+        {"name": "ben", "sex": "male", "clothes": {"top": "lab_coat", "bottom": "skirt"}, "path": BESIDE},
+        {"name": "cleo", "path": BEYOND},
     ]
     place = {
         "kind": "room",

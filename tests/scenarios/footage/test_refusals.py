@@ -103,3 +103,8 @@ def test_a_mistake_of_ones_own_tracker_is_told_with_its_frame_and_leaves_nothing
     assert isinstance(done.exception, BadInput if answer == "None" else OwnCodeFailed)
     assert_names(str(done.exception), "frame 3", *says)
     assert not (tmp_path / "out").exists()
+    kept = tmp_path / "out-traceback.txt"
+    assert kept.exists() == (answer == "1 / 0")
+    if kept.exists():
+        assert str(kept) in str(done.exception)
+        assert "ZeroDivisionError: division by zero" in kept.read_text()

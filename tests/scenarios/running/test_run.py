@@ -176,6 +176,18 @@ def test_an_interrupted_run_says_so_and_stays_readable(tmp_path: Path) -> None:
         evaluate_runs([tmp_path / "run"])
 
 
+def test_a_run_told_to_end_says_so_and_is_no_failure_of_its_tracker(tmp_path: Path) -> None:
+    script = (
+        "import os, signal, sys; from peopleboy.scenarios.cli import main\n"
+        "import peopleboy.scenarios.loop.oracle_tracker as oracle\n"
+        "oracle.OracleTracker.update = lambda *_: os.kill(os.getpid(), signal.SIGTERM)\n"
+        "main(sys.argv[1:])"
+    )
+    call = ["run", "single_stationary", "--tracker", "truth", "--no-rrd", "--out", str(tmp_path / "run")]
+    assert subprocess.run([sys.executable, "-c", script, *call], check=False).returncode == 143
+    assert json.loads((tmp_path / "run" / "run.json").read_text())["status"] == "cut off"
+
+
 MISTAKES = {
     "misspelt key": ({"duration": 3.0}, "duration_s"),
     "NaN": ({"duration_s": float("nan")}, "duration_s"),
