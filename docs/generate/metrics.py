@@ -47,7 +47,7 @@ def following() -> str:
 def corridor() -> str:
     """List the figures of following corridors."""
     names = [field.name for field in fields(CorridorScore)]
-    return _driving(names, CorridorScore(**dict.fromkeys(names, 0)))  # type: ignore[arg-type]
+    return _driving(names, CorridorScore(**dict.fromkeys(names, 0)))
 
 
 def _driving(keys: Sequence[str], score: FollowingScore | CorridorScore) -> str:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from rich.console import Console
@@ -129,6 +130,7 @@ def _draw(
                 low, mean, high = (_scale(name) * v for v in (interval.low, interval.mean, interval.high))
                 axes.plot([low, high], [row, row], color=f"C{row}", linewidth=2.5)
                 axes.plot([mean], [row], "D", color=f"C{row}", markersize=6)
+        _limit(axes, [_scale(name) * of_run.get(name, math.nan) for of in runs.values() for of_run in of])
         axes.set_title(_label(name), fontsize=9)
         axes.set_yticks(range(len(runs)), [str(controller) for controller in runs], fontsize=7)
         axes.set_ylim(len(runs) - 0.5, -0.5)
@@ -136,3 +138,14 @@ def _draw(
     for axes in grid.flat[len(names) :]:
         axes.set_axis_off()
     figure.savefig(path, dpi=110)
+
+
+def _limit(axes: Axes, values: Sequence[float]) -> None:
+    """Say that nothing is defined, and show a figure that is the same in all runs beside 0."""
+    known = [value for value in values if not math.isnan(value)]
+    if not known:
+        axes.text(0.5, 0.5, "not defined in any run", ha="center", va="center", transform=axes.transAxes)
+        axes.set_xticks([])
+    elif min(known) == max(known):
+        far = known[0] or 1.0
+        axes.set_xlim(min(-0.05 * far, 1.15 * far), max(-0.05 * far, 1.15 * far))
