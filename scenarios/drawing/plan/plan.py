@@ -29,9 +29,7 @@ from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.run_folder.out_folder import writing_to
 from peopleboy.sim.config import WorldConfig
 
-_PEOPLE = (
-    *("#1f6fb4", "#2f7d32", "#7b3fa0", "#a8327a", "#00798c", "#5d4a1f", "#9a6700", "#4a4a4a", "#6d7500"),
-)
+_PEOPLE = ("#1f6fb4", "#2f7d32", "#7b3fa0", "#a8327a", "#00798c", "#5d4a1f", "#9a6700", "#4a4a4a", "#6d7500")
 _WIDTH_IN, _HEAD_IN, _FOOT_IN, _SIDE_IN, _DPI = 11.0, 0.85, 1.3, 0.25, 130
 _BAR_IN = 0.9  # for the scale of temperatures on the right
 
