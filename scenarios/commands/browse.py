@@ -16,10 +16,11 @@ def list_command() -> None:
     from peopleboy.scenarios.files.load import library
     from peopleboy.scenarios.files.suite import load_suite, suite_names
 
-    for name, description in library().items():
-        click.echo(f"{name:20} {description}")
-    for name in suite_names():
-        click.echo(f"{name:20} suite: {' '.join(load_suite(name).description.split())}")
+    suites = {name: f"suite: {' '.join(load_suite(name).description.split())}" for name in suite_names()}
+    told = library() | suites
+    width = max(map(len, told))
+    for name, description in told.items():
+        click.echo(f"{name:{width}} {description}")
 
 
 @click.command()
