@@ -161,6 +161,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             self._tracker = make_checked_eyes(name, self._seed, self._world.truth, cameras)
         self._tracks: tuple[Track, ...] = ()
         self._before: Planar | None = None
+        self._track = 0  # that lay on the person to follow last
         self._images: Arrays = {}
         terms = Terms(
             plan=self._scenario.plan,
@@ -230,7 +231,9 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._tracks = self._tracker.update(make_frame(senses, self._calibrations, self._before))
         self._before = senses.odometry
         box = world.box(TARGET) if world.config.people else None
-        return track_in(instants.scenes, row, self._tracks, box)
+        track = track_in(instants.scenes, row, self._tracks, box, self._track)
+        self._track = track or self._track
+        return track
 
     @property
     def tracks(self) -> NDArray[np.float32]:

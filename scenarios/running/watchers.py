@@ -43,11 +43,13 @@ class Watchers:
         self._recorder = recorder
         self._boxes = boxes
         self._is_secret = is_secret
+        self._track = 0  # that lay on the person to follow last
 
     def update(self, tick: Tick) -> list[LogLine]:
         """Look at one tick and return what happened at it."""
         events = self._events.update(tick)
-        track, is_wrong = whose_tracks(tick, self._boxes)
+        track, is_wrong = whose_tracks(tick, self._boxes, self._track)
+        self._track = track or self._track
         self.following.add(tick.truth, track, None if self._is_secret else is_wrong)
         self.corridor.add(tick.truth)
         self.comfort.add(tick.truth)

@@ -95,12 +95,13 @@ class Spot(NamedTuple):
     place_m: tuple[float, float]
 
 
-def whose_tracks(tick: Tick, boxes: BoxKind = BoxKind.TORSO) -> tuple[int, bool]:
+def whose_tracks(tick: Tick, boxes: BoxKind = BoxKind.TORSO, before: int = 0) -> tuple[int, bool]:
     """Give the number of the track on the person to follow, 0 for none; and whether another is followed.
 
     Args:
         tick: the instant.
         boxes: what the tracker's boxes are drawn round.
+        before: see `track_on`.
     """
     robot, is_whole = tick.truth.robot, boxes is BoxKind.WHOLE
     spots = {
@@ -108,18 +109,22 @@ def whose_tracks(tick: Tick, boxes: BoxKind = BoxKind.TORSO) -> tuple[int, bool]
         for person in tick.truth.people
         if (box := person.whole_box if is_whole else person.box) is not None
     }
-    return track_on(spots.get(TARGET), tick.tracks), _is_wrong(spots, tick)
+    return track_on(spots.get(TARGET), tick.tracks, before), _is_wrong(spots, tick)
 
 
-def track_on(spot: Spot | None, tracks: Iterable[Track]) -> int:
-    """Give the number of the track that lies best on a person, 0 if none does well enough.
+def track_on(spot: Spot | None, tracks: Iterable[Track], before: int = 0) -> int:
+    """Give the number of the track that lies on a person, 0 if none does well enough.
 
-    One of somebody hidden, who is only believed to be there, comes after all others.
+    Args:
+        spot: where the person is.
+        tracks: of the instant.
+        before: the track that lay there last, 0 for none: as long as it does, no other is taken, however
+            well that one lies.
     """
     if spot is None:
         return 0
     lying = [
-        (track.status is not Status.TOTALLY_OCCLUDED, overlap, track.id)
+        (track.id == before, overlap, track.id)
         for track in _sure(tracks)
         if (overlap := _overlap(track, spot)) > _LEAST_IOU
     ]

@@ -67,7 +67,7 @@ class EpisodeFigures:
         }
 
 
-def track_in(scenes: Scenes, row: int, tracks: Iterable[Track], box: Box | None) -> int:
+def track_in(scenes: Scenes, row: int, tracks: Iterable[Track], box: Box | None, before: int) -> int:
     """Give the number of the track that lies on the person to follow in one world, 0 for none.
 
     Args:
@@ -75,6 +75,7 @@ def track_in(scenes: Scenes, row: int, tracks: Iterable[Track], box: Box | None)
         row: of that one.
         tracks: that a tracker made there.
         box: in which the person truly is in the thermal image.
+        before: the track that lay there last, 0 for none.
     """
     world = scenes.worlds[row]
     own = scenes.people[world["first"] : world["end"]]
@@ -83,4 +84,4 @@ def track_in(scenes: Scenes, row: int, tracks: Iterable[Track], box: Box | None)
     if box is not None and len(target):
         x, y = target["position_m"][0].tolist()
         spot = Spot(box, Planar(*world["robot"].tolist()).locate((x, y)))
-    return track_on(spot, tracks)
+    return track_on(spot, tracks, before)

@@ -193,6 +193,18 @@ def test_a_tracker_of_whole_people_is_seen_to_follow_the_right_one() -> None:
     assert whose_tracks(tick, BoxKind.WHOLE) == (7, False)
 
 
+def test_a_track_stays_on_a_person_on_whom_another_one_lies_better_for_a_moment() -> None:
+    tick = made.make_tick(1)
+    person = next(person for person in tick.truth.people if person.id == 1)
+    left, top, width, height = person.box or (0.0,) * 4
+    own, other = (
+        replace(made.with_box((left + aside * width, top, width, height)), id=number)
+        for number, aside in ((3, 0.2), (5, 0.1))
+    )
+    tick = replace(tick, tracks=(own, other))
+    assert [whose_tracks(tick, before=before)[0] for before in (0, 3, 5, 8)] == [5, 3, 5, 5]
+
+
 def test_a_kind_of_boxes_is_asked_for_runs_of_scenarios_alone(
     seen: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
