@@ -44,6 +44,8 @@ def progress_bar(title: str, unit: str | None = None) -> Iterator[Show]:
         title: stands before the bar.
         unit: what is counted, if the bar is to tell how many a second.
     """
+    from peopleboy.scenarios.compiling import told_of_compiling  # numba takes a while
+
     console = progress_console()
     columns = (
         TextColumn("{task.description}"),
@@ -58,6 +60,7 @@ def progress_bar(title: str, unit: str | None = None) -> Iterator[Show]:
     )
     task = progress.add_task(title, total=None, rate="", note="")
     with ExitStack() as running:
+        running.enter_context(told_of_compiling(console))
 
         def show(finished: int, total: int, note: str = "") -> None:
             speed = progress.tasks[0].speed if unit else None

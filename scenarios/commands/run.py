@@ -174,7 +174,7 @@ def _run_shown(scenario: Scenario, options: RunOptions) -> RunScores:
     from peopleboy.scenarios.progress_bar import progress_bar, progress_console
     from peopleboy.scenarios.running.run import run as run_scenario
 
-    preparing = progress_console().status("building the world; the very first time takes a minute")
+    preparing = progress_console().status("building the world")
     with preparing, progress_bar(scenario.name, unit="frames") as show:
 
         def report(tick: Tick, frames: int) -> None:

@@ -1,0 +1,38 @@
+"""What is told while kernels are compiled, which happens once on a machine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from numba.core import event
+from rich.console import Console
+
+
+class _FirstOne(event.Listener):
+    """Says which kernel is the first to be compiled, and nothing of the others."""
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self._has_told = False
+
+    def on_start(self, event: event.Event) -> None:
+        if not self._has_told:
+            self._has_told = True
+            room = event.data["dispatcher"].__module__.removeprefix("peopleboy.")
+            self._console.print(
+                f"compiling kernels of {room} and others for this processor: once, for up to a minute"
+            )
+
+    def on_end(self, event: event.Event) -> None:
+        pass
+
+
+@contextmanager
+def told_of_compiling(console: Console) -> Iterator[None]:
+    """Tell on a terminal if a kernel is compiled in the block."""
+    if console.quiet or not console.is_terminal:
+        yield
+        return
+    with event.install_listener("numba:compile", _FirstOne(console)):
+        yield
