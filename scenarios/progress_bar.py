@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from contextvars import ContextVar
+from functools import cache
 from typing import Protocol
 
 from rich.console import Console
@@ -33,7 +34,13 @@ def no_progress() -> Iterator[None]:
 
 def progress_console() -> Console:
     """Give the console on which progress is told; it is silent where nobody wants to be told."""
-    return Console(stderr=True, quiet=_IS_HIDDEN.get())
+    return _console(_IS_HIDDEN.get())
+
+
+@cache
+def _console(is_hidden: bool) -> Console:
+    # One for all, as lines of another one would run into what moves on this.
+    return Console(stderr=True, quiet=is_hidden)
 
 
 @contextmanager
