@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Sequence
 from typing import Final
 
@@ -69,9 +70,15 @@ def check_actions(actions: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.floa
     Raises:
         BadInput: they have not that shape, or not all numbers are finite.
     """
-    shares = np.asarray(actions, np.float64)
+    try:
+        shares = np.asarray(actions, np.float64)
+    except (TypeError, ValueError) as error:
+        raise BadInput(
+            f"actions must be {shape}, two finite numbers each, got {reprlib.repr(actions)}"
+        ) from error
     if shares.shape != shape:
         raise BadInput(f"actions of shape {shares.shape}: must be {shape}, two finite numbers each")
     if not np.isfinite(shares).all():
-        raise BadInput(f"action {actions!r} must be two finite numbers: shares of speed and turn rate")
+        wrong = next(row for row in shares.reshape(-1, 2).tolist() if not np.isfinite(row).all())
+        raise BadInput(f"action {wrong} must be two finite numbers: shares of speed and turn rate")
     return np.clip(shares, -1.0, 1.0).reshape(-1, 2)

@@ -273,7 +273,7 @@ def test_wrong_arguments_are_refused(arguments: dict, named: tuple[str, ...]) ->
         PeopleBoyEnv(**arguments)
 
 
-@pytest.mark.parametrize("action", [(0.0, float("nan")), (0.0,), (0.0, 0.0, 0.0)])
+@pytest.mark.parametrize("action", [(0.0, float("nan")), (0.0,), (0.0, 0.0, 0.0), "left", None])
 def test_senseless_actions_are_refused_and_large_ones_clipped(action: tuple, scene: Path) -> None:
     env = PeopleBoyEnv(scene, observation="truth")
     env.reset(seed=0)
