@@ -98,9 +98,11 @@ def load_truth(path: Path, frames: int | None, numbers: range | None = None) -> 
 
 def _of_everybody(path: Path, frames: int | None, numbers: range | None) -> GivenTruth:
     """Read MOTChallenge's lines; nobody ever visible means that it was not told, but in runs of ours."""
-    rows, notes = read_rows(path), list[str]()
+    rows, notes, is_own = read_rows(path), list[str](), (path.parent.parent / _EXACT).is_file()
+    if not len(rows) and not is_own:
+        notes.append(f"{path}: it is empty, which says that nobody is there")
     rows[:, 0] -= frames_before(rows[:, 0], numbers, path, notes)
-    if len(rows) and not rows[:, 8].any() and not (path.parent.parent / _EXACT).is_file():
+    if len(rows) and not rows[:, 8].any() and not is_own:
         rows[:, 8] = 1.0
         notes.append(f"{path}: the visible fraction is 0 in all lines; it is taken as not told")
     truth = truth_of(path, rows)

@@ -113,3 +113,10 @@ def test_in_a_run_of_ours_people_may_be_hidden_all_the_time(tmp_path):
     given = load_truth(path, None)
     assert not given.notes
     assert not given.truth.visible.any()
+
+
+def test_an_empty_file_says_that_nobody_is_there_and_that_is_told(tmp_path):
+    (tmp_path / "theirs.txt").write_text("")
+    given = load_truth(tmp_path / "theirs.txt", 12)
+    assert len(given.truth.frame) == 0
+    assert given.notes == (f"{tmp_path / 'theirs.txt'}: it is empty, which says that nobody is there",)
