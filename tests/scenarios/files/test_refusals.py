@@ -68,10 +68,6 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
         lambda d: d.update(faults=[{"kind": "camera_black", "from_s": 20.0}]),
         ("faults[0].from_s: 20 must be before the end, duration_s 20",),
     ),
-    "a camera of an unknown kind": (
-        lambda d: d["robot"].update(cameras={"rear": {"kind": "termal"}}),
-        ("robot.cameras.rear: unknown kind 'termal'; did you mean 'thermal'?",),
-    ),
     "a tracker of one's own": (
         lambda d: d["robot"].update(tracker="mine:Mine"),
         ("robot.tracker: 'mine:Mine' is a class of your own", "--tracker mine:Mine"),
@@ -146,7 +142,7 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
     ),
     "camera of an unknown kind": (
         camera(kind="termal"),
-        ("unknown rear 'termal'", "did you mean 'thermal'?"),
+        ("robot.cameras.rear: unknown kind 'termal'", "did you mean 'thermal'?"),
     ),
     "misspelt key of a camera": (
         camera(netd_c=0.1),

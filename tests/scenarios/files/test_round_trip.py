@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -78,9 +79,14 @@ things = st.lists(
 )
 
 
+def start_apart(crowd: list[dict[str, Any]]) -> bool:
+    starts = [person["path"][0]["at_m"] for person in crowd]
+    return all(math.dist(a, b) > 0.05 for a, b in combinations(starts, 2))
+
+
 @st.composite
 def scenarios(draw: st.DrawFn) -> dict[str, Any]:
-    crowd = draw(st.lists(people, max_size=3))
+    crowd = draw(st.lists(people, max_size=3).filter(start_apart))
     return {
         "name": "random",
         "description": draw(st.text("abc :#'\"%é\n-", min_size=1, max_size=30)),
