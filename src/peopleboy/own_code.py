@@ -135,6 +135,7 @@ def traceback_to(path: Path) -> Iterator[None]:
         try:
             yield
         except OwnCodeFailed as error:
+            path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(traceback_of(error), encoding="utf-8")
             raise
 
