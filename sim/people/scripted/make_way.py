@@ -12,14 +12,13 @@ from peopleboy.sim.people.scripted.script import Records, Scripts
 from peopleboy.sim.people.scripted.walk_records import Record, arrive, braking_speed, turn_to
 from peopleboy.sim.people.walking.giving_way import (
     HURRY,
-    PASSED_M,
-    PASSED_TAKEN_M,
     TAKEN_WITHIN_M,
     TURNS_M_S,
     RobotMotion,
     bend_rad,
     blocked_s,
     has_arrived,
+    has_passed,
     is_taken,
     velocity_by_force,
 )
@@ -96,7 +95,7 @@ def _pass_waypoint(
     if is_last:
         if has_arrived(distance, walk.blocked_s, walk.speed, is_occupied):
             arrive(walk, scripts, q, goal)
-    elif distance < (PASSED_TAKEN_M if is_occupied else PASSED_M):
+    elif has_passed(distance, is_occupied):
         walk.reached = goal
         while scripts.pieces[scripts.first_piece[q] + walk.piece].goal <= goal:
             walk.piece += 1

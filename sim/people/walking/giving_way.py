@@ -20,8 +20,8 @@ HURRY: Final = 1.3  # who gives way may be this much faster than planned (Helbin
 TAKEN_WITHIN_M: Final = 1.0  # how near to a waypoint one looks whether somebody stands on it
 TAKEN_BY_M: Final = 0.6  # how near to it somebody stands then
 _SETTLES_M_S: Final = 0.4  # so slow one settles beside a place that is taken
-PASSED_M: Final = 0.35  # how near to a waypoint one goes on to the next
-PASSED_TAKEN_M: Final = 0.9  # the same where others stand on it
+_PASSED_M: Final = 0.35  # how near to a waypoint one goes on to the next
+_PASSED_TAKEN_M: Final = 0.9  # the same where others stand on it
 TURNS_M_S: Final = 0.15  # who is slower keeps facing where he does
 _ARRIVED_M: Final = 0.02  # how near to where one stops one does
 _STUCK_M: Final = 0.5  # the same of who gets no nearer, as a wall or others are too near
@@ -73,6 +73,12 @@ def has_arrived(distance_m: float, blocked_s: float, speed_m_s: float, is_occupi
     if is_occupied and speed_m_s < _SETTLES_M_S:
         return True
     return distance_m < (_STUCK_M if blocked_s > _STUCK_S else _ARRIVED_M)
+
+
+@njit(cache=True)
+def has_passed(distance_m: float, is_occupied: bool) -> bool:
+    """Whether one goes on to the next waypoint, so far from this one."""
+    return distance_m < (_PASSED_TAKEN_M if is_occupied else _PASSED_M)
 
 
 @njit(cache=True)

@@ -12,14 +12,13 @@ from peopleboy.sim.people.body.postures import RISE_S, Posture
 from peopleboy.sim.people.walking.giving_way import (
     HURRY,
     NO_ROBOT,
-    PASSED_M,
-    PASSED_TAKEN_M,
     TAKEN_WITHIN_M,
     TURNS_M_S,
     RobotMotion,
     bend_rad,
     blocked_s,
     has_arrived,
+    has_passed,
     is_taken,
     velocity_by_force,
 )
@@ -350,7 +349,7 @@ class Walker:
         if is_last:
             if has_arrived(distance, self._blocked_s, self._speed, is_occupied):
                 self._arrive()
-        elif distance < (PASSED_TAKEN_M if is_occupied else PASSED_M):
+        elif has_passed(distance, is_occupied):
             goal = self._pieces[0].goal
             self.reached = goal
             self._pieces = tuple(piece for piece in self._pieces if piece.goal > goal)
