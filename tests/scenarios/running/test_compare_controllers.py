@@ -5,10 +5,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.figure import Figure
 
 from peopleboy.scenarios.running.compare_controllers import Controller, compare, intervals, parse_controller
 from peopleboy.scenarios.running.engine.workers import Workers
-from peopleboy.scenarios.running.show_comparison import keep_comparison, show_comparison
+from peopleboy.scenarios.running.show_comparison import _limit, keep_comparison, show_comparison
 from peopleboy.scenarios.scores.bootstrap import bootstrap
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from tests.helpers.calls.refused import refused
@@ -78,3 +79,18 @@ def test_a_comparison_is_printed_drawn_and_kept(tmp_path, capsys):
         "followed",
         "jerk_m_s3",
     }
+
+
+@pytest.mark.parametrize(
+    ("values", "limits"), [([4.0, 4.0], (-0.2, 4.6)), ([0.0], (-0.05, 1.15)), ([-2.0], (-2.3, 0.1))]
+)
+def test_a_figure_that_is_the_same_in_all_runs_is_shown_beside_nought(values, limits):
+    axes = Figure().subplots()
+    _limit(axes, values)
+    assert axes.get_xlim() == pytest.approx(limits)
+
+
+def test_a_figure_that_no_run_defines_is_said_to_be_so():
+    axes = Figure().subplots()
+    _limit(axes, [math.nan, math.nan])
+    assert [text.get_text() for text in axes.texts] == ["not defined in any run"]
