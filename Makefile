@@ -8,7 +8,7 @@ PIP := $(BIN)/uv pip install --quiet --python $(BIN)/python --constraint constra
 # Bytecode that is kept saves each of the processes that tests start some of its start.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-pages test-heavy test-install lint format bench peers rl pages docs dist docker clean
+.PHONY: demo test test-slow test-pages test-heavy test-install lint format bench peers rl pages docs dist docker clean
 
 demo: $(INSTALLED)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
@@ -17,6 +17,10 @@ demo: $(INSTALLED)
 # besides what tests do with a few with all: scenarios of the library, long films, whole studies.
 test: $(READY)
 	$(BIN)/python -m pytest -n 2 --dist loadfile $(if $(THOROUGH),-m 'not heavy and not install and not pages')
+
+# Whole runs, lessons and reports, a second or more each.
+test-slow: $(READY)
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m slow
 
 # All that the README, the tutorials and the pages on tasks tell their readers to type.
 test-pages: $(READY)

@@ -76,6 +76,7 @@ def test_one_lost_echo_does_not_set_a_stopped_robot_going():
         assert behaviour.command(free(i3=reading)).linear_m_s == 0.0
 
 
+@pytest.mark.slow
 @settings(max_examples=6, deadline=None)
 @given(
     speed=st.floats(0.1, 2.0),

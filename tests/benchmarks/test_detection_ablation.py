@@ -21,6 +21,7 @@ def film() -> Film:
     return Film.of_run(recorded(load_scenario("crossing_2").lasting(1.0), 100))
 
 
+@pytest.mark.slow
 def test_all_looks_together_are_those_of_the_detector(film: Film) -> None:
     whole, all_stages = PeopleDetector(least_score=LEAST), DetectorOfStage(Stage.CLOSER_LOOK)
     for frame in film.frames:

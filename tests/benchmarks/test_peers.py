@@ -53,6 +53,7 @@ def test_boxes_of_the_colour_image_shrink_by_its_zoom_when_they_move_to_the_ther
     assert box[1] + 10.0 == pytest.approx(120.0)  # the middle row stays the middle row
 
 
+@pytest.mark.slow
 def test_results_are_kept_and_the_oracle_is_right_about_everybody_it_tracks(tmp_path: Path) -> None:
     first = FilmTask(("oracle+bytetrack", "blobs+sort"), "crossing_2", 1, tmp_path)(no_news)
     again = FilmTask(("oracle+bytetrack", "blobs+sort"), "crossing_2", 1, tmp_path)(no_news)

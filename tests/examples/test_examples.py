@@ -37,6 +37,7 @@ def scene(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_all_three_pairs_of_eyes_find_a_person_in_plain_sight(scene: Path) -> None:
     done = CliRunner().invoke(price_of_perception.main, ["--scenario", str(scene), "--seeds", "1"])
     assert done.exit_code == 0, done.output
@@ -86,6 +87,7 @@ def test_a_follower_is_trained_kept_without_pickles_and_compared(scene: Path, tm
         assert all(weights[name].dtype == np.float32 for name in weights)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", some_of(["BackgroundSort", "HogByteTrack"], 2))
 def test_trackers_of_others_find_somebody_who_walks_across(name: str, tmp_path: Path) -> None:
     pytest.importorskip("trackers")

@@ -113,6 +113,7 @@ def test_evolution_finds_the_top_of_a_hill_and_shrinks_its_steps_there() -> None
     assert last.spread < 0.05
 
 
+@pytest.mark.slow
 def test_training_repeats_whoever_does_it_and_its_weights_are_compared(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -58,6 +58,7 @@ def rows(path: Path) -> list[dict[str, Any]]:
     return pq.read_table(path).to_pylist()  # type: ignore[no-any-return]
 
 
+@pytest.mark.slow
 def test_who_comes_from_the_panorama_into_the_thermal_image_keeps_its_number(came: Path) -> None:
     tracks = rows(came / "tracks.parquet")
     assert {row["id"] for row in tracks} == {1}

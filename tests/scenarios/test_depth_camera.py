@@ -52,6 +52,7 @@ def image(run: Path, folder: str, frame: int) -> np.ndarray:
     return cv2.imread(str(run / folder / f"{frame:06d}.png"), cv2.IMREAD_UNCHANGED)
 
 
+@pytest.mark.slow
 def test_its_folders_have_millimetres_and_colours_and_the_truth(run: Path) -> None:
     for folder, shape, dtype in (("depth", (121, 161), np.uint16), ("depth_colour", (121, 161, 3), np.uint8)):
         assert [int(path.stem) for path in sorted((run / folder).glob("*.png"))] == DUE
@@ -94,6 +95,7 @@ def test_the_recording_has_depth_in_metres_and_points_in_the_world(run: Path) ->
     assert (np.abs(points[:, 2]) < 0.02).sum() > 1000
 
 
+@pytest.mark.slow
 def test_the_sheet_the_report_and_a_film_show_it(run: Path, tmp_path: Path) -> None:
     assert run_cli("report", run, "--out", tmp_path / "page.html") == 0
     assert "161x121 pixels, 5 a second (depth)" in (tmp_path / "page.html").read_text(encoding="utf-8")
@@ -143,6 +145,7 @@ def test_mcap_has_its_depth_its_colours_and_their_points(run: Path, tmp_path: Pa
     assert not found["/depth/points"][-1].width
 
 
+@pytest.mark.slow
 def test_a_rendered_set_counts_its_millimetres(tmp_path: Path) -> None:
     scene, out = tmp_path / "seen.yaml", tmp_path / "set"
     scene.write_text(yaml.safe_dump(SEEN | {"faults": []}), encoding="utf-8")

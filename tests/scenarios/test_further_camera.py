@@ -60,6 +60,7 @@ def names(folder: Path) -> list[int]:
     return [int(path.stem) for path in sorted(folder.glob("*.png"))]
 
 
+@pytest.mark.slow
 def test_the_run_has_its_images_when_they_are_due_and_its_truth(run: Path) -> None:
     assert names(run / "rear") == names(run / "rear16") == DUE
     assert names(run / "thermal") == names(run / "colour") == list(range(1, 16))
@@ -106,6 +107,7 @@ def test_a_bag_has_its_topics(run: Path, tmp_path: Path) -> None:
         assert told.count(topic) == len(DUE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("camera", ["tall", "wide"])
 def test_sheets_and_films_stay_in_shape(run: Path, tmp_path: Path, camera: str) -> None:
     tile = read_tiles(run / "contact_sheet.png")[0].picture

@@ -41,6 +41,7 @@ def rows(path: Path) -> list[dict[str, Any]]:
     return pq.read_table(path).to_pylist()  # type: ignore[no-any-return]
 
 
+@pytest.mark.slow
 def test_a_person_keeps_its_number_over_a_failure_of_all_cameras(walked: Path) -> None:
     tracks = rows(walked / "tracks.parquet")
     frames = {row["frame"] for row in tracks}

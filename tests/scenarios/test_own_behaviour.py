@@ -57,6 +57,7 @@ def about(folder: Path) -> dict[str, Any]:
     return said
 
 
+@pytest.mark.slow
 def test_it_drives_a_run_which_is_scored_and_reported_as_others_are(home: Path) -> None:
     name = write_creeper(home, "creeper_run")
     assert run_cli("run", "brief.yaml", "--behaviour", name, "--tracker", "truth", "--no-rrd") == 0
@@ -93,6 +94,7 @@ def test_a_sweep_with_it_goes_on_and_is_none_with_another(
     assert_names(refusal(capsys, "sweep", *options), "brief-0", f"behaviour '{name}'", "--overwrite")
 
 
+@pytest.mark.slow
 def test_it_is_compared_with_others_by_the_scenario_s_own_task(
     home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -69,6 +69,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
         return folder
 
 
+@pytest.mark.slow
 def test_it_is_scored_on_the_floor_in_metres(run: Path) -> None:
     metrics = json.loads((run / "metrics.json").read_text(encoding="utf-8"))
     assert json.loads((run / "run.json").read_text(encoding="utf-8"))["tracker"] == "reckoner"
@@ -174,6 +175,7 @@ class RearConfig(ThermalConfig):
     camera: Pinhole = field(default_factory=lambda: Pinhole(width=80, height=60, yaw_rad=math.pi))
 
 
+@pytest.mark.slow
 def test_a_camera_that_it_wants_is_mounted_and_nothing_else_changes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

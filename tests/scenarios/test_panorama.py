@@ -48,6 +48,7 @@ def scene(**camera: object) -> dict[str, object]:
     }
 
 
+@pytest.mark.slow
 def test_a_run_keeps_both_images_and_boxes_that_go_on_over_the_seam(tmp_path: Path) -> None:
     path = tmp_path / "scene.yaml"
     path.write_text(yaml.safe_dump(scene(rate_hz=3, raw=True)), encoding="utf-8")
@@ -139,6 +140,7 @@ def boxes_in(path: Path) -> dict[int, list[float]]:
     return {int(row[0]): row[2:6].tolist() for row in np.loadtxt(path, delimiter=",", ndmin=2)}
 
 
+@pytest.mark.slow
 def test_tracks_on_the_other_side_of_the_seam_match_all_the_same(tracked: Path, tmp_path: Path) -> None:
     run = tmp_path / "run"
     shutil.copytree(tracked, run)
@@ -169,6 +171,7 @@ def test_who_is_near_counts_all_round_and_our_own_boxes_there_are_whole_ones(tra
     assert look_into(open_run(tracked)).due == 1
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:__array__ implementation:DeprecationWarning")
 def test_exports_say_the_truth_of_who_stands_across_the_seam(tracked: Path, tmp_path: Path) -> None:
     across = [
@@ -240,6 +243,7 @@ def locations(path: Path) -> dict[str, dict[int, tuple[int, int]]]:
     return found
 
 
+@pytest.mark.slow
 def test_pictures_show_the_tracks_that_its_tracker_gives(tracked: Path, tmp_path: Path) -> None:
     assert (
         run_cli("export", tracked, "--format", "mp4", "--camera", "panorama", "--out", tmp_path / "film") == 0

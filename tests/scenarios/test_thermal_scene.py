@@ -16,6 +16,7 @@ from tests.helpers.some_of import some_of
 NAMES = sorted(path.stem for path in LIBRARY.glob("*.yaml"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", some_of(NAMES, 8))
 def test_less_than_one_percent_of_what_people_are_shown_is_clipped(name: str) -> None:
     with World(load_scenario(name).world(0)) as world:
@@ -29,6 +30,7 @@ def test_less_than_one_percent_of_what_people_are_shown_is_clipped(name: str) ->
                 world.step(0.0, 1.2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", some_of(NAMES[::12], 3))
 @pytest.mark.parametrize(
     "thermal",

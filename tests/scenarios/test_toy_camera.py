@@ -112,6 +112,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return scene.parent / "round-0"
 
 
+@pytest.mark.slow
 def test_its_folder_has_images_and_the_truth_of_them(run: Path) -> None:
     assert [int(path.stem) for path in sorted((run / "all").glob("*.png"))] == DUE
     image = cv2.imread(str(run / "all" / "000001.png"), cv2.IMREAD_UNCHANGED)
@@ -129,6 +130,7 @@ def test_its_folder_has_images_and_the_truth_of_them(run: Path) -> None:
     assert len((run / "truth" / "all.gt.txt").read_text(encoding="utf-8").splitlines()) == 2 * len(DUE)
 
 
+@pytest.mark.slow
 def test_the_recording_the_sheet_and_the_report_have_it(run: Path) -> None:
     told: dict[str, int] = {}
     for chunk in RrdReader(run / "recording.rrd").stream():
@@ -140,6 +142,7 @@ def test_the_recording_the_sheet_and_the_report_have_it(run: Path) -> None:
     assert "64x48 pixels, 5 a second (all)" in (run / "page.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_formats_that_tell_of_all_cameras_tell_of_it(run: Path, tmp_path: Path) -> None:
     coco = export(run, "coco", tmp_path / "coco")
     content = json.loads((coco / "annotations" / "all" / "person_keypoints.json").read_text())
@@ -152,6 +155,7 @@ def test_formats_that_tell_of_all_cameras_tell_of_it(run: Path, tmp_path: Path) 
     assert "/all/camera_info" not in told
 
 
+@pytest.mark.slow
 def test_formats_that_tell_of_one_camera_can_tell_of_it(
     run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -58,6 +58,7 @@ def test_people_are_mirrored_warm() -> None:
     assert warmer.min() > -0.3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", IMAGES)
 def test_full_detail_smooths_people_s_edges(name: str) -> None:
     plain, full = shot(world_config(0.0, "plain")), shot(world_config(0.0))

@@ -11,6 +11,7 @@ from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown
 from tests.helpers.images.drawn_corridors import CAMERA, drawn_corridor
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=30)
 @given(offset=st.floats(-0.5, 0.5), heading=st.floats(-0.12, 0.12), width=st.floats(2.2, 3.4))
 def test_the_place_in_a_drawn_corridor_is_recovered(offset, heading, width):

@@ -64,6 +64,7 @@ def drive_to_the_end(width, beside, length, seconds):
     return drive(toy, make_behaviour("follow_corridor"), seconds)
 
 
+@pytest.mark.slow
 def test_the_robot_finds_the_middle_keeps_it_and_turns_back_at_the_dead_end():
     log = drive_to_the_end(width=3.0, beside=0.5, length=14.0, seconds=40.0)
     x, y, heading = log.robot.T
@@ -74,6 +75,7 @@ def test_the_robot_finds_the_middle_keeps_it_and_turns_back_at_the_dead_end():
     assert "turn" in log.mode
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [2.2, 1.4])
 def test_the_end_of_a_narrow_corridor_is_not_taken_for_people_who_stand_there(width):
     log = drive_to_the_end(width=width, beside=0.1, length=6.0, seconds=22.0)
@@ -96,6 +98,7 @@ def test_the_robot_waits_for_who_stands_in_the_way_and_goes_on_when_the_way_is_f
     assert log.robot[-1, 0] > 5.0
 
 
+@pytest.mark.slow
 def test_the_robot_passes_who_stays_in_the_way():
     toy = Toy(path=lambda _: (5.0, 0.0), walls=corridor_walls(), rng=np.random.default_rng(0))
     log = drive(toy, make_behaviour("follow_corridor"), 28.0)
@@ -112,6 +115,7 @@ def test_people_all_across_the_way_are_waited_for():
     assert log.robot[:, 0].max() < 4.6
 
 
+@pytest.mark.slow
 def test_the_robot_turns_into_the_side_that_is_open():
     walls = np.concatenate(
         [

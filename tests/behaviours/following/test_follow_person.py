@@ -200,6 +200,7 @@ def test_whatever_is_seen_commands_are_finite_and_within_the_limits(percepts):
         assert abs(command.angular_rad_s) <= limits.max_angular_rad_s
 
 
+@pytest.mark.slow
 @settings(max_examples=3, deadline=None)
 @given(
     distance=st.floats(1.0, 8.0),
@@ -220,6 +221,7 @@ def test_a_standing_person_is_found_anywhere_faced_and_kept_at_the_same_height(d
     assert not log.is_contact.any()
 
 
+@pytest.mark.slow
 @settings(max_examples=3, deadline=None)
 @given(
     speed=st.floats(0.2, 0.7),
@@ -238,6 +240,7 @@ def test_a_person_who_walks_away_is_kept_in_view_and_in_the_band(speed, course, 
     assert 2.0 < log.distance[-1] < 4.6
 
 
+@pytest.mark.slow
 @settings(max_examples=3, deadline=None)
 @given(speed=st.floats(0.2, 0.8), radius=st.floats(4.0, 8.0), sign=st.sampled_from([-1.0, 1.0]))
 def test_a_person_who_walks_in_circles_is_followed(speed, radius, sign):
@@ -272,6 +275,7 @@ def test_a_person_who_walks_up_to_the_robot_meets_one_that_never_drives_on(speed
     assert toy.speed <= 0.0
 
 
+@pytest.mark.slow
 @settings(max_examples=2, deadline=None)
 @given(
     opening=st.floats(0.9, 1.6),

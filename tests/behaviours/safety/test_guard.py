@@ -78,6 +78,7 @@ def gaps_under_guard(tmp_path, seed):
     return min(walls), min(people), touched, way
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", some_of(range(2), 2))
 def test_no_command_takes_the_robot_near_to_walls_or_people(seed, tmp_path):
     wall, person, touched, way = gaps_under_guard(tmp_path, seed)

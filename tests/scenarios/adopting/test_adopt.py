@@ -41,6 +41,7 @@ def said(folder: Path, name: str = "run.json") -> dict[str, Any]:
     return content
 
 
+@pytest.mark.slow
 def test_truth_images_and_scenario_are_those_of_the_run(driven: Path, adopted: Path) -> None:
     names = ["scenario.yaml", "truth/gt.txt", "thermal/000009.png", "colour/000009.png"]
     names += ["truth.parquet", "robot.parquet", "truth/colour.parquet"]
@@ -74,6 +75,7 @@ def test_the_tracks_are_theirs_and_what_they_do_not_tell_is_unknown(driven: Path
     assert "does not tell" in lost[0].why
 
 
+@pytest.mark.slow
 def test_everything_takes_it(driven: Path, adopted: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_cli("evaluate", adopted) == 0
     assert run_cli("report", driven, adopted, "--out", driven.parent / "page.html") == 0

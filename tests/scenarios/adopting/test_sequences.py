@@ -54,6 +54,7 @@ def test_results_in_the_layout_of_an_export_come_back_as_runs_with_the_same_trac
     assert run_cli("evaluate", runs, runs.parent / "runs-mine") == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("names", "says"),
     [

@@ -63,6 +63,7 @@ def test_its_figures_are_those_of_the_episode_and_it_is_looked_into_as_any_run(
     assert run_cli("export", tmp_path / "saved", "--format", "coco", "--out", tmp_path / "coco") == 0
 
 
+@pytest.mark.slow
 def test_a_whole_episode_has_the_frames_of_a_run_and_who_is_still_to_come_comes(tmp_path: Path) -> None:
     played(tmp_path, "truth", steps=30).save(tmp_path / "whole", record=False)
     assert pq.read_table(tmp_path / "whole" / "robot.parquet").num_rows == 30

@@ -49,6 +49,7 @@ def short(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("observation", "physics"),
     [("pixels", "kinematic"), ("truth", "bullet"), ("truth", "kinematic"), ("tracks", "kinematic")],
@@ -88,6 +89,7 @@ def test_each_world_is_to_the_byte_a_single_environment_over_its_end_and_a_new_b
         env.close()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scenario", "observation"),
     some_of(

@@ -40,6 +40,7 @@ def test_a_behaviour_is_told_the_tracks_in_its_own_words_and_its_command_becomes
     assert second.time_s - first.time_s == pytest.approx(1 / 15)
 
 
+@pytest.mark.slow
 def test_the_written_follower_finds_and_follows_in_an_environment() -> None:
     env = PeopleBoyEnv("single_follow", observation="truth")
     controller = WrittenController(load_scenario("single_follow").make_behaviour())

@@ -44,6 +44,7 @@ def row_of(coco: COCO, one: dict[str, Any], people: dict[Any, Any]) -> dict[str,
     return people[coco.imgs[one["image_id"]]["frame_id"], one["track_id"]]
 
 
+@pytest.mark.slow
 def test_everybody_who_is_visible_has_an_annotation_with_the_boxes_of_the_table(
     coco: COCO, people: dict[Any, Any]
 ) -> None:

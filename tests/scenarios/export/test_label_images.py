@@ -29,6 +29,7 @@ def read(path: Path) -> NDArray[np.uint16]:
     return np.asarray(found, np.uint16)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("camera", ["thermal", "colour"])
 def test_boxes_and_pixels_of_the_table_are_those_of_the_instance_image(
     camera: str, folder: Path, crossing: Path
@@ -60,6 +61,7 @@ def test_parts_cover_people_and_names_are_told(folder: Path) -> None:
         assert set(np.unique(parts[parts > 0]).tolist()) <= set(numbers["body_part"].values())
 
 
+@pytest.mark.slow
 def test_depth_is_true_to_half_a_millimetre_and_images_are_those_of_the_run(
     folder: Path, crossing: Path
 ) -> None:

@@ -76,6 +76,7 @@ def pose(transform: Any) -> np.ndarray:
     return matrix
 
 
+@pytest.mark.slow
 def test_every_topic_has_a_message_a_frame(messages: dict[str, list[Any]]) -> None:
     assert {topic: len(found) for topic, found in messages.items()} == dict.fromkeys(TOPICS, 60) | {
         "/tf_static": 1

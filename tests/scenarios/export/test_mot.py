@@ -76,6 +76,7 @@ def own(scores: Scores) -> dict[str, float]:
     }
 
 
+@pytest.mark.slow
 def test_trackeval_reads_the_folder_and_gives_our_own_scores(
     folder: Path, crossing: Path, thesis: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -30,6 +30,7 @@ def test_every_browser_can_play_the_film(film: Path) -> None:
     assert content.find(b"moov") < content.find(b"mdat")
 
 
+@pytest.mark.slow
 def test_its_pictures_are_those_drawn_from_the_run(film: Path, crossing: Path) -> None:
     run = open_run(crossing)
     drawn = next(
@@ -40,6 +41,7 @@ def test_its_pictures_are_those_drawn_from_the_run(film: Path, crossing: Path) -
     assert np.abs(shown.astype(float) - drawn).mean() < 4.0
 
 
+@pytest.mark.slow
 def test_truth_and_tracks_are_drawn_on_both_images(crossing: Path) -> None:
     run = open_run(crossing)
     *_, picture = (draw_film_frame(tick, run.robot, "tiny", BOTH) for tick in replay(run) if tick.tracks)

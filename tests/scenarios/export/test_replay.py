@@ -24,6 +24,7 @@ def images(run: Path, tick: Tick) -> list[np.ndarray]:
     return [*stored, cv2.imread(str(run / "colour" / name))[..., ::-1]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["crossing", "following"])
 def test_a_run_comes_out_again_to_the_bit(name: str, request: pytest.FixtureRequest) -> None:
     folder = request.getfixturevalue(name)

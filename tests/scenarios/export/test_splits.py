@@ -58,6 +58,7 @@ def test_coco_has_annotations_and_images_of_each_split_apart(
         assert len(coco.getAnnIds()) >= len(coco.imgs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("split", SPLITS)
 def test_trackeval_and_trackers_find_each_split_by_its_name(
     split: str, mot: Path, capsys: pytest.CaptureFixture[str]
@@ -82,6 +83,7 @@ def mot(people: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return export(people, "mot", tmp_path_factory.mktemp("split_mot") / "mot")
 
 
+@pytest.mark.slow
 def test_yolo_names_the_folders_of_each_split(people: Path, tmp_path: Path) -> None:
     out = export(people, "yolo", tmp_path / "yolo")
     settings = yaml.safe_load((out / "data.yaml").read_text())

@@ -61,6 +61,7 @@ def test_a_file_is_called_as_its_scenario(name: str) -> None:
     assert loaded(name).name == name
 
 
+@pytest.mark.slow
 @some_scenarios
 def test_a_scenario_repeats_with_its_seed_and_varies_with_another(name: str) -> None:
     world = loaded(name).world(3)
@@ -72,6 +73,7 @@ def test_a_scenario_repeats_with_its_seed_and_varies_with_another(name: str) -> 
         assert len({repr(config.people) for config in (world, *others)}) == 3
 
 
+@pytest.mark.slow
 @some_scenarios
 def test_a_resolved_scenario_gives_the_same_world_from_its_file(name: str, tmp_path: Path) -> None:
     scenario = loaded(name)
@@ -100,6 +102,7 @@ def test_every_seed_keeps_people_clear_of_walls_and_things(name: str, seeds: ran
             assert scenario.ground.fault(person) is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", some_of(NAMES[::8], 7))
 def test_a_plan_is_drawn(name: str, tmp_path: Path) -> None:
     draw_plan(loaded(name), 0, tmp_path / "plan.png")

@@ -182,6 +182,7 @@ def _hands(name: str) -> list[tuple[Mover, float]]:
     return gaps
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", some_of(["bears_6", "doors_1", "cans_1", "doors_4", "chairs_2"], 2))
 def test_hands_are_at_the_things_that_they_move(name: str) -> None:
     gaps = [gap for _, gap in _hands(name)]

@@ -68,6 +68,7 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mesh", ["meshes/desk.obj", "package://furniture/meshes/desk.obj"])
 def test_a_run_whose_furniture_is_gone_plays_again_from_its_folder_alone(mesh: str, tmp_path: Path) -> None:
     done = play(load_scenario(furnish(tmp_path / "home", mesh)), tmp_path / "run")

@@ -6,6 +6,7 @@ from itertools import combinations
 from pathlib import Path
 from typing import Any
 
+import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -99,6 +100,7 @@ def scenarios(draw: st.DrawFn) -> dict[str, Any]:
     }
 
 
+@pytest.mark.slow
 @given(data=scenarios(), seed=st.integers(0, 2**40))
 @settings(max_examples=60, deadline=None)
 def test_any_scenario_survives_being_resolved_written_and_read(

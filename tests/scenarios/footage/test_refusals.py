@@ -67,6 +67,7 @@ def test_the_tracker_that_lives_on_colour_is_refused_without(tmp_path):
     assert call(clip, *options).exit_code == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("content", some_of([b"a text that somebody called a video\n" * 40, b""], 2))
 def test_a_video_that_is_none_is_refused_on_one_line_and_no_library_adds_another(tmp_path, content):
     video = tmp_path / "clip.mp4"

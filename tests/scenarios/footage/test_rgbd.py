@@ -264,6 +264,7 @@ def test_the_depth_that_is_read_is_not_replaced(tmp_path: Path) -> None:
     assert (depth / "1.png").is_file()
 
 
+@pytest.mark.slow
 def test_boxes_of_others_are_scored_in_the_colour_picture(run: Path, tmp_path: Path) -> None:
     people = pq.read_table(run / "truth" / "depth.parquet").to_pylist()
     lines = [

@@ -41,6 +41,7 @@ def finished(request, tmp_path_factory):
     return request.param, pq.read_table(folder / "robot.parquet").to_pydict(), events, scores.following
 
 
+@pytest.mark.slow
 def test_nothing_is_touched_whatever_breaks(finished):
     kind, _, _, following = finished
     assert following.collisions == 0, kind
@@ -78,6 +79,7 @@ def test_a_jumping_odometry_does_not_end_the_following(finished):
     assert following.followed_to_end
 
 
+@pytest.mark.slow
 def test_a_robot_goes_on_when_the_images_come_back(tmp_path):
     scenario = parse_scenario(
         broken({"kind": "camera_frozen", "from_s": 5.0, "lasts_s": 0.6}), source="test", folder=tmp_path

@@ -58,6 +58,7 @@ def test_a_thousand_worlds_are_built_without_one_failure() -> None:
         build(seed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seeds", some_of([range(8), range(8, QUICK)], 2), ids=str)
 def test_everything_drawn_lies_in_its_range(seeds: range) -> None:
     for seed in seeds:
@@ -166,6 +167,7 @@ def test_random_worlds_and_scenarios_do_not_go_together(
     assert_names(refusal(capsys, *order), order[0], "--randomise")
 
 
+@pytest.mark.slow
 def test_an_environment_draws_a_new_world_at_every_reset() -> None:
     env = PeopleBoyEnv(None, observation="truth")
     env.reset(seed=4)

@@ -270,6 +270,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="processes are killed otherwise here")
 @pytest.mark.filterwarnings("ignore:RRD file has no footer")
 def test_a_killed_run_leaves_a_recording_that_opens(tmp_path: Path) -> None:

@@ -78,6 +78,7 @@ def listeners(port: int) -> set[str]:
     return found
 
 
+@pytest.mark.slow
 @ON_LINUX
 def test_a_recording_is_served_at_two_ports_to_this_machine_alone_until_interrupted(
     page: tuple[subprocess.Popen[str], str], port: int

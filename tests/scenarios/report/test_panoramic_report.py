@@ -58,6 +58,7 @@ def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
         yield look_into(open_run(folder / "run"))
 
 
+@pytest.mark.slow
 def test_people_count_within_the_limits_of_panoramas(found: RunFindings) -> None:
     assert found.camera == "panorama"
     assert "1 more never came within 1.1 to 7 m in sight" in headline(found)

@@ -259,6 +259,7 @@ def test_a_story_tells_what_could_be_seen_and_what_the_tracker_had(folders: dict
     assert [time_s for time_s, _ in row.marks] == [4.0]
 
 
+@pytest.mark.slow
 @given(data=st.data())
 def test_the_bars_of_a_row_lie_end_to_end_where_there_is_something(
     folders: dict[str, Path], data: st.DataObject
@@ -335,6 +336,7 @@ def test_a_folder_of_runs_is_one_column_with_mean_and_spread(folders: dict[str, 
     assert row[1] == f"{fmean(values):.1f} ± {stdev(values):.1f} %"
 
 
+@pytest.mark.slow
 def test_two_sweeps_give_the_difference_of_their_pairs_with_an_interval(tmp_path: Path) -> None:
     for seed in range(4):
         toy.write_run(tmp_path / "one" / str(seed), toy.renumbered, seed=seed)
@@ -375,6 +377,7 @@ def test_images_are_the_run_s_own_else_rendered_again_else_boxes_where_pybullet_
     assert np.array_equal(own[2].picture, without[2].picture)
 
 
+@pytest.mark.slow
 def test_a_run_with_a_recording_is_not_played_again_for_its_pictures(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

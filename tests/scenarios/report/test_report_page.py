@@ -106,6 +106,7 @@ def structure(page: Path) -> Structure:
     return parser
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["one", "both", "many"])
 def test_a_page_is_whole_html_that_needs_nothing_else(pages: dict[str, Path], name: str) -> None:
     page = structure(pages[name])
@@ -147,6 +148,7 @@ def test_a_page_says_what_it_said(pages: dict[str, Path], runs: Path, name: str)
     assert said.split() == file.read_text(encoding="utf-8").split()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", some_of(["both", "one", "many"], 3))
 def test_a_page_is_the_same_each_time(pages: dict[str, Path], runs: Path, name: str, tmp_path: Path) -> None:
     paths = {"one": [runs / "one"], "both": [runs / "one", runs / "other"], "many": [runs]}
@@ -154,6 +156,7 @@ def test_a_page_is_the_same_each_time(pages: dict[str, Path], runs: Path, name: 
     assert (tmp_path / "page.html").read_bytes() == pages[name].read_bytes()
 
 
+@pytest.mark.slow
 def test_words_from_files_cannot_become_markup(tmp_path: Path) -> None:
     bad = "<script>alert(1)</script>"
     folder = toy.write_run(tmp_path / "run", scenario={"name": bad, "description": bad})
@@ -214,6 +217,7 @@ def test_a_report_replaces_nothing_but_a_report(
     assert len(list(tmp_path.iterdir())) == 3
 
 
+@pytest.mark.slow
 def test_an_earlier_report_is_replaced(pages: dict[str, Path], runs: Path, tmp_path: Path) -> None:
     page = tmp_path / "page.HTM"
     shutil.copy(pages["both"], page)
@@ -254,6 +258,7 @@ def test_the_simulator_is_not_loaded_for_a_report() -> None:
     assert done.stdout.strip() == "False"
 
 
+@pytest.mark.slow
 def test_short_losses_that_are_left_out_are_counted_also_when_no_other_is_there(
     pages: dict[str, Path], tmp_path: Path
 ) -> None:

@@ -55,6 +55,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
+@pytest.mark.slow
 def test_the_table_says_of_every_frame_where_the_thing_is_and_who_moves_it(run: Path) -> None:
     table = pq.read_table(run / "truth/things.parquet")
     assert table.schema == THINGS

@@ -62,6 +62,7 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "one"
 
 
+@pytest.mark.slow
 def test_a_run_leaves_the_whole_folder(finished: Path) -> None:
     assert {path.name for path in finished.iterdir()} == FOLDER | FRAMES | {"recording.rrd"}
     about = json.loads((finished / "run.json").read_text())
@@ -176,6 +177,7 @@ def test_an_interrupted_run_says_so_and_stays_readable(tmp_path: Path) -> None:
         evaluate_runs([tmp_path / "run"])
 
 
+@pytest.mark.slow
 def test_a_run_told_to_end_says_so_and_is_no_failure_of_its_tracker(tmp_path: Path) -> None:
     script = (
         "import os, signal, sys; from peopleboy.scenarios.cli import main\n"
@@ -294,6 +296,7 @@ def test_every_library_scenario_runs_a_little(name: str, tmp_path: Path) -> None
     assert (tmp_path / name / "contact_sheet.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_a_sweep_goes_on_where_it_was_and_takes_no_other_run_for_its_own(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -64,6 +64,7 @@ def tiny(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(suites, "suite_names", lambda: ["tiny"])
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("tiny")
 def test_a_suite_skips_complete_runs_and_redoes_those_that_were_cut_off(tmp_path: Path) -> None:
     options = RunOptions(seed=0, out=tmp_path)

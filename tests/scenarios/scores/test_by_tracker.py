@@ -75,6 +75,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_runs_of_one_tracker_are_pooled_and_those_of_two_stand_side_by_side(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -68,6 +68,7 @@ class NoTracker:
         return ()
 
 
+@pytest.mark.slow
 def test_a_robot_in_a_world_follows_its_corridor_by_the_image_and_keeps_the_middle():
     scenario = load_scenario("corridor_straight")
     robot = scenario.spec.robot.model_copy(update={"walls_by": "image"})

@@ -67,6 +67,7 @@ def test_what_an_option_of_run_changes_makes_no_other_scene(tmp_path: Path) -> N
     check_same_scenes([one, write(tmp_path / "spoilt", {"name": "toy"})])
 
 
+@pytest.mark.slow
 def test_evaluate_and_report_look_at_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     one = toy.write_run(tmp_path / "one", scenario=SCENE)
     other = toy.write_run(tmp_path / "other", scenario=SCENE | {"duration_s": 5.0}, tracker="mine")

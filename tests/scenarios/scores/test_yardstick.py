@@ -69,6 +69,7 @@ def told_in_report(run: Path) -> str:
     return headline(look_into(open_run(run)))
 
 
+@pytest.mark.slow
 def test_perfect_boxes_of_whole_people_are_perfect_and_scored_so_again(
     seen: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -102,6 +103,7 @@ def test_torsos_are_the_default_and_called_so_if_held_against_whole_people(
     assert_names(note, "--boxes torso")
 
 
+@pytest.mark.slow
 def test_boxes_where_nobody_is_are_of_no_kind(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     empty = make_run(SEEN | {"name": "empty", "people": []}, tmp_path / "empty", "--tracker", "truth")
     ghost = tmp_path / "ghost.txt"
@@ -111,6 +113,7 @@ def test_boxes_where_nobody_is_are_of_no_kind(tmp_path: Path, capsys: pytest.Cap
     assert figures(capsys, out)["notes"] == []
 
 
+@pytest.mark.slow
 def test_a_slow_camera_has_its_images_counted_as_in_an_export(
     seen: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -158,6 +161,7 @@ class Colourist:
         )
 
 
+@pytest.mark.slow
 def test_who_gives_boxes_in_another_image_alone_is_scored_there_and_told_so(
     seen: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

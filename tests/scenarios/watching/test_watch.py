@@ -61,6 +61,7 @@ def watch(*arguments: str) -> str:
     return CliRunner().invoke(cli, ["watch", *arguments], catch_exceptions=False).output
 
 
+@pytest.mark.slow
 def test_what_was_moved_is_told_by_names_and_left_in_files(run: Path) -> None:
     (line,) = [line for line in watch(str(run)).splitlines() if " s: " in line]
     assert line.endswith("s: anna took away box")

@@ -20,6 +20,7 @@ def test_no_two_visible_faces_in_a_place_lie_in_one_plane_and_overlap(name: str)
     assert [pair for pair in fighting_faces(boxes) if owner[pair[0]] != owner[pair[1]]] == []
 
 
+@pytest.mark.slow
 @some_scenarios
 def test_everything_that_the_robot_sees_from_its_start_is_a_surface(name: str) -> None:
     scenario = load_scenario(name)

@@ -99,6 +99,7 @@ def test_what_stands_in_the_sun_casts_a_shadow(tmp_path: Any) -> None:
     assert at(shaded, 0.3, 1.1)[1] == pytest.approx(at(free, 0.3, 1.1)[1] / 1.9, rel=0.01)
 
 
+@pytest.mark.slow
 def test_the_sky_over_a_street_is_colder_the_steeper_one_looks() -> None:
     paintings = paint_place(load_scenario("street_evening").place, 3)
     horizon, overhead = paintings["wall_horizon/south"].kelvin, paintings["ceiling"].kelvin

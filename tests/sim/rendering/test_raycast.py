@@ -60,6 +60,7 @@ def march(
     return np.where(hit, way, np.inf), (hit & (gap < 1e-9)) | (missed & (nearest > 1e-3))
 
 
+@pytest.mark.slow
 @settings(max_examples=30, deadline=None)
 @given(
     seed=st.integers(0, 2**32 - 1),

@@ -137,6 +137,7 @@ def test_both_renderers_agree_on_random_worlds(seed: int, rock: Path) -> None:
     assert np.mean(alike > 0.98) > 0.9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", some_of(MODELS, 3))
 def test_both_renderers_agree_on_models_of_pybullet_data(model: str) -> None:
     with Bullet() as bullet:

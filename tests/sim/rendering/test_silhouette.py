@@ -48,6 +48,7 @@ def test_bounds_lie_around_the_drawn_silhouette_by_less_than_a_pixel(seed: int) 
     assert area == np.count_nonzero(view.cover)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_bounds_of_large_shapes_are_met_within_a_pixel(kind: ShapeKind) -> None:
     rng = np.random.default_rng(kind)

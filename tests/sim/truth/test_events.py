@@ -155,6 +155,7 @@ def test_a_bouncing_contact_is_told_once() -> None:
     assert CONTACT_ENDS_S > 1.5 / 15.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("is_pillar", [True, False])
 def test_a_scripted_pass_behind_something_gives_each_event_once_in_order(is_pillar: bool) -> None:
     walker = person("walker", (6.0, 4.3), (6.0, -4.3))
@@ -174,6 +175,7 @@ def test_a_scripted_pass_behind_something_gives_each_event_once_in_order(is_pill
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gap", [0.45, 0.6, 0.9])
 def test_a_pair_that_walks_abreast_gives_no_flicker(gap: float) -> None:
     pair = (

@@ -77,6 +77,7 @@ def empty() -> Iterator[World]:
         yield world
 
 
+@pytest.mark.slow
 def test_visible_fraction_agrees_with_drawing_each_person_alone(scene: Scene) -> None:
     for somebody in scene.truth.people:
         drawn = scene.alone[somebody.name]

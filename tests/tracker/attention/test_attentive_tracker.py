@@ -59,6 +59,7 @@ class Film:
         return {one.boxes[THERMAL][0]: one.id for one in told}
 
 
+@pytest.mark.slow
 def test_who_comes_back_after_a_minute_in_less_light_has_the_old_number_and_a_stranger_a_new_one():
     film = Film()
     assert film.play(1.0, (1, 60.0, RED)) == {60.0: 1}

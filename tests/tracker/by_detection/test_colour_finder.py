@@ -97,6 +97,7 @@ def without_warmth(frames: list[Frame]) -> Iterator[Frame]:
         yield replace(frame, images={**frame.images, THERMAL: noise})
 
 
+@pytest.mark.slow
 def test_in_a_room_as_warm_as_people_they_are_found_by_colours(frames: list[Frame]) -> None:
     tracker, thermal = ByDetectionTracker(), ThermalFinder(PeopleDetector())
     told, warm = 0, 0

@@ -168,6 +168,7 @@ def test_the_same_input_gives_the_same_scores(sequence):
     assert to_json(evaluate(*sequence)) == to_json(evaluate(*sequence))
 
 
+@pytest.mark.slow
 @given(sequences(), st.floats(-300.0, 300.0))
 def test_rolling_an_image_all_round_changes_no_figure(sequence, columns):
     around = 200.0
@@ -196,6 +197,7 @@ def test_scores_hold_plain_numbers():
     assert all(type(value) is int for value in asdict(evaluate(TRUTH, TRACKS).counts).values())
 
 
+@pytest.mark.slow
 def test_evaluation_needs_neither_simulator_nor_numba_nor_opencv():
     code = (
         "import sys, peopleboy.tracker.evaluation.table, peopleboy.tracker.evaluation.mot_files;"

@@ -24,6 +24,7 @@ def shots(tmp_path_factory: pytest.TempPathFactory) -> list[PeopleShot]:
     return list(shots_of(sorted(folder.iterdir())))
 
 
+@pytest.mark.slow
 def test_people_of_random_worlds_are_found(shots: list[PeopleShot]) -> None:
     found = judge_detector(shipped_model(), shots, knows_mount=False)
     assert found.people >= 6

@@ -44,6 +44,7 @@ def told(scenes: Sequence[VistaScene]) -> list[Happening]:
     return [one for scene in scenes for one in scene.happenings]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("has_heat", some_of([True, False], 2))
 def test_what_somebody_puts_down_is_told_with_time_place_and_person(has_heat: bool) -> None:
     scenes = watch(SceneModel(SceneConfig()), visit([], [BOX]), has_heat=has_heat)
@@ -54,6 +55,7 @@ def test_what_somebody_puts_down_is_told_with_time_place_and_person(has_heat: bo
     assert [thing.state for thing in scenes[-1].objects] == [State.STANDS]
 
 
+@pytest.mark.slow
 def test_what_stood_from_the_start_and_is_carried_away_was_no_background() -> None:
     scenes = watch(SceneModel(SceneConfig()), visit([BOX], []))
     (one,) = told(scenes)
@@ -62,6 +64,7 @@ def test_what_stood_from_the_start_and_is_carried_away_was_no_background() -> No
     assert float(np.median(scenes[-1].background_m[true_depth([BOX])[1] > 0])) > 3.9
 
 
+@pytest.mark.slow
 def test_what_vanishes_here_and_appears_there_was_moved() -> None:
     model = SceneModel(SceneConfig())
     happenings = told(watch(model, visit([BOX], [AWAY])))
@@ -90,6 +93,7 @@ def test_what_swings_to_another_place_bit_by_bit_is_told_to_have_moved() -> None
     assert moved[0].to_m[0] == pytest.approx(4.6, abs=0.1)
 
 
+@pytest.mark.slow
 def test_what_somebody_holds_still_and_takes_along_was_never_put_down() -> None:
     near, held = at(PERSON, 0.6), replace(BOX, ahead_m=4.0, foot_m=0.9, top_m=1.3)
     before = replace(PERSON, ahead_m=3.0, left_m=0.3, right_m=-0.3)
@@ -98,6 +102,7 @@ def test_what_somebody_holds_still_and_takes_along_was_never_put_down() -> None:
     assert told(watch(SceneModel(SceneConfig()), film)) == []
 
 
+@pytest.mark.slow
 def test_the_static_scene_has_neither_people_nor_things() -> None:
     scene = watch(SceneModel(SceneConfig()), visit([], [BOX]))[-1]
     empty, _ = true_depth([])
@@ -106,6 +111,7 @@ def test_the_static_scene_has_neither_people_nor_things() -> None:
     assert float(np.abs(scene.background_m - empty)[known].mean()) < 0.004
 
 
+@pytest.mark.slow
 def test_masks_of_people_and_things_are_where_they_are() -> None:
     film = visit([], [BOX])
     model = SceneModel(SceneConfig())
@@ -118,6 +124,7 @@ def test_masks_of_people_and_things_are_where_they_are() -> None:
     assert ((scenes[-1].things > 0) != (owner > 0)).mean() < 0.01
 
 
+@pytest.mark.slow
 def test_somebody_who_stands_still_is_no_thing_where_no_thermal_camera_sees() -> None:
     film = [[], *[[at(PERSON, way)] for way in np.linspace(2.2, 0.0, 40)], *[[at(PERSON, 0.0)]] * 120]
     config = SceneConfig(people=PeopleMaskConfig(has_heat=False))

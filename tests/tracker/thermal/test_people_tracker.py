@@ -39,6 +39,7 @@ def confirmed(tracks):
 THREE = ((60, 25), (150, 32), (250, 28))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_the_detector_finds_three_people_one_after_the_other(seed):
     tracker = PeopleTracker(APART, np.random.default_rng(seed))
@@ -182,6 +183,7 @@ def stopping(i, stops_s):
     return dressed(i, (61 + 2.2 * walked, 18, RED, 150), (160, 50, BLUE, 110))
 
 
+@pytest.mark.slow
 def test_who_stops_behind_somebody_large_is_not_claimed_for_long_and_yet_known_again():
     tracker = PeopleTracker(PEOPLEBOY, np.random.default_rng(0))
     tracks = [tracker.update(stopping(i, stops_s=3)) for i in range(125)]
@@ -191,6 +193,7 @@ def test_who_stops_behind_somebody_large_is_not_claimed_for_long_and_yet_known_a
     assert identity_at(tracks[-1], 61 + 2.2 * 79) == walker
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seconds", "is_known"), [(4, True), (12, False)])
 def test_who_was_lost_is_remembered_for_ten_seconds(seconds, is_known):
     tracker = PeopleTracker(PEOPLEBOY, np.random.default_rng(1))
@@ -218,6 +221,7 @@ def test_who_cannot_be_compared_yet_has_a_new_number_until_it_is_known_again(mon
     assert all(len(confirmed(tracks)) <= 1 for tracks in back)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", VARIANTS)
 def test_every_contour_tracker_gives_finite_tracks_with_ids_of_their_own(name):
     tracker = make_tracker(name, np.random.default_rng(3))
@@ -232,6 +236,7 @@ def heat_alone(frame):
     return replace(frame, images={THERMAL: frame.grey(THERMAL)})
 
 
+@pytest.mark.slow
 def test_without_a_colour_camera_people_are_told_apart_by_their_warmth():
     tracker = PeopleTracker(PEOPLEBOY, np.random.default_rng(0))
     tracks = [tracker.update(heat_alone(passing(i))) for i in range(115)]

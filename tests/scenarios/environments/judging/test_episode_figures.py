@@ -72,6 +72,7 @@ def known(figures: dict[str, Any]) -> dict[str, Any]:
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("like", "duration_s", "tracker"),
     [

@@ -62,6 +62,7 @@ def test_what_is_lacking_is_said_in_one_line() -> None:
     assert "val" not in lacking_splits(6)
 
 
+@pytest.mark.slow
 def test_a_set_is_sound_and_its_numbers_are_those_of_its_files(rendered: Path) -> None:
     folder = rendered / "set"
     about = json.loads((folder / "dataset.json").read_text())

@@ -34,6 +34,7 @@ def store(tmp_path: Path) -> Store:
     return Store(tmp_path / "toys.jsonl", "toys")
 
 
+@pytest.mark.slow
 def test_one_worker_is_this_process_and_two_are_others(tmp_path: Path, store: Store) -> None:
     work(toys(tmp_path, 3), store, Workers(1))
     assert {process for _, process in diary_lines(tmp_path)} == {os.getpid()}
@@ -89,6 +90,7 @@ def test_a_task_that_kills_every_process_fails_alone(tmp_path: Path, store: Stor
     assert squares(store) == {number: number**2 for number in range(1, 6)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "code"), some_of([(signal.SIGTERM, 143), (signal.SIGKILL, -9), (signal.SIGINT, -2)], 3)
 )

@@ -39,6 +39,7 @@ def test_ways_to_look_begin_as_printed_and_end_with_the_default():
     assert (CHOICES[PRINTED_NAME], CHOICES[DEFAULT]) == (PRINTED, AttentionConfig())
 
 
+@pytest.mark.slow
 def test_people_of_a_short_film_are_looked_for_and_the_default_finds_most():
     found = watch_focus(load_scenario("crossing_3").lasting(4.0), 100, [PRINTED_NAME, DEFAULT])
     rows = found[DEFAULT]

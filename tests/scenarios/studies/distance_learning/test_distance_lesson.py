@@ -54,6 +54,7 @@ def lesson(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "out"
 
 
+@pytest.mark.slow
 def test_it_leaves_a_network_that_knows_its_camera_and_what_it_was_trained_on(lesson: Path) -> None:
     model = AppearanceModel.load(lesson / "panoramic-paper.json")
     assert (model.view.width_px, model.view.height_px) == (480, 120)
@@ -122,6 +123,7 @@ OTHER = {"half_apex_deg": 65.0, "lens_half_angle_deg": 30.0}
 FLAT = {"half_apex_deg": 46.0, "lens_half_angle_deg": 30.0}
 
 
+@pytest.mark.slow
 def test_another_mirror_is_refused_in_a_line_before_anything_is_written(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -25,6 +25,7 @@ def lesson(tmp_path_factory):
     return out
 
 
+@pytest.mark.slow
 def test_it_leaves_a_network_that_knows_its_camera_and_the_scenes_that_it_saw(lesson):
     model = ForegroundModel.load(lesson / "foreground.npz")
     assert (model.view.width_px, model.view.height_px) == (480, 120)
@@ -59,6 +60,7 @@ def test_a_perfect_answer_is_judged_perfect_and_none_as_none(lesson):
     assert (nothing.both, nothing.false_px) == (0, 0)
 
 
+@pytest.mark.slow
 def test_scenes_differ_and_most_robots_drive():
     scenes = [random_scene(seed) for seed in range(100, 130)]
     assert random_scene(100) == scenes[0]

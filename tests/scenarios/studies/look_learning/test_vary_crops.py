@@ -18,6 +18,7 @@ def drawn_planes(count: int, rows: int = 32, columns: int = 24) -> np.ndarray:
     return planes
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("rows", "columns"), [(32, 24), pytest.param(40, 36, marks=pytest.mark.thorough)])
 def test_what_is_outside_the_image_stays_outside(rows: int, columns: int) -> None:
     planes = drawn_planes(400, rows, columns)

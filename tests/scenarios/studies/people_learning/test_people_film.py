@@ -1,12 +1,14 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.studies.people_learning.people_film import PeopleFilm, film_upright
 from peopleboy.tracker.thermal.mount import Mount
 
 
+@pytest.mark.slow
 def test_a_film_of_a_random_world_tells_who_is_where(tmp_path: Path) -> None:
     film = film_upright(random_scenario(3, 0.4), 3)
     assert film.grey.shape == film.change.shape

@@ -38,6 +38,7 @@ def few_patches(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(people_lesson, "patch_pool", lambda: some)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("quick", "few_patches")
 def test_drawn_people_are_learned_and_found_in_other_images(shots: list[PeopleShot]) -> None:
     model = PeopleModel(people_lesson.teach(shots[:30], shots[30:36], [Kind.WHOLE]))
@@ -47,6 +48,7 @@ def test_drawn_people_are_learned_and_found_in_other_images(shots: list[PeopleSh
     assert found.overlap[found.is_person].mean() > 0.65
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("quick", "few_patches")
 def test_the_lesson_leaves_films_and_trees_and_says_how_good_they_are(tmp_path: Path) -> None:
     assert run_cli("train-detector", "--worlds", 5, "--out", tmp_path, "--workers", 1) == 0

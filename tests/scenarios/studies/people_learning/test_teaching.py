@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 
 from peopleboy.scenarios.studies.people_learning.boosting import Boosting
 from peopleboy.scenarios.studies.people_learning.patch_pool import patch_pool
@@ -22,6 +23,7 @@ def test_most_people_come_through() -> None:
     assert np.isfinite(cascade.least).all()
 
 
+@pytest.mark.slow
 def test_trees_learn_where_in_their_windows_people_are() -> None:
     rng = np.random.default_rng(0)
     seen = rng.normal(size=(200, CELLS)).astype(np.float16)

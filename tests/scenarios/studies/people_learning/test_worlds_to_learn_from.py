@@ -17,6 +17,7 @@ from peopleboy.scenarios.studies.people_learning.worlds_to_learn_from import (
 from peopleboy.tracker.frame import THERMAL
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [3, 9])
 def test_a_world_as_the_library_is_seen_plainly_from_24_to_36_degrees(seed: int) -> None:
     before = random_world(seed)
@@ -75,6 +76,7 @@ def test_crowds_are_larger_than_worlds_as_drawn() -> None:
     assert crowded > 1.3 * drawn
 
 
+@pytest.mark.slow
 def test_worlds_of_each_kind_have_seeds_of_their_own() -> None:
     assert sum(kind.share for kind in KINDS) == pytest.approx(1.0)
     seeds = [seed for kind in KINDS for seed in kind.seeds(2000)]

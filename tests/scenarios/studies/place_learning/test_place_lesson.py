@@ -36,6 +36,7 @@ def plain(seed: int, number: int = 300) -> PlaceExamples:
     )
 
 
+@pytest.mark.slow
 def test_it_learns_who_is_there_where_and_how_sure_that_is() -> None:
     told, test = plain(0, 1500), plain(1)
     seen = teach_places(told).look(test.patches.astype(np.float32), test.distance_m)

@@ -77,6 +77,7 @@ def test_who_comes_anew_has_yet_to_be_found() -> None:
     assert ways_to_count(truth, np.tile(DISTANCE_M, 6), found)[FOUND].counted.sum() == 4
 
 
+@pytest.mark.slow
 def test_usual_and_strict_figures_are_those_of_the_other_parts(tmp_path: Path) -> None:
     setting, plan = Setting("peopleboy"), Plan(cache=tmp_path, suites={"dataset1": (PLAY,)}, repeats=1)
     experiment = Causes("default", setting, {"one person": ("dataset1",)})

@@ -96,6 +96,7 @@ def films(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("films")
 
 
+@pytest.mark.slow
 def test_frames_are_counted_from_the_start_to_the_first_that_is_claimed(films: Path) -> None:
     result = DelayUnit(PLAY, films, LateSetting("late", films=films), 0).run()
     assert result["starts"] >= 3

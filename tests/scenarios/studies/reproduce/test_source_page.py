@@ -172,6 +172,7 @@ def test_numbers_stand_for_all_that_have_them() -> None:
     assert [one.id for one in choose([])] == list(EXPERIMENTS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "number", some_of([f"situation-{name}" for name in SITUATION if name.startswith("figure")], 4)
 )
@@ -181,6 +182,7 @@ def test_figures_of_drives_are_drawn(number: str) -> None:
     assert str(experiment.picture(DRIVES, MadeUp())).startswith("data:image/png;base64,")
 
 
+@pytest.mark.slow
 def test_goals_are_reached_or_not_by_what_was_measured() -> None:
     samples = made_up(EXPERIMENTS["situation-goals"])
     figures = {line.group: figures["figure"].tolist() for line, figures in samples.items()}
@@ -381,6 +383,7 @@ def toy_runs() -> Iterator[tuple[str, tuple[SuiteRun, ...]]]:
         yield f"dataset{number}", (play,)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("numbers", "units", "says"),
     [

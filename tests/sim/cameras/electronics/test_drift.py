@@ -79,6 +79,7 @@ def test_the_shutter_freezes_the_image_exactly_and_for_its_time() -> None:
     assert frozen == [15, 16, 17, 18, 19]  # 1.0 s up to 1.3 s at 15 Hz
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "thermal",
     [

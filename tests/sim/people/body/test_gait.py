@@ -36,6 +36,7 @@ def contacts(height):
     return [(a + 1, b + 1) for a, b in zip(edges[::2], edges[1::2], strict=False)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speed", [0.5, 0.9, 1.2, 1.6])
 @pytest.mark.parametrize("height", [1.55, 1.9])
 def test_a_foot_on_the_floor_stands_still(speed, height):

@@ -150,6 +150,7 @@ def test_crossed_arms_let_go_of_everything() -> None:
     np.testing.assert_allclose(free, held, atol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(12))
 def test_every_joint_of_every_individual_lies_inside_its_shapes(seed: int) -> None:
     person = settle(make_individual(seed, **walking(1.2)), 1.3)
@@ -171,6 +172,7 @@ def slid_m(person: Person) -> float:
     return float(np.linalg.norm(np.diff(track[..., :2], axis=0), axis=-1)[on_floor].sum())
 
 
+@pytest.mark.slow
 def test_feet_slide_hardly_farther_than_in_plain_detail_where_people_start_turn_and_stop() -> None:
     ways = [
         (

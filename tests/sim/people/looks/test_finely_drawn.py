@@ -51,6 +51,7 @@ def test_people_are_less_even_in_full_detail() -> None:
     assert full["thermal_c"][cover > 0].std() > 1.1 * plain["thermal_c"][cover > 0].std()
 
 
+@pytest.mark.slow
 def test_the_seed_repeats_what_is_drawn_finely() -> None:
     one, again, other = (play(settings)[-1][0] for settings in (FULL, FULL, replace(FULL, seed=1)))
     assert all(np.array_equal(one[name], again[name]) for name in one)

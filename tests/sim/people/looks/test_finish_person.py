@@ -90,12 +90,14 @@ def test_a_face_has_warm_corners_of_the_eyes_a_cool_nose_and_dark_brows(seed: in
     )
 
 
+@pytest.mark.slow
 def test_trousers_are_creased_most_at_the_knee() -> None:
     rows = np.mean([finish_of(looks(seed)["left_thigh"]).light.std(axis=1) for seed in range(20)], axis=0)
     fifth = len(rows) // 5
     assert rows[:fifth].mean() > 1.5 * rows[2 * fifth : 3 * fifth].mean()  # row 0 is at the knee
 
 
+@pytest.mark.slow
 def test_an_open_jacket_shows_a_warmer_strip_of_shirt() -> None:
     jacket = Clothes(top="jacket", top_colour="black")
     chests = [finish_of(looks(seed, clothes=jacket)["chest"]) for seed in range(24)]

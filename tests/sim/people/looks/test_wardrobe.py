@@ -37,6 +37,7 @@ def test_no_man_wears_a_skirt_and_few_women_do(air_c: float) -> None:
     assert 0.02 < share(draws("female", air_c), "bottom", "skirt") < 0.25
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sex", ["female", "male"])
 def test_people_dress_for_the_weather(sex: str) -> None:
     cold, room, warm = (draws(sex, air_c) for air_c in (2.0, 19.0, 32.0))

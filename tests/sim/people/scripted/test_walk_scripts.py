@@ -68,6 +68,7 @@ def test_records_walk_to_the_last_bit_as_people_do_with_a_robot_in_their_way():
     assert stopped > 0  # the robot was in somebody's way
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_records_make_way_to_the_last_bit_as_people_do(seed):
     rng = np.random.default_rng(seed)

@@ -140,6 +140,7 @@ def test_an_image_is_the_same_by_either_physics_until_the_robot_moves() -> None:
             assert np.mean(one != other) < (0.1 if name == "thermal_c" else 1e-3)
 
 
+@pytest.mark.slow
 def test_it_gets_as_far_as_with_pybullet_to_a_few_millimetres() -> None:
     config = replace(load_scenario("corridor_straight").world(0), renderer="none")
     rng, off = np.random.default_rng(1), []
@@ -155,6 +156,7 @@ def test_it_gets_as_far_as_with_pybullet_to_a_few_millimetres() -> None:
     assert max(off) < 5e-3
 
 
+@pytest.mark.slow
 def test_a_world_with_people_needs_no_pybullet() -> None:
     play = (
         "from peopleboy.scenarios.files.load import load_scenario\n"

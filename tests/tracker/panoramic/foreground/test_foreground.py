@@ -46,6 +46,7 @@ def driving(tmp_path_factory):
     return filmed(tmp_path_factory.mktemp("driving"), **DRIVE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("robot", ["standing", "driving"])
 def test_people_are_told_from_background(robot, request):
     film, calibration = request.getfixturevalue(robot)

@@ -67,6 +67,7 @@ def test_what_was_below_the_image_before_is_new():
     assert moved[AGE, 60, 240] == pytest.approx(5.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate_hz", [3, 15])
 def test_an_empty_scene_is_known_within_seconds_whatever_the_rate_of_images(rate_hz):
     rng, scene = np.random.default_rng(0), floor_image(0, 0, 0).astype(float)

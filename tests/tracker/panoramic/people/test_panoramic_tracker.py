@@ -63,6 +63,7 @@ def test_nobody_is_believed_at_first_sight_and_who_goes_is_let_go():
     assert stage.play(3.0, still())[-1] == ()
 
 
+@pytest.mark.slow
 @RATES
 def test_round_the_robot_and_over_the_seam_a_walker_is_one_track(rate_hz):
     stage = Stage(rate_hz)
