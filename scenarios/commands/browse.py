@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from peopleboy.scenarios.commands.completion import complete_scenario
-from peopleboy.scenarios.commands.options import SEED
+from peopleboy.scenarios.commands.options import SEED, WholeNumber
 
 
 @click.command("list")
@@ -25,7 +25,7 @@ def list_command() -> None:
 
 @click.command()
 @click.argument("scenario", shell_complete=complete_scenario)
-@click.option("--seed", type=click.IntRange(min=0), help=f"What is drawn follows from it.  {SEED}")
+@click.option("--seed", type=WholeNumber(min=0), help=f"What is drawn follows from it.  {SEED}")
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Picture to write.  [default: SCENARIO-plan.png]"
 )

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import click
 
+from peopleboy.scenarios.commands.options import WholeNumber
+
 
 @click.command("compare-footage")
 @click.argument("rendered", metavar="RENDERED...", nargs=-1, required=True, type=click.Path(path_type=Path))
@@ -27,7 +29,7 @@ import click
     help="The page.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print all figures as JSON.")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of what is chosen.")
+@click.option("--seed", type=WholeNumber(min=0), default=0, show_default=True, help="Of what is chosen.")
 def compare_footage(
     rendered: Sequence[Path], real: Sequence[Path], out: Path, as_json: bool, seed: int
 ) -> None:

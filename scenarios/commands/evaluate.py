@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import BOXES, Output, output_options, tell_note
+from peopleboy.scenarios.commands.options import BOXES, Number, Output, output_options, tell_note
 
 
 @click.command()
@@ -23,7 +23,7 @@ from peopleboy.scenarios.commands.options import BOXES, Output, output_options, 
 )
 @click.option(
     "--min-visible",
-    type=click.FloatRange(0.0, 1.0, max_open=True),
+    type=Number(0.0, 1.0, max_open=True),
     default=0.0,
     show_default=True,
     help="People count if more than this share of them is seen; 0.3 leaves out slivers at the border.",

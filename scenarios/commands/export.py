@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from peopleboy.scenarios.commands.options import BOXES, tell_note
+from peopleboy.scenarios.commands.options import BOXES, Number, tell_note
 
 FORMATS = ("mot", "coco", "images", "yolo", "yolo-pose", "viper", "mcap", "mp4")
 
@@ -22,7 +22,7 @@ FORMATS = ("mot", "coco", "images", "yolo", "yolo-pose", "viper", "mcap", "mp4")
 )
 @click.option(
     "--least-px",
-    type=click.FloatRange(0.0),
+    type=Number(0.0),
     help="How wide and high boxes of yolo and yolo-pose are at least, in pixels; 0 for all.  [default: 3]",
 )
 @click.option(

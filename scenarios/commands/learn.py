@@ -7,19 +7,19 @@ from pathlib import Path
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import workers_options
+from peopleboy.scenarios.commands.options import WholeNumber, workers_options
 
 
 @click.command("train-foreground")
 @click.option(
-    "--scenes", type=click.IntRange(min=1), default=400, show_default=True, help="How many to learn from."
+    "--scenes", type=WholeNumber(min=1), default=400, show_default=True, help="How many to learn from."
 )
 @click.option(
-    "--tests", type=click.IntRange(min=0), default=20, show_default=True, help="How many others to judge by."
+    "--tests", type=WholeNumber(min=0), default=20, show_default=True, help="How many others to judge by."
 )
 @click.option(
     "--rounds",
-    type=click.IntRange(min=1),
+    type=WholeNumber(min=1),
     default=12,
     show_default=True,
     help="How often a hundred of the scenes are learned from.",
@@ -52,7 +52,7 @@ def train_foreground(
 
 @click.command("train-places")
 @click.option(
-    "--scenes", type=click.IntRange(min=2), default=400, show_default=True, help="How many to learn from."
+    "--scenes", type=WholeNumber(min=2), default=400, show_default=True, help="How many to learn from."
 )
 @click.option(
     "--out",
@@ -86,7 +86,7 @@ def train_places(
 
 @click.command("train-windows")
 @click.option(
-    "--scenes", type=click.IntRange(min=1), default=300, show_default=True, help="How many to learn from."
+    "--scenes", type=WholeNumber(min=1), default=300, show_default=True, help="How many to learn from."
 )
 @click.option(
     "--out",
@@ -113,7 +113,7 @@ def train_windows(scenes: int, out: Path, ship: bool, workers: int | None, sched
 @click.command("train-detector")
 @click.option(
     "--worlds",
-    type=click.IntRange(min=5, max=2000),
+    type=WholeNumber(min=5, max=2000),
     default=600,
     show_default=True,
     help="How many to learn from.",

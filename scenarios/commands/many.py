@@ -13,6 +13,7 @@ from peopleboy.scenarios.commands.completion import complete_scenario
 from peopleboy.scenarios.commands.options import (
     BOXES,
     Output,
+    WholeNumber,
     behaviour_option,
     boxes_option,
     output_options,
@@ -27,11 +28,11 @@ _SEEN: Final = 0.3
 
 @click.command()
 @click.argument("scenario", required=False, shell_complete=complete_scenario)
-@click.option("--seeds", type=click.IntRange(min=1), help="How many, from 0 on.  [default: 10]")
+@click.option("--seeds", type=WholeNumber(min=1), help="How many, from 0 on.  [default: 10]")
 @click.option(
     "--randomise",
     metavar="N",
-    type=click.IntRange(min=1),
+    type=WholeNumber(min=1),
     help="In place of a scenario: how many worlds drawn at random, as `render` has them.",
 )
 @click.option(
@@ -113,9 +114,7 @@ def sweep(
     show_default=True,
     help="Name or file; can be given again.",
 )
-@click.option(
-    "--seeds", type=click.IntRange(min=1), default=20, show_default=True, help="How many, from 0 on."
-)
+@click.option("--seeds", type=WholeNumber(min=1), default=20, show_default=True, help="How many, from 0 on.")
 @click.option(
     "--out",
     type=click.Path(path_type=Path),

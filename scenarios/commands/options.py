@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import wraps
@@ -47,6 +48,38 @@ boxes_option = click.option(
     "or all of a person, as most detectors do.",
 )
 
+
+class WholeNumber(click.IntRange):
+    """A whole number within limits, refused with what would be right."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> int:
+        """Read it."""
+        try:
+            return int(super().convert(value, param, ctx))
+        except click.BadParameter:
+            return self.fail(f"must be a whole number {_limits(self)}, got {value}", param, ctx)
+
+
+class Number(click.FloatRange):
+    """A number within limits, refused with what would be right."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Read it."""
+        try:
+            number = float(super().convert(value, param, ctx))
+        except click.BadParameter:
+            number = math.nan
+        if not math.isfinite(number):
+            self.fail(f"must be a number {_limits(self)}, got {value}", param, ctx)
+        return number
+
+
+def _limits(number: WholeNumber | Number) -> str:
+    if number.max is None:
+        return f"of at least {number.min:g}"
+    return f"from {number.min:g} to {'less than ' * number.max_open}{number.max:g}"
+
+
 _COUNT = "Processes at the same time; 1 for none but this one.  [default: one a core]"
 _ADDRESS = "Work on the cluster of this Dask scheduler instead."
 
@@ -54,7 +87,7 @@ _ADDRESS = "Work on the cluster of this Dask scheduler instead."
 def workers_options(command: Callable[..., None]) -> Callable[..., None]:
     """Let a command say who does the work; `chosen_workers` takes both."""
     scheduler = click.option("--scheduler", metavar="tcp://...", help=_ADDRESS)
-    return click.option("--workers", type=click.IntRange(min=1), help=_COUNT)(scheduler(command))
+    return click.option("--workers", type=WholeNumber(min=1), help=_COUNT)(scheduler(command))
 
 
 @dataclass(frozen=True, slots=True)

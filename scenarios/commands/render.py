@@ -10,7 +10,7 @@ import click
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.completion import complete_scenario
-from peopleboy.scenarios.commands.options import TRACKERS, complete_trackers, workers_options
+from peopleboy.scenarios.commands.options import TRACKERS, WholeNumber, complete_trackers, workers_options
 
 FAILED = 1
 
@@ -20,18 +20,18 @@ FAILED = 1
 @click.option("--frames", is_flag=True, help="Write every image too, as for `run`; else truth alone.")
 @click.option(
     "--seeds",
-    type=click.IntRange(min=1),
+    type=WholeNumber(min=1),
     help="How many, from 0 on; from 7 on every split has runs.  [default: 100]",
 )
 @click.option(
     "--randomise",
     metavar="N",
-    type=click.IntRange(min=1),
+    type=WholeNumber(min=1),
     help="In place of scenarios: how many worlds, each drawn at random.",
 )
 @click.option(
     "--seed",
-    type=click.IntRange(min=0),
+    type=WholeNumber(min=0),
     help="Of the first random world; the next one has the next.  [default: 0]",
 )
 @click.option(

@@ -14,6 +14,7 @@ from peopleboy.scenarios.commands.completion import complete_scenario
 from peopleboy.scenarios.commands.options import (
     SEED,
     Output,
+    WholeNumber,
     behaviour_option,
     boxes_option,
     output_options,
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("scenario", shell_complete=complete_scenario)
-@click.option("--seed", type=click.IntRange(min=0), help=f"All that is random follows from it.  {SEED}")
+@click.option("--seed", type=WholeNumber(min=0), help=f"All that is random follows from it.  {SEED}")
 @click.option(
     "--out",
     type=click.Path(path_type=Path),

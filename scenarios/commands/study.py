@@ -9,7 +9,7 @@ import click
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.completion import complete_scenario
-from peopleboy.scenarios.commands.options import workers_options
+from peopleboy.scenarios.commands.options import Number, WholeNumber, workers_options
 
 
 @click.command()
@@ -39,7 +39,7 @@ def datasets(suites: Sequence[str], films: Path) -> None:
 @click.option("--tracker", default="peopleboy", show_default=True, help="Whom to teach: peopleboy or thesis.")
 @click.option(
     "--seeds",
-    type=click.IntRange(min=1),
+    type=WholeNumber(min=1),
     default=5,
     show_default=True,
     help="Runs of each scenario.",
@@ -78,7 +78,7 @@ def train_occlusion(
 
 @click.command("train-distance")
 @click.argument("scenario", default="room_long", shell_complete=complete_scenario)
-@click.option("--seeds", type=click.IntRange(min=1), default=10, show_default=True, help="Runs of it.")
+@click.option("--seeds", type=WholeNumber(min=1), default=10, show_default=True, help="Runs of it.")
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
@@ -86,7 +86,7 @@ def train_occlusion(
 )
 @click.option(
     "--epochs",
-    type=click.IntRange(min=1),
+    type=WholeNumber(min=1),
     default=2000,
     show_default=True,
     help="How often the network goes through its examples.",
@@ -134,7 +134,7 @@ def train_distance(
 @click.option("--quick", is_flag=True, help="A little of everything, in minutes; the page says of what.")
 @click.option(
     "--repeats",
-    type=click.IntRange(min=1),
+    type=WholeNumber(min=1),
     help="How many random streams, or seeds, everything is repeated with; a later call with more uses "
     "what is there.  [default: 10, as in the sources]",
 )
@@ -199,11 +199,11 @@ def reproduce(
     "[default: all]",
 )
 @click.option(
-    "--seeds", type=click.IntRange(min=1), default=4, show_default=True, help="Films of each scenario."
+    "--seeds", type=WholeNumber(min=1), default=4, show_default=True, help="Films of each scenario."
 )
 @click.option(
     "--seconds",
-    type=click.FloatRange(min=5.0),
+    type=Number(min=5.0),
     default=45.0,
     show_default=True,
     help="How long a film is at most.",

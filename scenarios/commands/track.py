@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import BOXES, tell_note
+from peopleboy.scenarios.commands.options import BOXES, Number, WholeNumber, tell_note
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.footage.options import RgbdOptions, TrackOptions
@@ -39,7 +39,7 @@ _TRACKERS = (
 @click.option("--black-hot", is_flag=True, help="Warm things are dark.")
 @click.option(
     "--rate-hz",
-    type=click.FloatRange(min=0.1, max=1000.0),
+    type=Number(min=0.1, max=1000.0),
     help="Pictures a second.  [default: the video's own, or seqinfo.ini's; 15 otherwise]",
 )
 @click.option(
@@ -73,9 +73,7 @@ _TRACKERS = (
     metavar="X,Y,W,H|truth",
     help="Where a person is in the first picture, as trackers of single objects are told.",
 )
-@click.option(
-    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all that is random."
-)
+@click.option("--seed", type=WholeNumber(min=0), default=0, show_default=True, help="Of all that is random.")
 @click.option("--film", is_flag=True, help="Write overlay.mp4 too; needs the package av.")
 @click.option("--overwrite", is_flag=True, help="Replace an earlier run in the folder.")
 def track(

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.commands.options import WholeNumber
 
 
 @click.command()
@@ -14,7 +15,7 @@ from peopleboy.bad_input import BadInput
 @click.option("--web", is_flag=True, help="Serve it to a browser on this machine, until Ctrl-C.")
 @click.option(
     "--port",
-    type=click.IntRange(1, 65534),
+    type=WholeNumber(1, 65534),
     metavar="N",
     help="With --web: the page's port; its data takes the next. Any two free ones if not given.",
 )
