@@ -11,6 +11,7 @@ from peopleboy.scenarios.files.schema.place import (
     LCorridorSpec,
     PlaceSpec,
     RoomSpec,
+    StreetSpec,
     TCorridorSpec,
 )
 from peopleboy.sim.people.body.clothes import BOTTOMS, COLOURS, HAIR, SHOES, TOPS, Garment
@@ -22,6 +23,7 @@ _PLACES: Mapping[str, PlaceSpec] = {
     "corridor": CorridorSpec(kind="corridor", length_m=20.0, width_m=2.4),
     "l_corridor": LCorridorSpec(kind="l_corridor", first_m=12.0, second_m=8.0, width_m=2.4),
     "t_corridor": TCorridorSpec(kind="t_corridor", stem_m=12.0, bar_m=16.0, width_m=2.4),
+    "street": StreetSpec(kind="street", length_m=30.0, width_m=12.0),
 }
 
 

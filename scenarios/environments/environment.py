@@ -299,6 +299,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             raise BadInput(f"save: a run has physics_hz={usual.physics_hz}, got {config.physics_hz}")
         if self._kind == "tracks" and self._robot != usual.robot:
             raise BadInput(f"save: images of a run are as the scenario says, not of {self._size} pixels")
+        if Path(folder).exists() and not overwrite:
+            raise BadInput(f"save: {folder}: exists already; a run there is replaced with overwrite=True")
         options = RunOptions(
             seed=self._seed,
             out=Path(folder),

@@ -185,6 +185,9 @@ def _check_start(robot: RobotSpec, ground: Ground) -> None:
 def _check_behaviour(robot: RobotSpec) -> None:
     if robot.commands and robot.behaviour != "scripted":
         raise BadInput(f"a robot that is to {robot.behaviour} takes none; use 'scripted'", key=("commands",))
+    if robot.behaviour == "scripted" and not robot.commands:
+        told = "tell at least one, such as '{from_s: 0.0, linear_m_s: 0.5}', or let the robot 'stand'"
+        raise BadInput(f"a scripted robot has none; {told}", key=("commands",))
     if robot.keep_height is not None and robot.behaviour != "follow_person":
         raise BadInput("only a robot that is to 'follow_person' takes it", key=("keep_height",))
     if robot.walls_by is not None and robot.behaviour != "follow_corridor":

@@ -73,6 +73,13 @@ def test_a_whole_episode_has_the_frames_of_a_run_and_who_is_still_to_come_comes(
     assert run_cli("export", tmp_path / "cut", "--format", "coco", "--out", tmp_path / "coco") == 0
 
 
+def test_an_earlier_run_is_replaced_only_when_asked(tmp_path: Path) -> None:
+    env = played(tmp_path, "truth", steps=1)
+    (tmp_path / "saved").mkdir()
+    with refused("save", "exists already", "overwrite=True"):
+        env.save(tmp_path / "saved", record=False)
+
+
 def test_what_no_run_can_be_is_refused_in_a_line(tmp_path: Path) -> None:
     env = played(tmp_path, "truth", steps=1)
     env.reset(seed=1, options={"warmer_k": [-2.0, 2.0]})

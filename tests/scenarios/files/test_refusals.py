@@ -68,6 +68,10 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
         lambda d: d.update(faults=[{"kind": "camera_black", "from_s": 20.0}]),
         ("faults[0].from_s: 20 must be before the end, duration_s 20",),
     ),
+    "a script without commands": (
+        lambda d: d.update(robot={"at_m": [1.0, 0.0], "behaviour": "scripted"}),
+        ("robot.commands: a scripted robot has none", "let the robot 'stand'"),
+    ),
     "a tracker of one's own": (
         lambda d: d["robot"].update(tracker="mine:Mine"),
         ("robot.tracker: 'mine:Mine' is a class of your own", "--tracker mine:Mine"),
