@@ -11,7 +11,7 @@ from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, Light
 from peopleboy.sim.cameras.light.contact_shadows import add_contact_shadows
 from peopleboy.sim.cameras.light.mirroring import add_reflections
 from peopleboy.sim.cameras.noise import gaussian
-from peopleboy.sim.cameras.paintings import paint_run
+from peopleboy.sim.cameras.paintings import LIGHT_STEP, paint_run
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
     finish_run,
@@ -102,7 +102,8 @@ def _light_row(
 
     So the compiler knows how far apart pixels lie, and takes several at a time.
     """
-    part, depths, width, end = parts[v], depth[v], parts.shape[1], 0
+    part, depths, width = parts[v], depth[v], parts.shape[1]
+    end: int = np.int64(0)  # type: ignore[assignment]  # called with a literal, kernels would be compiled for it, too
     x, y, z = np.float32(light[0]), np.float32(light[1]), np.float32(light[2])
     direct, none = np.float32(level * (1.0 - _AMBIENT)), np.float32(0.0)
     one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
@@ -115,7 +116,7 @@ def _light_row(
             continue
         around, factor[first:end] = np.float32(level * _AMBIENT + colour[p, 6]), np.float32(1.0)
         if has_paint and paint[p, 0] >= 0.0:
-            paint_run(factor, first, end, v, p, depths, matrices, paint, paint_texels, 1)
+            paint_run(factor, first, end, v, p, depths, matrices, paint, paint_texels[1], LIGHT_STEP)
         for u in range(first, end):
             i = three * np.uint64(u)
             facing = max(normal[i] * x + normal[i + one] * y + normal[i + two] * z, none)

@@ -12,7 +12,7 @@ from peopleboy.sim.shapes.paintings import Painting, Unrolling
 
 _LEVEL, _ASLANT = int(Unrolling.LEVEL), int(Unrolling.ASLANT)
 _STEPS = np.array([256.0, 4096.0])  # to a kelvin, and to a factor of 1 on light
-_KELVIN, _LIGHT = 1.0 / _STEPS
+KELVIN_STEP, LIGHT_STEP = 1.0 / _STEPS
 
 
 def make_paint_table(
@@ -58,8 +58,8 @@ def painted(
     above = at + columns
     kelvin, light = texels[0], texels[1]
     return (
-        _KELVIN * (c * kelvin[at] + d * kelvin[at + 1] + e * kelvin[above] + f * kelvin[above + 1]),
-        _LIGHT * (c * light[at] + d * light[at + 1] + e * light[above] + f * light[above + 1]),
+        KELVIN_STEP * (c * kelvin[at] + d * kelvin[at + 1] + e * kelvin[above] + f * kelvin[above + 1]),
+        LIGHT_STEP * (c * light[at] + d * light[at + 1] + e * light[above] + f * light[above + 1]),
     )
 
 
@@ -74,7 +74,7 @@ def paint_run(
     matrices: NDArray[np.float64],
     paint: NDArray[np.float64],
     texels: NDArray[np.int16],
-    layer: int,
+    step: float,
 ) -> None:
     """Find what a painting does to neighbouring pixels of one part, as `painted` says it of points.
 
@@ -89,11 +89,10 @@ def paint_run(
         depths: (W,) [m] how far away what the row's pixels see is.
         matrices: (P, 3, 4) as `part_from_pixel` gives them.
         paint: (P, 7) as `make_paint_table` gives them.
-        texels: (2, N) beside them.
-        layer: 0 for kelvin, 1 for light.
+        texels: (N,) one of both layers beside them.
+        step: what a unit of it means, `KELVIN_STEP` or `LIGHT_STEP`.
     """
-    step, values = np.float32(_KELVIN if layer == 0 else _LIGHT), texels[layer]
-    none, one = np.float32(0.0), np.uint32(1)
+    unit, none, one = np.float32(step), np.float32(0.0), np.uint32(1)
     scale, columns, texel = paint[p, 4], np.int32(paint[p, 5]), np.int32(paint[p, 0])
     most_u, most_v = np.float32(paint[p, 5] - 1.001), np.float32(paint[p, 6] - 1.001)
     m, is_level = matrices[p], int(paint[p, 1]) == _LEVEL
@@ -115,9 +114,9 @@ def paint_run(
         i, j = np.int32(x), np.int32(y)
         # An unsigned place is not checked for being counted from the end.
         a, at = x - np.float32(i), np.uint32(texel + j * columns + i)
-        value = np.float32(values[at])
-        lower = value + a * (np.float32(values[at + one]) - value)
+        value = np.float32(texels[at])
+        lower = value + a * (np.float32(texels[at + one]) - value)
         at += np.uint32(columns)
-        value = np.float32(values[at])
-        upper = value + a * (np.float32(values[at + one]) - value)
-        line[u] = step * (lower + (y - np.float32(j)) * (upper - lower))
+        value = np.float32(texels[at])
+        upper = value + a * (np.float32(texels[at + one]) - value)
+        line[u] = unit * (lower + (y - np.float32(j)) * (upper - lower))

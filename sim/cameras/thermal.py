@@ -18,7 +18,7 @@ from peopleboy.sim.cameras.blur import optics_blur, rotation_blur
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.light.mirroring import add_reflections
 from peopleboy.sim.cameras.noise import gaussian
-from peopleboy.sim.cameras.paintings import paint_run
+from peopleboy.sim.cameras.paintings import KELVIN_STEP, paint_run
 from peopleboy.sim.cameras.surfaces import (
     MaterialTable,
     finish_run,
@@ -140,7 +140,8 @@ def _radiate_row(
     surroundings: float,
 ) -> None:
     """Fill a row (W,) in full detail, neighbouring pixels of one part together."""
-    part, depths, width, end = parts[v], depth[v], parts.shape[1], 0
+    part, depths, width = parts[v], depth[v], parts.shape[1]
+    end: int = np.int64(0)  # type: ignore[assignment]  # called with a literal, kernels would be compiled for it, too
     scale, most = np.float32(1.0 / _HALF_K), np.float32(1.0)
     has_finish, has_paint = len(finish) > 0, paint_texels.shape[1] > 0
     while end < width:
@@ -152,7 +153,7 @@ def _radiate_row(
             continue
         warmer_k[first:end] = np.float32(0.0)
         if has_paint and paint[p, 0] >= 0.0:
-            paint_run(warmer_k, first, end, v, p, depths, matrices, paint, paint_texels, 0)
+            paint_run(warmer_k, first, end, v, p, depths, matrices, paint, paint_texels[0], KELVIN_STEP)
         if has_finish and finish[p, 0] >= 0.0:
             finish_run(places, first, end, v, p, depths, matrices, finish)
             for u in range(first, end):

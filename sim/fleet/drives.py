@@ -79,7 +79,8 @@ class Drives:
         for row, number in enumerate(going.tolist()):
             self._robots[number].draw_noise(noise[row])
         noise *= self._noise_m[going, None]
-        after = self._walks.records["position"]
+        # Packed, as those of a single person are anyway, or kernels would be compiled for both layouts.
+        before, after = np.ascontiguousarray(before), np.ascontiguousarray(self._walks.records["position"])
         capsules = self._capsules._replace(is_solid=self.are_solid, before=before, after=after)
         touched = np.zeros(len(self._joined.bodies.places), np.bool_)
         drive_worlds(

@@ -139,7 +139,7 @@ def draw_shape(
             draw_face(size, i % 3, 1.0 if i < 3 else -1.0, surface + i, bit, lens, area, canvas)
     elif kind == _PLANE:
         normal = (pose[0, 2], pose[1, 2], pose[2, 2])
-        _draw_flat(normal, map_point(pose, 0.0, 0.0, 0.0), 0, surface, bit, lens, area, canvas)
+        _draw_flat(normal, map_point(pose, 0.0, 0.0, 0.0), np.int64(0), surface, bit, lens, area, canvas)
     else:
         first, end = table.triangle_range[shape]
         for i in range(first, end):
@@ -250,7 +250,7 @@ def draw_face(
         direction = up if i % 2 == 0 else across
         middle = plus(centre, scaled(side, step if i < 2 else -step))
         set_edge(canvas, i, cross(middle, direction), centre)
-    _draw_flat(normal, centre, 4, surface, bit, lens, area, canvas)
+    _draw_flat(normal, centre, np.int64(4), surface, bit, lens, area, canvas)
 
 
 @njit(cache=True, error_model="numpy")
@@ -272,10 +272,9 @@ def _draw_triangle(
             return
     normal = scaled(normal, 1.0 / math.sqrt(dot(normal, normal)))
     centre = scaled(plus(plus(a, b), c), 1.0 / 3.0)
-    set_edge(canvas, 0, cross(a, b), centre)
-    set_edge(canvas, 1, cross(b, c), centre)
-    set_edge(canvas, 2, cross(c, a), centre)
-    _draw_flat(normal, a, 3, surface, bit, lens, area, canvas)
+    for i, edge in enumerate((cross(a, b), cross(b, c), cross(c, a))):
+        set_edge(canvas, i, edge, centre)
+    _draw_flat(normal, a, np.int64(3), surface, bit, lens, area, canvas)
 
 
 @njit(cache=True, error_model="numpy")
@@ -290,14 +289,17 @@ def _narrowed(area: Rectangle, a: Point, b: Point, c: Point, lens: Lens) -> Rect
 def _draw_flat(
     normal: Point,
     point: Point,
-    edges: int,
+    edges: np.int64,
     surface: int,
     bit: np.uint64,
     lens: Lens,
     area: Rectangle,
     canvas: Canvas,
 ) -> None:
-    """Draw the polygon of the first `edges` edges in the plane through a point, from the normal's side."""
+    """Draw the polygon of the first `edges` edges in the plane through a point, from the normal's side.
+
+    Literals as their number would have this compiled once for each.
+    """
     distance = dot(normal, point)
     if distance >= 0.0:
         return
@@ -306,4 +308,4 @@ def _draw_flat(
     near[0], near[1], near[2] = -g[0], -g[1], 1.0 / NEAR_M - g[2]
     far[0], far[1], far[2] = g[0], g[1], g[2] - 1.0 / FAR_M
     set_shading(canvas, surface, normal, _NO_AXIS, 0.0)
-    fill_polygon(g, edges + 2, surface, bit, lens, area, canvas)
+    fill_polygon(g, int(edges) + 2, surface, bit, lens, area, canvas)

@@ -227,7 +227,8 @@ def _draw_column(
         bit = bits[table.part[shape]]
         compose(ring.column_from_ring[u], pieces.pose[i], canvas.pose)
         if face >= 0:
-            whole = (0, 0, ring.lens.width - 1, 0)
+            none: int = np.int64(0)  # type: ignore[assignment]  # for a literal, kernels would be compiled once more
+            whole = (none, none, ring.lens.width - 1, none)
             sign, surface = 1.0 if face < 3 else -1.0, table.first_surface[shape] + face
             draw_face(table.size[shape], face % 3, sign, surface, bit, ring.lens, whole, canvas)
             continue

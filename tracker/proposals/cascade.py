@@ -128,14 +128,15 @@ def _scan(
     early = min(_EARLY, promising)
     at, score = np.empty(rows * columns, np.uint32), np.empty(rows * columns, np.float32)
     is_wanted = np.zeros((rows, columns), np.bool_)
-    left = 0
+    none: int = np.int64(0)  # type: ignore[assignment]  # called with a literal, kernels would be compiled for it, too
+    left = none
     for i in range(0, rows, stride):
-        count = 0
+        count = none
         for j in range(0, columns, stride):
             at[left + count], score[left + count] = (i + first) * wide + j, 0.0
             count += 1
         some, theirs = at[left : left + count], score[left : left + count]
-        left += _walk(sums, some, theirs, count, offset, weight, threshold, leaf, least[:early], 0)
+        left += _walk(sums, some, theirs, count, offset, weight, threshold, leaf, least[:early], none)
     left = _walk(sums, at, score, left, offset, weight, threshold, leaf, least[:promising], early)
     for k in range(left):
         row, column = np.int64(at[k]) // wide - first, np.int64(at[k]) % wide
@@ -144,13 +145,13 @@ def _scan(
     left = _walk(sums, at, score, left, offset, weight, threshold, leaf, least, promising)
     for k in range(left):
         found[np.int64(at[k]) // wide - first, np.int64(at[k]) % wide] = score[k]
-    left = 0
+    left = none
     for i in range(rows):
         for j in range(columns):
             if is_wanted[i, j] and (i % stride != 0 or j % stride != 0):
                 at[left], score[left] = (i + first) * wide + j, 0.0
                 left += 1
-    left = _walk(sums, at, score, left, offset, weight, threshold, leaf, least, 0)
+    left = _walk(sums, at, score, left, offset, weight, threshold, leaf, least, none)
     for k in range(left):
         found[np.int64(at[k]) // wide - first, np.int64(at[k]) % wide] = score[k]
 

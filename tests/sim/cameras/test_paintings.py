@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.sim.cameras.paintings import make_paint_table, paint_run, painted
+from peopleboy.sim.cameras.paintings import KELVIN_STEP, LIGHT_STEP, make_paint_table, paint_run, painted
 from peopleboy.sim.shapes.paintings import Painting, Unrolling
 
 ROWS, COLUMNS, TEXEL_M = 5, 7, 0.1
@@ -46,9 +46,9 @@ def test_a_run_of_pixels_shows_what_a_painting_has_at_their_points(unrolling: Un
     paint, texels = make_paint_table([None, slope(unrolling), slope(unrolling)])
     depths = rng.uniform(0.2, 1.0, 9).astype(np.float32)
     matrices = rng.uniform(-0.2, 0.2, (3, 3, 4))
-    for v, layer, part in ((1, 0, 1), (3, 1, 2)):
+    for v, layer, step, part in ((1, 0, KELVIN_STEP, 1), (3, 1, LIGHT_STEP, 2)):
         line = np.full(9, np.nan, np.float32)
-        paint_run(line, 2, 8, v, part, depths, matrices, paint, texels, layer)
+        paint_run(line, 2, 8, v, np.int32(part), depths, matrices, paint, texels[layer], step)
         for u in range(2, 8):
             point = matrices[part] @ (u * depths[u], v * depths[u], depths[u], 1.0)
             assert line[u] == pytest.approx(painted(paint, texels, part, *point)[layer], abs=1e-4)
