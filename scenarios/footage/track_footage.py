@@ -85,12 +85,16 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
         scores = log.finish()
         about |= {"frames": log.frames, "width": log.size[1], "height": log.size[0]}
         about["notes"] = notes = [*views.notes, *_notes_on(truth, log.size)]
-    return Tracked(log.frames, _rate_hz(times), log.tracks, scores, tuple(notes), kind)
+    return Tracked(log.frames, pictures_a_second(times), log.tracks, scores, tuple(notes), kind)
 
 
-def _rate_hz(times_s: Sequence[float]) -> float:
-    """Give the pictures a second of the later half: kernels are compiled at the first ones."""
-    half = len(times_s) // 2
+def pictures_a_second(times_s: Sequence[float]) -> float:
+    """Give the pictures a second of the later half: kernels are compiled at the first ones.
+
+    Args:
+        times_s: when the first one was begun, and when each was done.
+    """
+    half = (len(times_s) - 1) // 2
     return (len(times_s) - 1 - half) / max(times_s[-1] - times_s[half], 1e-9)
 
 

@@ -86,6 +86,13 @@ def again_on_nobody(frame: int) -> Boxes:
     return {1: ANNA} | ({2: BEN} if frame < 30 else {2: NOWHERE} if frame >= 40 else {})
 
 
+def again_for_a_moment(frame: int) -> Boxes:
+    """Ben's number is gone from frame 30 to 39, on him for three frames, and then gone for good."""
+    return {1: ANNA} | (
+        {2: BEN} if frame < 30 or 40 <= frame < 43 else {2: NOWHERE} if 43 <= frame < 60 else {}
+    )
+
+
 def flickering(frame: int) -> Boxes:
     """Ben's number is away from 30 to 31 and from 50 to 59; number 9 lies on nobody at 70 and 71."""
     is_away = 30 <= frame < 32 or 50 <= frame < 60

@@ -12,7 +12,7 @@ from PIL import Image
 
 from peopleboy.scenarios.commands.evaluate import evaluate
 from peopleboy.scenarios.footage.options import TrackOptions
-from peopleboy.scenarios.footage.track_footage import track_footage
+from peopleboy.scenarios.footage.track_footage import pictures_a_second, track_footage
 from peopleboy.tracker.evaluation.table import NEED_EVERYBODY
 from peopleboy.tracker.footage.box_kinds import TORSO_PER_HEIGHT, WHOLE_PER_HEIGHT, BoxKind
 from peopleboy.tracker.footage.grey import AutomaticGrey, Radiometry, grey_maker, parse_scale
@@ -313,3 +313,10 @@ def test_the_person_of_a_real_clip_is_kept_for_most_of_it(tmp_path):
         for seed in range(5)
     ]
     assert np.mean(shares) > 85
+
+
+def test_speed_is_that_of_pictures_for_which_nothing_is_compiled() -> None:
+    done = 20.0 + 0.1 * np.arange(10)
+    assert pictures_a_second([0.0, *done]) == pytest.approx(10.0)
+    assert pictures_a_second([0.0, 20.0, 20.5]) == pytest.approx(2.0)
+    assert pictures_a_second([0.0, 20.0]) == pytest.approx(0.05)  # there is no other

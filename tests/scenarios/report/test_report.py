@@ -177,6 +177,12 @@ def test_a_track_that_is_shown_again_on_nobody_is_said_to_be(tmp_path: Path) -> 
     assert loss.is_bad
 
 
+def test_a_person_who_is_shown_again_for_a_moment_is_not_said_to_be_unfound(tmp_path: Path) -> None:
+    first, last = found_in(toy.write_run(tmp_path / "run", toy.again_for_a_moment)).losses
+    assert (plain(first.afterwards), first.is_bad) == ("shown again after 0.7 s, same number", False)
+    assert (plain(last.afterwards), last.is_bad) == ("Ben was not found again", True)
+
+
 def test_a_reason_is_true_of_its_moment_and_what_was_just_before_is_said_to_be(tmp_path: Path) -> None:
     (loss,) = found_in(toy.write_run(tmp_path / "run", toy.until_75, lambda f: 0.5 * (f == 72))).losses
     assert loss.why.startswith("was in plain sight, but had just been hidden to 50% by Anna; ")
