@@ -14,7 +14,6 @@ from peopleboy.sim.people.walking.giving_way import (
     HURRY,
     TAKEN_WITHIN_M,
     TURNS_M_S,
-    RobotMotion,
     bend_rad,
     blocked_s,
     has_arrived,
@@ -22,6 +21,7 @@ from peopleboy.sim.people.walking.giving_way import (
     is_taken,
     velocity_by_force,
 )
+from peopleboy.sim.people.walking.social_force import Obstacles
 
 Array = NDArray[np.float64]
 
@@ -47,13 +47,10 @@ def make_way(
     scripts: Scripts,
     q: int,
     dt_s: float,
-    people: Array,
-    own: int,
-    robot: RobotMotion,
-    walls: Array,
+    obstacles: Obstacles,
     two: float,
 ) -> None:
-    """See `Walker._give_way`; people are (N, 4) as of `motion_of`, with the walker's own row."""
+    """See `Walker._give_way`."""
     pieces, first = scripts.pieces, scripts.first_piece[q]
     goal = pieces[first + walk.piece].goal
     waypoint = scripts.waypoints[scripts.first_waypoint[q] + goal]
@@ -64,8 +61,8 @@ def make_way(
         braking = braking_speed(_gap(walk, target), 0.0, dt_s, two)
         wanted, limit = min(wanted, braking), min(limit, braking)
     x, y = velocity_by_force(
-        (walk.position[0], walk.position[1]), (walk.velocity[0], walk.velocity[1]), target, wanted, people,
-        own, robot, walls, bend_rad(walk.blocked_s), dt_s,
+        (walk.position[0], walk.position[1]), (walk.velocity[0], walk.velocity[1]), target, wanted,
+        obstacles, bend_rad(walk.blocked_s), dt_s,
     )  # fmt: skip
     fast = math.sqrt(x * x + y * y)
     share = 1.0 if fast <= limit else limit / fast
@@ -77,7 +74,7 @@ def make_way(
         turn_to(walk, dt_s, math.atan2(y, x))
     walk.blocked_s = blocked_s(walk.blocked_s, walk.speed, wanted, dt_s)
     if _gap(walk, target) < TAKEN_WITHIN_M:
-        _pass_waypoint(walk, scripts, q, goal, target, is_last, is_taken(target, people, own, robot))
+        _pass_waypoint(walk, scripts, q, goal, target, is_last, is_taken(target, obstacles))
 
 
 @njit(cache=True)

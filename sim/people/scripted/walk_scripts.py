@@ -17,7 +17,7 @@ from peopleboy.sim.people.body.stance import POSTURES
 from peopleboy.sim.people.scripted.make_way import make_way, motion_of
 from peopleboy.sim.people.scripted.script import NOTHING, POINT, Records, Scripts
 from peopleboy.sim.people.scripted.walk_records import Record, arrive, braking_speed, turn_to
-from peopleboy.sim.people.walking.giving_way import RobotMotion
+from peopleboy.sim.people.walking.social_force import Obstacles, RobotMotion
 from peopleboy.sim.people.walking.walk import (
     ACCELERATION_M_S2,
     BRAKE_M_S2,
@@ -71,7 +71,7 @@ def walk_on(
             walk.has_moved = True
             for _ in range(count):
                 if walk.piece >= 0 and walk.yields:
-                    make_way(walk, scripts, q, dt_s / count, people, row, robot, walls, two)
+                    make_way(walk, scripts, q, dt_s / count, Obstacles(people, row, robot, walls), two)
                 elif walk.piece >= 0:
                     _follow(walk, scripts, q, dt_s / count, robot, two)
                 else:

@@ -3,19 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Final, TypeAlias
+from typing import Final
 
-import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-from peopleboy.sim.people.walking.social_force import KEEP_RIGHT_RAD, social_force
+from peopleboy.sim.people.walking.social_force import KEEP_RIGHT_RAD, Obstacles, social_force
 
-Array = NDArray[np.float64]
-RobotMotion: TypeAlias = tuple[float, float, float, float, float]
-"""Where a robot is [m], x and y of its velocity [m/s], and its radius [m]; negative if there is none."""
-
-NO_ROBOT: Final[RobotMotion] = (0.0, 0.0, 0.0, 0.0, -1.0)
 HURRY: Final = 1.3  # who gives way may be this much faster than planned (Helbing and Molnar 1995, eq. 11)
 TAKEN_WITHIN_M: Final = 1.0  # how near to a waypoint one looks whether somebody stands on it
 TAKEN_BY_M: Final = 0.6  # how near to it somebody stands then
@@ -36,10 +29,7 @@ def velocity_by_force(
     velocity: tuple[float, float],
     goal: tuple[float, float],
     wanted_m_s: float,
-    people: Array,
-    walker: int,
-    robot: RobotMotion,
-    walls: Array,
+    obstacles: Obstacles,
     bend_rad: float,
     dt_s: float,
 ) -> tuple[float, float]:
@@ -49,7 +39,7 @@ def velocity_by_force(
     """
     gap_x, gap_y = goal[0] - at[0], goal[1] - at[1]
     pace = wanted_m_s / max(math.hypot(gap_x, gap_y), 1e-9)
-    x, y = social_force(at, velocity, (gap_x * pace, gap_y * pace), people, walker, robot, walls, bend_rad)
+    x, y = social_force(at, velocity, (gap_x * pace, gap_y * pace), obstacles, bend_rad)
     share = dt_s * min(_MOST_M_S2 / max(math.hypot(x, y), 1e-9), 1.0)
     return velocity[0] + share * x, velocity[1] + share * y
 
@@ -82,8 +72,9 @@ def has_passed(distance_m: float, is_occupied: bool) -> bool:
 
 
 @njit(cache=True)
-def is_taken(place: tuple[float, float], people: Array, walker: int, robot: RobotMotion) -> bool:
-    """Whether anybody else, or the robot, stands on a place [m]; for the rest see `social_force`."""
+def is_taken(place: tuple[float, float], obstacles: Obstacles) -> bool:
+    """Whether anybody else, or the robot, stands on a place [m]."""
+    people, walker, robot, _ = obstacles
     nearest = math.inf
     if robot[4] >= 0.0:
         nearest = math.hypot(robot[0] - place[0], robot[1] - place[1])

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Final, NamedTuple, TypeAlias
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+RobotMotion: TypeAlias = tuple[float, float, float, float, float]
+"""Where a robot is [m], x and y of its velocity [m/s], and its radius [m]; negative if there is none."""
+
+NO_ROBOT: Final[RobotMotion] = (0.0, 0.0, 0.0, 0.0, -1.0)
 
 # Helbing and Molnar, Social force model for pedestrian dynamics, Phys. Rev. E 51, 4282 (1995), section III.
 RELAXATION_S = 0.5
@@ -46,16 +51,29 @@ class PlanarState:
     heading_rad: float = 0.0
 
 
+class Obstacles(NamedTuple):
+    """What a person who walks makes way for.
+
+    Attributes:
+        people: (N, 4) x, y [m] and velocities [m/s] of all.
+        walker: whose row of `people` is the person's own; -1 if none is.
+        robot: where it is and how it moves.
+        walls: (K, 4) [m] rectangles min_x, min_y, max_x, max_y.
+    """
+
+    people: Array
+    walker: int
+    robot: RobotMotion
+    walls: Array
+
+
 @njit(cache=True, nogil=True)
 def social_force(
     at: tuple[float, float],
     velocity: tuple[float, float],
     desired: tuple[float, float],
-    people: Array,
-    walker: int,
-    robot: tuple[float, float, float, float, float],
-    walls: Array,
-    bend_rad: float = KEEP_RIGHT_RAD,
+    obstacles: Obstacles,
+    bend_rad: float,
 ) -> tuple[float, float]:
     """Sum what pulls a person to the goal and pushes it away from others and walls.
 
@@ -65,10 +83,7 @@ def social_force(
         at: [m].
         velocity: [m/s].
         desired: [m/s] velocity towards the goal.
-        people: (N, 4) x, y [m] and velocities [m/s] of all.
-        walker: whose row of `people` is the person's own; -1 if none is.
-        robot: the same of the robot, and its radius [m]; negative if there is none.
-        walls: (K, 4) [m] rectangles min_x, min_y, max_x, max_y.
+        obstacles: what is around.
         bend_rad: [rad] by how much a push from ahead is turned to pass on the right; negative for the left.
 
     Returns:
@@ -77,6 +92,7 @@ def social_force(
     x, y = (desired[0] - velocity[0]) / RELAXATION_S, (desired[1] - velocity[1]) / RELAXATION_S
     heading = desired if math.hypot(desired[0], desired[1]) > 1e-6 else velocity
     turn = math.cos(bend_rad), math.sin(bend_rad)
+    people, walker, robot, walls = obstacles
     for k in range(len(people)):
         if k != walker:
             other = people[k]

@@ -11,10 +11,8 @@ from numpy.typing import NDArray
 from peopleboy.sim.people.body.postures import RISE_S, Posture
 from peopleboy.sim.people.walking.giving_way import (
     HURRY,
-    NO_ROBOT,
     TAKEN_WITHIN_M,
     TURNS_M_S,
-    RobotMotion,
     bend_rad,
     blocked_s,
     has_arrived,
@@ -23,7 +21,13 @@ from peopleboy.sim.people.walking.giving_way import (
     velocity_by_force,
 )
 from peopleboy.sim.people.walking.path import PathPiece, Point, is_about_turn, route, turn_between
-from peopleboy.sim.people.walking.social_force import POINT_RADIUS_M, PlanarState
+from peopleboy.sim.people.walking.social_force import (
+    NO_ROBOT,
+    POINT_RADIUS_M,
+    Obstacles,
+    PlanarState,
+    RobotMotion,
+)
 from peopleboy.sim.people.walking.surroundings import Surroundings
 from peopleboy.sim.people.walking.waypoint import Waypoint
 from peopleboy.sim.people.walking.wish import AS_PLANNED, Wish
@@ -314,25 +318,25 @@ class Walker:
             braking = _braking_speed(self._gap(target), 0.0, ACCELERATION_M_S2, dt_s)
             wanted, limit = min(wanted, braking), min(limit, braking)
         wanted = wish.pace * wanted
-        robot = self._be_pushed(dt_s, target, wanted, limit, around, wish)
+        obstacles = self._be_pushed(dt_s, target, wanted, limit, around, wish)
         self._blocked_s = blocked_s(self._blocked_s, self._speed, wanted, dt_s)
         if self._gap(target) < TAKEN_WITHIN_M:
-            is_occupied = is_taken(target, around.people.motion, around.walker, robot)
-            self._pass_waypoint(target, is_last, is_occupied)
+            self._pass_waypoint(target, is_last, is_taken(target, obstacles))
 
     def _be_pushed(
         self, dt_s: float, goal: Point, wanted: float, limit: float, around: Surroundings, wish: Wish
-    ) -> RobotMotion:
+    ) -> Obstacles:
         """Move by social force towards a goal [m], as fast as is wanted, up to a limit [m/s].
 
         Returns:
-            The robot as it made way for it.
+            What it made way for.
         """
         robot = _as_wished(around.robot, wish)
+        obstacles = Obstacles(around.people.motion, around.walker, robot, around.walls)
+        bend = bend_rad(self._blocked_s)
         x, y = velocity_by_force(
-            _pair(self.position), _pair(self.velocity), goal, wanted, around.people.motion, around.walker,
-            robot, around.walls, bend_rad(self._blocked_s), dt_s,
-        )  # fmt: skip
+            _pair(self.position), _pair(self.velocity), goal, wanted, obstacles, bend, dt_s
+        )
         if not wish.heeds_robot:
             limit = min(limit, self._limit_by_robot(around.robot, math.atan2(y, x)))
         fast = math.sqrt(x * x + y * y)
@@ -341,7 +345,7 @@ class Walker:
         self.position = self.position + self.velocity * dt_s
         if self._speed > TURNS_M_S:
             self._turn(dt_s, math.atan2(y, x))
-        return robot
+        return obstacles
 
     def _pass_waypoint(self, target: Point, is_last: bool, is_occupied: bool) -> None:
         """Go on to the next waypoint where this one is reached, or where others stand on it."""

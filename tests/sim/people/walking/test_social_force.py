@@ -3,10 +3,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.sim.people.walking.social_force import POINT_RADIUS_M, RELAXATION_S, social_force
+from peopleboy.sim.people.walking.social_force import (
+    KEEP_RIGHT_RAD,
+    NO_ROBOT,
+    POINT_RADIUS_M,
+    RELAXATION_S,
+    Obstacles,
+    social_force,
+)
 from tests.helpers.worlds.naive_social_force import naive_social_force
 
-NO_ROBOT = (0.0, 0.0, 0.0, 0.0, -1.0)
 NO_WALLS = np.empty((0, 4))
 
 
@@ -19,10 +25,8 @@ def test_forces_are_those_of_the_naive_computation(seed, count, has_robot, bend_
     corners = rng.uniform(-5.0, 5.0, (3, 2, 2))
     walls = np.concatenate([corners.min(axis=1), corners.max(axis=1)], axis=1)[: rng.integers(4)]
     walker = int(rng.integers(-1, count))
-    force = social_force(
-        tuple(at), tuple(velocity), tuple(desired), people, walker,
-        robot if has_robot else NO_ROBOT, walls, bend_rad,
-    )  # fmt: skip
+    obstacles = Obstacles(people, walker, robot if has_robot else NO_ROBOT, walls)
+    force = social_force(tuple(at), tuple(velocity), tuple(desired), obstacles, bend_rad)
     others = np.delete(people, walker, axis=0) if walker >= 0 else people
     others = np.column_stack([others, np.full(len(others), POINT_RADIUS_M)])
     if has_robot:
@@ -32,11 +36,12 @@ def test_forces_are_those_of_the_naive_computation(seed, count, has_robot, bend_
 
 
 def test_alone_one_is_pulled_to_the_wish():
-    force = social_force((0.0, 0.0), (0.5, 0.0), (1.0, 1.0), np.empty((0, 4)), -1, NO_ROBOT, NO_WALLS)
+    nobody = Obstacles(np.empty((0, 4)), -1, NO_ROBOT, NO_WALLS)
+    force = social_force((0.0, 0.0), (0.5, 0.0), (1.0, 1.0), nobody, KEEP_RIGHT_RAD)
     assert force == pytest.approx((0.5 / RELAXATION_S, 1.0 / RELAXATION_S))
 
 
 def test_nobody_pushes_himself():
-    me = np.array([[0.0, 0.0, 1.0, 0.0]])
-    force = social_force((0.0, 0.0), (1.0, 0.0), (1.0, 0.0), me, 0, NO_ROBOT, NO_WALLS)
+    me = Obstacles(np.array([[0.0, 0.0, 1.0, 0.0]]), 0, NO_ROBOT, NO_WALLS)
+    force = social_force((0.0, 0.0), (1.0, 0.0), (1.0, 0.0), me, KEEP_RIGHT_RAD)
     assert force == (0.0, 0.0)
