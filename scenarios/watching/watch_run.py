@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
+from collections import defaultdict
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -36,6 +38,7 @@ from peopleboy.tracker.scene_model.scene_model import SceneModel
 FOLDER = "scene"
 """Where it lies in the folder of a run."""
 
+Spot = tuple[float, float]
 _PEOPLE = ("frame", "name", "x_m", "y_m", "whole_px", "hidden_by", "left_px", "id")
 
 
@@ -118,8 +121,16 @@ def true_events(run: FinishedRun) -> list[TrueEvent]:
     if not lines or not path.is_file():
         return []
     table = pq.read_table(path, columns=["frame", "name", "x_m", "y_m"]).to_pylist()
-    places = {(row["frame"], row["name"]): (row["x_m"], row["y_m"]) for row in table}
-    return [TrueEvent.of(one, one.who, one.other, places[one.frame, one.who]) for one in lines]
+    places: dict[str, list[tuple[int, Spot]]] = defaultdict(list)
+    for row in table:
+        places[row["name"]].append((row["frame"], (row["x_m"], row["y_m"])))
+    return [TrueEvent.of(one, one.who, one.other, _next(places[one.who], one.frame)) for one in lines]
+
+
+def _next(places: Sequence[tuple[int, Spot]], frame: int) -> Spot:
+    """Give the place of a frame, or of the next one with an image; of the last one when there is none."""
+    at = bisect_left(places, frame, key=lambda one: one[0])
+    return places[min(at, len(places) - 1)][1]
 
 
 def _told(

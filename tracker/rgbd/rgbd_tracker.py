@@ -49,6 +49,7 @@ class RgbdTracker:
         self._model, self._rng = model, rng
         self._detector = PreDetector(config.size, config.above)
         self._people: tuple[Hypothesis, ...] = ()
+        self._seen: RgbdView | None = None  # in the newest image
         self._time_s = -math.inf
         self._last_id = 0
         self._explanation: RgbdExplanation | None = None
@@ -72,22 +73,31 @@ class RgbdTracker:
         DepthView.of(calibrations.get(DEPTH), DEPTH)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Take in the next frame and tell who is where.
+        """Take in the next frame and tell who is where; people walk on while a slower camera takes no image.
 
         Raises:
-            BadInput: no depth image with colour of the same size, or no calibration.
+            BadInput: no depth image in the first frame, one without colour of its size, or no calibration.
         """
-        view = self._view(frame)
-        layout = self._detector(view.depth, view.geometry)
-        detections = tuple(self._verified(found, layout, view, frame) for found in layout.detections)
+        before = None if DEPTH in frame.images else self._seen
+        self._seen = view = self._view(frame) if before is None else before
         management = Management(
             self.config, view, frame.time_s, min(frame.time_s - self._time_s, _LONGEST_STEP_S), self._rng
         )
         self._time_s = frame.time_s
+        if before is None:
+            self._look(management, frame)
+        else:
+            self._people = tuple(management.expected(one, frame.odometry) for one in self._people)
+        return tuple(self._track(person, frame) for person in self._people if management.is_claimed(person))
+
+    def _look(self, management: Management, frame: Frame) -> None:
+        """Take in a new image."""
+        view = management.view
+        layout = self._detector(view.depth, view.geometry)
+        detections = tuple(self._verified(found, layout, view, frame) for found in layout.detections)
         people = self._followed(detections, management, frame)
         self._people = self._named(_without_doubles(people))
         self._explanation = RgbdExplanation(layout, detections, self._people)
-        return tuple(self._track(person, frame) for person in self._people if management.is_claimed(person))
 
     def _view(self, frame: Frame) -> RgbdView:
         geometry = DepthView.of(frame.calibrations.get(DEPTH), DEPTH)

@@ -14,10 +14,12 @@ from click.testing import CliRunner
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.cli import cli
+from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.watching.bodies import TOLD_S, Bodies
 from peopleboy.scenarios.watching.tell import sentence
 from peopleboy.scenarios.watching.thing_names import thing_names
 from peopleboy.scenarios.watching.true_events import TrueEvent, WhoIsWho, matching
+from peopleboy.scenarios.watching.watch_run import true_events
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.tracker.scene_model.scene import Change, Happening
 
@@ -59,6 +61,21 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def watch(*arguments: str) -> str:
     return CliRunner().invoke(cli, ["watch", *arguments], catch_exceptions=False).output
+
+
+@pytest.mark.slow
+def test_a_slower_camera_need_not_have_taken_an_image_when_something_happened(tmp_path: Path) -> None:
+    scenario = (
+        SCENARIO.replace("8.0", "4.0")
+        .replace("3.5, kind: vanish, by: anna", "1.1, kind: vanish")
+        .replace("tof}", "tof, rate_hz: 5}")
+    )
+    (tmp_path / "slower.yaml").write_text(scenario)
+    arguments = ["run", str(tmp_path / "slower.yaml"), "--frames", "--no-rrd", "--out", str(tmp_path / "run")]
+    CliRunner().invoke(cli, arguments, catch_exceptions=False)
+    watch(str(tmp_path / "run"))
+    (vanished,) = true_events(open_run(tmp_path / "run"))
+    assert (vanished.thing, vanished.from_m) == ("box", pytest.approx((3.6, 0.0)))
 
 
 @pytest.mark.slow

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -60,6 +61,29 @@ def test_what_is_human_by_something_else_must_have_some_of_the_shape(least: floa
     tracker = RgbdTracker(config, windows, rng, lambda *_: True)
     tracks = watch(tracker, (make_frame(k, {"anna": Block(0.0, 4.0)}) for k in range(3)))
     assert len(tracks[-1]) == told
+
+
+def test_while_a_slower_camera_takes_no_image_people_walk_on_and_the_robot_may_turn() -> None:
+    turn = Odometry(turn_rad=0.01)
+    told = []
+    tracker = make_tracker()
+    for k in range(45):
+        angle = 0.01 * k
+        # Anna walks to the right at 0.6 m/s, seen from a robot that turns left.
+        x, z = 0.04 * k - 0.9, 4.0
+        seen = Block(x * math.cos(angle) + z * math.sin(angle), z * math.cos(angle) - x * math.sin(angle))
+        frame = make_frame(k, {"anna": seen}, turn if k else Odometry())
+        told.append(tracker.update(frame if k % 3 == 0 else replace(frame, images={})))
+    assert {track.id for tracks in told for track in tracks} == {1}
+    assert [len(tracks) for tracks in told[3:]] == [1] * 42
+    for k in (42, 43, 44):
+        (track,) = told[k]
+        assert track.place is not None
+        ahead, left = track.place.position_m
+        x, z = 0.04 * k - 0.9, 4.0
+        angle = 0.01 * k
+        assert left == pytest.approx(-(x * math.cos(angle) + z * math.sin(angle)), abs=0.12), k
+        assert ahead == pytest.approx(z * math.cos(angle) - x * math.sin(angle) + 0.1, abs=0.15), k
 
 
 def test_people_who_cross_keep_their_numbers() -> None:
