@@ -82,7 +82,7 @@ def adopt(what: Adoption, report: Callable[[int, int], None]) -> RunScores:
         if what.record:
             path = part / "recording.rrd"
             recorder = stack.enter_context(Recorder(path, run.world, title=title, watched=(what.camera,)))
-        watchers = Watchers(run.world, title, recorder)
+        watchers = Watchers(run.world, title, recorder, faults=run.scenario.spec.faults)
         for played in replay(run):
             why, theirs = whys.get(played.frame, ""), tracks.get(played.frame, ())
             tick = replace(played, tracks=theirs, explanation=None, reason=why)

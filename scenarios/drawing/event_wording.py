@@ -12,6 +12,8 @@ def describe(line: LogLine) -> str:
     """Say what happened in a few words, such as "anna: total occlusion by ben starts"."""
     if line.kind == "mode":
         return f"{line.who}: {line.other}"
+    if line.kind.startswith("fault "):
+        return f"fault {line.who} {line.kind.removeprefix('fault ')}"
     if line.kind.startswith("thing "):
         return _describe_thing(line)
     if not line.other:

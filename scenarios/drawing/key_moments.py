@@ -24,6 +24,7 @@ _KINDS = {
     "start": 1,
     "detected": 3,
     "contact starts": 3,
+    "fault starts": 3,
     "most hidden": 4,
     "thing moved": 4,
     "thing appeared": 2,
@@ -177,7 +178,7 @@ class KeyMoments:
         for person in moment.people:
             if person.visible_px > 0 and person.distance_m < self._closest_m:
                 self._closest_m = person.distance_m
-                text = f"closest: {person.name}, {person.distance_m:.1f} m"
+                text = f"closest in view: {person.name}, {person.distance_m:.1f} m"
                 self._kept[("closest", 0)] = (moment, partial(_always, text))
 
     def _keep_spare(self, moment: Moment) -> None:

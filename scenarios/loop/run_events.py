@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Self
 
+from peopleboy.scenarios.files.schema.robot import FaultSpec
+from peopleboy.scenarios.loop.faults import active
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.track_events import TrackEvents
 from peopleboy.sim.truth.events import EventLog
@@ -19,9 +21,9 @@ class LogLine:
     Attributes:
         frame: 1, 2, ...
         time_s: [s] since the start.
-        kind: what happened; those of `peopleboy.sim.truth.events.Event`, `ThingEvent` and `TrackEvent`, and
-            "mode".
-        who: a person, a thing, "robot", or "track 3".
+        kind: what happened; those of `peopleboy.sim.truth.events.Event`, `ThingEvent` and `TrackEvent`,
+            "mode", "fault starts" and "fault ends".
+        who: a person, a thing, "robot", "track 3", or a kind of fault.
         other: who or what else takes part: an occluder, what is touched, who moves it, the new mode, or under
             which number a track goes on that is somebody known again.
         why: of a change of mode and of a lost track, the reason; of a re-identified one, since when.
@@ -57,9 +59,15 @@ class LogLine:
 
 
 class RunEvents:
-    """Collects the events of one tick after another."""
+    """Collects the events of one tick after another.
 
-    def __init__(self) -> None:
+    Args:
+        faults: that the scenario asks for.
+    """
+
+    def __init__(self, faults: Sequence[FaultSpec] = ()) -> None:
+        self._faults = faults
+        self._broken: tuple[str, ...] = ()
         self._world = EventLog()
         self._things = ThingLog()
         self._tracks = TrackEvents()
@@ -68,7 +76,8 @@ class RunEvents:
     def update(self, tick: Tick) -> list[LogLine]:
         """Return what is new at this tick."""
         time_s, width = tick.truth.time_s, tick.truth.camera.width
-        found = [(event.kind, event.person, event.other, "") for event in self._world.update(tick.truth)]
+        found = [(kind, fault, "", "") for kind, fault in self._of_faults(time_s)]
+        found += [(event.kind, event.person, event.other, "") for event in self._world.update(tick.truth)]
         for event in self._tracks.update(tick.tracks, time_s, width):
             by = "" if event.by is None else f"track {event.by}"
             found.append((event.kind, f"track {event.track}", by, event.why))
@@ -90,3 +99,9 @@ class RunEvents:
             )
             for event in self._things.update(tick.truth)
         ]
+
+    def _of_faults(self, time_s: float) -> Iterator[tuple[str, str]]:
+        """Yield which faults start and end."""
+        before, self._broken = self._broken, tuple(active(self._faults, time_s))
+        yield from (("fault starts", fault) for fault in self._broken if fault not in before)
+        yield from (("fault ends", fault) for fault in before if fault not in self._broken)

@@ -59,7 +59,7 @@ _JPEG_QUALITY = 45
 _POINTS = 10_000  # about, of a depth image
 _NAME_HEIGHT = 1.0 / 15.0  # [image heights] of names above boxes
 _GONE = 1e-4  # of its size is what is not there
-_GRAVE = ("contact", "lost")
+_GRAVE = ("contact", "lost", "fault starts")
 
 
 def recording_id(title: str) -> str:

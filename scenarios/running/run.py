@@ -133,11 +133,12 @@ def run(
                     is_lossless=options.lossless,
                 )
             )
-        watchers = Watchers(config, title, recorder, options.boxes, is_secret=scenario.drive is not None)
+        faults, is_secret = scenario.spec.faults, scenario.drive is not None
+        watchers = Watchers(config, title, recorder, options.boxes, faults=faults, is_secret=is_secret)
         frames = round(scenario.duration_s * config.control_hz)
-        stage = FaultySensors(world, scenario.spec.faults, config.robot.sonar.farthest_m)
+        stage = FaultySensors(world, faults, config.robot.sonar.farthest_m)
         checked = CheckedTracker(tracker, f"tracker {name!r}", config.robot.cameras)
-        eyes = FaultyTracker(checked, scenario.spec.faults)
+        eyes = FaultyTracker(checked, faults)
         for tick in closed_loop(stage, eyes, scenario.make_behaviour(), frames):
             events = watchers.update(tick)
             folder.write(tick, [event.to_json() for event in events])

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from peopleboy.scenarios.drawing.contact_sheet import ContactSheet
+from peopleboy.scenarios.files.schema.robot import FaultSpec
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine, RunEvents
 from peopleboy.scenarios.recording.recorder import Recorder
@@ -23,6 +25,7 @@ class Watchers:
         title: of the run.
         recorder: of it, if there is one.
         boxes: what the tracker's boxes are drawn round.
+        faults: that the scenario asks for.
         is_secret: whether nobody knows whom the robot goes after, as commands alone do not tell.
     """
 
@@ -33,12 +36,13 @@ class Watchers:
         recorder: Recorder | None,
         boxes: BoxKind = BoxKind.TORSO,
         *,
+        faults: Sequence[FaultSpec] = (),
         is_secret: bool = False,
     ) -> None:
         self.following = FollowingLog()
         self.corridor = CorridorLog()
         self.comfort = ComfortLog()
-        self._events = RunEvents()
+        self._events = RunEvents(faults)
         self._sheet = ContactSheet(title, config.robot)
         self._recorder = recorder
         self._boxes = boxes

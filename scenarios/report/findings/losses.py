@@ -127,7 +127,7 @@ def _loss(story: RunStory, number: int, end: int, steady: Ints) -> Loss:
         frame=end + 1,
         time_s=story.run.time_s(end + 1),
         owner="" if owner is None else owner.name,
-        why=f"{why}; {_confidence(story, number, end)}",
+        why=f"{why}{_during_faults(story, end)}; {_confidence(story, number, end)}",
         believed=_belief(story, number, end, owner),
         afterwards=afterwards,
         is_bad=is_bad,
@@ -196,6 +196,19 @@ def _whose(story: RunStory, number: int, end: int, own: Story | None) -> str:
     recent = owner.track[max(end - round(BEFORE_S * story.run.rate_hz), 0) : end]
     last = "" if number in recent else "last "
     return f" ({last}on {spoken(owner.name)}{' too' if owner is own else ''})"
+
+
+def _during_faults(story: RunStory, end: int) -> str:
+    """Name the faults that there were at index `end`; nothing if there were none."""
+    there: list[str] = []
+    for line in story.run.events:
+        if line.frame > end + 1:
+            break
+        if line.kind == "fault starts":
+            there.append(line.who)
+        elif line.kind == "fault ends":
+            there.remove(line.who)
+    return f", during the fault {' and '.join(there)}" if there else ""
 
 
 def _confidence(story: RunStory, number: int, end: int) -> str:

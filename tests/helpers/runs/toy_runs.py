@@ -5,7 +5,7 @@ from __future__ import annotations
 import atexit
 import json
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -14,6 +14,7 @@ from typing import Any
 from uuid import uuid4
 
 from peopleboy.scenarios.drawing.contact_sheet import ContactSheet
+from peopleboy.scenarios.files.schema.robot import FaultSpec
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import RunEvents
 from peopleboy.scenarios.run_folder.folder import RunFolder
@@ -124,6 +125,7 @@ def write_run(
     boxes: Callable[[int], Boxes] = steady,
     hidden: Hidden = never,
     scenario: Mapping[str, Any] | None = None,
+    faults: Sequence[FaultSpec] = (),
     **about: Any,
 ) -> Path:
     """Write a complete run and return its folder; `about` goes into run.json."""
@@ -135,15 +137,17 @@ def write_run(
         "rate_hz": 15,
     } | about
     played = {"name": "toy", "description": "Two people stand."} if scenario is None else dict(scenario)
-    shutil.copytree(_written(boxes, hidden, json.dumps(played), json.dumps(known)), folder)
+    shutil.copytree(_written(boxes, hidden, json.dumps(played), json.dumps(known), tuple(faults)), folder)
     return folder
 
 
 @cache
-def _written(boxes: Callable[[int], Boxes], hidden: Hidden, played: str, known: str) -> Path:
+def _written(
+    boxes: Callable[[int], Boxes], hidden: Hidden, played: str, known: str, faults: tuple[FaultSpec, ...]
+) -> Path:
     """Write a run once, which is a picture of a dozen tiles; most tests want one that another had, too."""
     folder = _made() / str(uuid4())
-    events, sheet = RunEvents(), ContactSheet("toy")
+    events, sheet = RunEvents(faults), ContactSheet("toy")
     folder.mkdir()
     with RunFolder(folder, json.loads(played), json.loads(known), RobotConfig().cameras, frames=False) as run:
         for frame in range(1, FRAMES + 1):

@@ -47,6 +47,12 @@ def test_nothing_is_touched_whatever_breaks(finished):
     assert following.collisions == 0, kind
 
 
+def test_the_log_says_when_something_breaks(finished):
+    kind, _, events, _ = finished
+    told = [(event["kind"], event["who"], event["time_s"]) for event in events if "fault" in event["kind"]]
+    assert told == [("fault starts", kind, pytest.approx(FROM_S))]
+
+
 def test_the_robot_brakes_at_once_without_images_or_tracker_and_rests(finished):
     kind, robot, events, _ = finished
     if kind not in ("camera_frozen", "tracker_raises"):
@@ -88,6 +94,9 @@ def test_a_robot_goes_on_when_the_images_come_back(tmp_path):
     scores = run(scenario, options, lambda *_: None)
     assert scores.following is not None
     assert scores.following.followed_to_end
+    lines = [json.loads(line) for line in (tmp_path / "run" / "events.jsonl").read_text().splitlines()]
+    told = [(line["kind"], line["time_s"]) for line in lines if line["who"] == "camera_frozen"]
+    assert told == [("fault starts", pytest.approx(5.0)), ("fault ends", pytest.approx(5.6, abs=0.1))]
 
 
 def test_faults_last_as_long_as_they_should():

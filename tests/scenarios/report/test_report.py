@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.schema.robot import FaultSpec
 from peopleboy.scenarios.report.charts.error_curves import curve, distance_edges, samples
 from peopleboy.scenarios.report.charts.stills import Origin, show_frames
 from peopleboy.scenarios.report.charts.timelines import (
@@ -181,6 +182,16 @@ def test_a_person_who_is_shown_again_for_a_moment_is_not_said_to_be_unfound(tmp_
     first, last = found_in(toy.write_run(tmp_path / "run", toy.again_for_a_moment)).losses
     assert (plain(first.afterwards), first.is_bad) == ("shown again after 0.7 s, same number", False)
     assert (plain(last.afterwards), last.is_bad) == ("Ben was not found again", True)
+
+
+def test_a_loss_during_a_fault_says_so(tmp_path: Path) -> None:
+    dark = FaultSpec(kind="camera_black", from_s=1.0, lasts_s=2.0)
+    during, after = (
+        found_in(toy.write_run(tmp_path / name, boxes, faults=[dark])).losses[0]
+        for name, boxes in (("during", toy.away_and_back), ("after", toy.until_75))
+    )
+    assert "during the fault camera_black; " in during.why
+    assert "fault" not in after.why
 
 
 def test_a_reason_is_true_of_its_moment_and_what_was_just_before_is_said_to_be(tmp_path: Path) -> None:
