@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from numbers import Integral
 
 from peopleboy.bad_input import BadInput
@@ -23,6 +23,7 @@ class CheckedBehaviour:
     def __init__(self, behaviour: Behaviour, who: str) -> None:
         self._behaviour = behaviour
         self._who = who
+        self._tracks: set[int] = set()  # that there were
         self.mode, self.reason, self.following = behaviour.mode, behaviour.reason, behaviour.following
 
     def command(self, percept: Percept) -> Command:
@@ -36,7 +37,8 @@ class CheckedBehaviour:
             command = self._behaviour.command(percept)
             self.mode, self.reason = self._behaviour.mode, self._behaviour.reason
             self.following = self._behaviour.following
-            for fault in _faults(command, self.mode, self.reason, self.following):
+            self._tracks.update(person.id for person in percept.people)
+            for fault in _faults(command, self.mode, self.reason, self.following, self._tracks):
                 raise BadInput(fault)
             return command
 
@@ -55,13 +57,16 @@ def make_own_behaviour(name: str) -> CheckedBehaviour:
         return CheckedBehaviour(behaviour, who)
 
 
-def _faults(command: object, mode: object, reason: object, following: object) -> Iterator[str]:
-    """Tell what is wrong with what a behaviour gave, and what would be right."""
+def _faults(
+    command: object, mode: object, reason: object, following: object, tracks: Set[int]
+) -> Iterator[str]:
+    """Tell what is wrong with what a behaviour gave, who was told of tracks, and what would be right."""
     if not isinstance(command, Command):
         yield f"command(percept) must give a Command, got {command!r}"
-    if not (isinstance(mode, str) and mode):
+    if not (isinstance(mode, str) and mode and mode.isprintable()):
         yield f"mode must be a word, got {mode!r}"
-    if not isinstance(reason, str):
-        yield f"reason must be text, got {reason!r}"
-    if not (following is None or isinstance(following, Integral)):
-        yield f"following must be None or the id of a person, got {following!r}"
+    if not (isinstance(reason, str) and reason.isprintable()):
+        yield f"reason must be text, on one line, got {reason!r}"
+    if not (following is None or (isinstance(following, Integral) and following in tracks)):
+        told = ", ".join(map(str, sorted(tracks))) or "none"
+        yield f"following must be None or the id of a track that there was, {told}, got {following!r}"

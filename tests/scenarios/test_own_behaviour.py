@@ -120,6 +120,11 @@ def test_it_is_compared_with_others_by_the_scenario_s_own_task(
             ("'anna'", "id"),
         ),
         ("setattr(self, 'mode', None) or Command(linear_m_s=0.0, angular_rad_s=0.0)", ("mode", "None")),
+        ("setattr(self, 'mode', 'a\\nb') or Command(linear_m_s=0.0, angular_rad_s=0.0)", ("mode", "word")),
+        (
+            "setattr(self, 'following', 999) or Command(linear_m_s=0.0, angular_rad_s=0.0)",
+            ("999", "the id of a track that there was, 1"),
+        ),
     ],
 )
 def test_a_wrong_value_is_told_in_a_line(
