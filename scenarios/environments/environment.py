@@ -115,6 +115,10 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         check_word("observation", observation, KINDS)
         check_word("render_mode", render_mode, (None, *self.metadata["render_modes"]))
         check_size(image_size)
+        if observation == "truth" and tracker is not None:
+            raise BadInput(f"tracker {tracker!r}: observation 'truth' has none; leave it out")
+        if not isinstance(normalise, bool):
+            raise BadInput(f"normalise {normalise!r} must be True or False")
         self._draws_worlds, self._physics = scenario is None, physics
         self.vary_by({} if randomise is None else randomise)
         first = self._moved(_random_episode(0) if scenario is None else load_scenario(scenario))

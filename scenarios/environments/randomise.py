@@ -58,6 +58,8 @@ def check_options(options: Mapping[str, Any], *, draws_worlds: bool = False) -> 
     Raises:
         BadInput: with the key, the value, and what would be right.
     """
+    if not isinstance(options, Mapping):
+        raise BadInput(f"options: must be a mapping of names to values, got {options!r}")
     for key, value in options.items():
         if key == WORLD and draws_worlds:
             world_of(options)
@@ -73,7 +75,9 @@ def check_options(options: Mapping[str, Any], *, draws_worlds: bool = False) -> 
         )
         if not is_fine or bounds[0] > bounds[1]:
             what = "a whole number" if key in _WHOLE else "a number"
-            raise BadInput(f"options: {key} {value!r} must be {what} or a pair, within {low:g} .. {high:g}")
+            raise BadInput(
+                f"options: {key} {value!r} must be {what} or a rising pair, within {low:g} .. {high:g}"
+            )
 
 
 def world_of(options: Mapping[str, Any]) -> Distribution | None:

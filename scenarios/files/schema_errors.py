@@ -82,7 +82,11 @@ def _explain_one(fault: Any, model: type[BaseModel]) -> BadInput:
         return BadInput(f"missing key {steps[-1]!r}", key=steps[:-1])
     if kind == "extra_forbidden":
         return BadInput(f"unknown key {steps[-1]!r}; {hint(str(steps[-1]), owner)}", key=steps[:-1])
+    if steps and steps[-1] == "[key]":  # pydantic's, of a key that is wrong itself
+        steps = steps[:-1]
     label = next((step for step in reversed(steps) if isinstance(step, str)), "value")
+    if "colours" in steps:
+        label = "colour"
     return BadInput(_what(kind, context, fault, label), key=steps)
 
 

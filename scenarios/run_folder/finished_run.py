@@ -154,6 +154,7 @@ def read_run(folder: Path) -> dict[str, Any]:
         BadInput: there is no run, or it is not complete.
     """
     path = folder / "run.json"
+    check_there(folder)
     try:
         about = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
@@ -208,14 +209,23 @@ def open_whole_runs(folders: Sequence[Path], *, are_named_apart: bool = True) ->
     return runs
 
 
+def check_there(folder: Path) -> None:
+    """Refuse a folder that there is not.
+
+    Raises:
+        BadInput: it is one.
+    """
+    if not folder.is_dir():
+        raise BadInput(f"{folder}: there is no such folder; give the folder of a finished run")
+
+
 def runs_in(folder: Path) -> list[Path]:
     """List the folders of runs that a folder stands for: itself, or those in it.
 
     Raises:
         BadInput: there is no such folder.
     """
-    if not folder.is_dir():
-        raise BadInput(f"{folder}: there is no such folder; give the folder of a finished run")
+    check_there(folder)
     inner = sorted(path.parent for path in folder.glob("*/run.json"))
     return inner if inner and not (folder / "run.json").exists() else [folder]
 

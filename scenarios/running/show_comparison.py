@@ -31,12 +31,13 @@ def show_comparison(scenario: str, runs: Mapping[Controller, Sequence[Figures]])
     """Print the table."""
     means = _means(runs)
     seeds = len(next(iter(runs.values())))
-    table = Table(title=f"{scenario}, {seeds} seeds: mean [95 % interval]", title_justify="left", box=None)
+    told = f"{seeds} seeds: mean [95 % interval]" if seeds > 1 else "one seed, which has no interval"
+    table = Table(title=f"{scenario}, {told}", title_justify="left", box=None)
     table.add_column("figure")
     for controller in means:
         table.add_column(str(controller), justify="right")
     for name in _names(means):
-        table.add_row(_label(name), *[_cell(of_one.get(name), name) for of_one in means.values()])
+        table.add_row(_label(name), *[_cell(of_one.get(name), name, seeds) for of_one in means.values()])
     Console(width=None if sys.stdout.isatty() else 44 + 30 * len(means)).print(table)
 
 
@@ -77,11 +78,11 @@ def _scale(name: str) -> float:
     return 100.0 if name in _SHARES else math.degrees(1.0) if name.endswith("_rad") else 1.0
 
 
-def _cell(interval: Interval | None, name: str) -> str:
+def _cell(interval: Interval | None, name: str, seeds: int) -> str:
     if interval is None or math.isnan(interval.mean):
         return "-"
     mean, low, high = (_scale(name) * value for value in (interval.mean, interval.low, interval.high))
-    return f"{mean:.2f} [{low:.2f}, {high:.2f}]"
+    return f"{mean:.2f} [{low:.2f}, {high:.2f}]" if seeds > 1 else f"{mean:.2f}"
 
 
 def _content(
@@ -119,7 +120,9 @@ def _draw(
     rows = max(math.ceil(len(names) / _COLUMNS), 1)
     figure = Figure(figsize=(3.6 * _COLUMNS, 0.8 + rows * (1.1 + 0.32 * len(runs))), layout="constrained")
     FigureCanvasAgg(figure)
-    figure.suptitle(f"{scenario}: every seed, and the mean with its 95 % interval")
+    seeds = len(next(iter(runs.values())))
+    told = "every seed, and the mean with its 95 % interval" if seeds > 1 else "one seed"
+    figure.suptitle(f"{scenario}: {told}")
     grid = figure.subplots(rows, _COLUMNS, squeeze=False)
     for axes, name in zip(grid.flat, names, strict=False):
         for row, controller in enumerate(runs):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from peopleboy.scenarios.run_folder.finished_run import cameras_of
@@ -66,9 +66,11 @@ def score_people(
     """
     truth, tracks = held
     if by.camera != THERMAL:
-        tracks = _at_images(folder, by.camera, tracks)
+        every = CONTROL_HZ // (cameras_of(folder)[by.camera].rate_hz or CONTROL_HZ)
+        tracks = tracks.take((tracks.frame - 1) % every == 0)
         scores = evaluate(truth, tracks, frames=frames, min_visible=min_visible)
-        return ScoredPeople(scores, by, notes_on(folder, by, truth, tracks))
+        images = replace(scores.counts, frames=len(range(0, frames, every)))
+        return ScoredPeople(replace(scores, counts=images), by, notes_on(folder, by, truth, tracks))
     robot = read_table(folder / "robot.parquet", ROBOT, POSE)
     people = read_table(folder / "truth.parquet", TRUTH, PEOPLE)
     beliefs = read_table(folder / "tracks.parquet", TRACKS, BELIEFS)
@@ -86,9 +88,3 @@ def score_people(
     if is_on_floor:
         return ScoredPeople(scores)
     return ScoredPeople(scores, by, notes_on(folder, by, truth, tracks))
-
-
-def _at_images(folder: Path, camera: str, tracks: TrackBoxes) -> TrackBoxes:
-    """Keep the boxes of frames in which a camera took an image."""
-    every = CONTROL_HZ // (cameras_of(folder)[camera].rate_hz or CONTROL_HZ)
-    return tracks.take((tracks.frame - 1) % every == 0)

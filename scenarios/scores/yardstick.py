@@ -24,6 +24,7 @@ from peopleboy.tracker.trackers import TRACKERS
 # trackers of torsos come to 0.45 of it in 210 runs, and to 0.52 if their ellipses are wide.
 _NEAR_OTHER: Final = 0.75
 _LEAST_APART: Final = 0.1  # of the widths' logarithms; else nobody can tell
+_WIDEST: Final = 2.0  # widths of whole people, than which no tracker's boxes are wider
 CALLED: Final = {BoxKind.TORSO: "torsos", BoxKind.WHOLE: "whole people"}
 
 
@@ -132,6 +133,11 @@ def _of_other_kind(folder: Path, by: Yardstick, truth: TrueBoxes, tracks: TrackB
         return ""
     if math.log(given / wide) / math.log(elsewhere / wide) < _NEAR_OTHER:
         return ""
+    if given > _WIDEST * max(wide, elsewhere):
+        return (
+            f"boxes are {given:.2f} as wide as high, and whole people {max(wide, elsewhere):.2f}; "
+            "they must be left, top, width and height, and no corners"
+        )
     return (
         f"boxes are {given:.2f} as wide as high, the truth's {CALLED[by.boxes]} {wide:.2f} and its "
         f"{CALLED[other]} {elsewhere:.2f}; --boxes {other} holds them against those"

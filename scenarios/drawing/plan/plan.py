@@ -59,6 +59,8 @@ def draw_plan(scenario: Scenario, seed: int, path: Path) -> None:
     _temperatures(figure, found)
     draw_legend(figure, _SIDE_IN, has_moves=bool(scenario.place.movers))
     with writing_to(path):
+        if not path.parent.exists():
+            path.parent.mkdir(parents=True)
         try:
             if not path.suffix:  # to which one would be put, unasked
                 raise ValueError("it has no ending")

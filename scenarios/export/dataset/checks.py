@@ -44,7 +44,7 @@ class Check:
 
 
 def check_set(folder: Path, runs: Sequence[Path], first: Scenario, options: RunOptions) -> list[Check]:
-    """Look at everything that can be looked at.
+    """Look at everything that can be looked at; at images where there are some.
 
     Args:
         folder: of the set, with its splits.
@@ -52,8 +52,10 @@ def check_set(folder: Path, runs: Sequence[Path], first: Scenario, options: RunO
         first: scenario of the first run, which is rendered again.
         options: how that was run.
     """
+    of_images = "every image is there and has its size, and none shows a plain surface"
+    images = [_each(of_images, runs, _check_images)] if options.frames else []
     return [
-        _each("every image is there and has its size, and none shows a plain surface", runs, _check_images),
+        *images,
         _each("of everybody, what is visible and what is hidden sum to one", runs, _check_shares),
         _each(
             "visible boxes lie inside whole boxes, to half a pixel, and inside the image", runs, _check_boxes
@@ -61,7 +63,7 @@ def check_set(folder: Path, runs: Sequence[Path], first: Scenario, options: RunO
         Check("no two runs have the same truth", tuple(_twins(runs))),
         Check("every run is in one split, and in one only", tuple(_check_splits(folder, runs))),
         Check(
-            "the first run, started again, gives the same images, boxes and tracks",
+            f"the first run, started again, gives the same {'images, ' * options.frames}boxes and tracks",
             tuple(_check_again(runs[0], first, options)),
         ),
     ]
@@ -73,8 +75,6 @@ def _each(what: str, runs: Sequence[Path], look: Callable[[Path], list[str]]) ->
 
 def _check_images(run: Path) -> list[str]:
     about = json.loads((run / "run.json").read_text(encoding="utf-8"))
-    if not about["images"]:
-        return []
     wrong = []
     for name, camera in cameras_of(run).items():
         every = about["rate_hz"] // (camera.rate_hz or about["rate_hz"])

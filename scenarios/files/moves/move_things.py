@@ -137,7 +137,8 @@ def _check_presence(action: ActionSpec, mover: Mover) -> None:
     is_there = mover.at(action.at_s).is_there
     if (action.kind == ActionKind.APPEAR) == is_there:
         now = "there already" if is_there else "not there"
-        raise BadInput(f"{action.kind!r}: {mover.name!r} is {now} at {action.at_s:g} s", key=("kind",))
+        told = "; with hidden_at_start: true it would not be" if is_there and not mover.actions else ""
+        raise BadInput(f"'{action.kind}': {mover.name!r} is {now} at {action.at_s:g} s{told}", key=("kind",))
 
 
 def _action(spec: ActionSpec, before: Stance) -> Action:

@@ -206,6 +206,8 @@ def test_what_does_not_fit_many_worlds_is_refused() -> None:
         PeopleBoyVectorEnv(0)
     with pytest.raises(BadInput, match="threads 0"):
         PeopleBoyVectorEnv(2, threads=0)
+    with pytest.raises(BadInput, match="threads 'a'"):
+        PeopleBoyVectorEnv(2, threads="a")  # type: ignore[arg-type]
     with pytest.raises(BadInput, match="autoreset_mode: gymnasium's own"):
         PeopleBoyVectorEnv(2, autoreset_mode=gymnasium.vector.AutoresetMode.SAME_STEP)
     with pytest.raises(BadInput, match="render_mode"):

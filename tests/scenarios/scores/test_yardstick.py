@@ -93,6 +93,21 @@ def test_perfect_boxes_of_whole_people_are_perfect_and_scored_so_again(
     assert told_in_report(out) == told_in_report(seen)
 
 
+@pytest.mark.slow
+def test_boxes_that_are_corners_are_said_to_be(seen: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = [line.split(",") for line in perfect(seen).read_text(encoding="utf-8").splitlines()]
+    corners = seen.parent / "corners.txt"
+    lines = []
+    for frame, number, left, top, width, height, *rest in rows:
+        right, bottom = float(left) + float(width), float(top) + float(height)
+        lines.append(",".join([frame, number, left, top, f"{right:.2f}", f"{bottom:.2f}", *rest]))
+    corners.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    out = seen.parent / "corners"
+    assert run_cli("adopt", seen, corners, "--name", "theirs", "--no-rrd", "--out", out) == 0
+    (note,) = figures(capsys, out)["notes"]
+    assert_names(note, "no corners", "left, top, width and height")
+
+
 def test_torsos_are_the_default_and_called_so_if_held_against_whole_people(
     seen: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
