@@ -11,6 +11,7 @@ import click
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.completion import complete_scenario
 from peopleboy.scenarios.commands.options import TRACKERS, WholeNumber, complete_trackers, workers_options
+from peopleboy.wording import counted
 
 FAILED = 1
 
@@ -88,8 +89,8 @@ def render(
             click.echo(f"       {failure}")
     content = done.statistics["all"].content
     click.echo(
-        f"{len(done.runs)} runs, {content['frames']} frames, {content['detections']} people to detect, "
-        f"{done.size_mb:.0f} MB"
+        f"{counted(len(done.runs), 'run')}, {counted(content['frames'], 'frame')}, "
+        f"{counted(content['detections'], 'box', 'boxes')} of people, {done.size_mb:.0f} MB"
     )
     if done.lacking:
         click.echo(done.lacking)
