@@ -76,8 +76,10 @@ def _is_echo(fault: Any, faults: Sequence[Any]) -> bool:
 
 
 def _explain_one(fault: Any, model: type[BaseModel]) -> BadInput:
-    steps, owner = _follow(fault["loc"], model)
+    steps, owner, kinds = _follow(fault["loc"], model)
     kind, context = fault["type"], fault.get("ctx", {})
+    if kind == "union_tag_not_found":
+        return BadInput(f"missing key 'kind'; choose from {', '.join(kinds)}", key=steps)
     if kind == "missing" and isinstance(steps[-1], str):
         return BadInput(f"missing key {steps[-1]!r}", key=steps[:-1])
     if kind == "extra_forbidden":
@@ -99,8 +101,6 @@ def _what(kind: str, context: Any, fault: Any, label: str) -> str:
         word = context.get("tag", fault["input"])
         what = context.get("discriminator", label).strip("'")
         return f"unknown {what} {word!r}; {hint(str(word), known)}"
-    if kind == "union_tag_not_found":
-        return "missing key 'kind'"
     if kind == "string_pattern_mismatch" and label in ("tracker", "behaviour") and ":" in fault["input"]:
         return f"{value} is a class of your own, which no file names; give --{label} {fault['input']} instead"
     if kind == "string_pattern_mismatch":
@@ -119,8 +119,8 @@ def _shown(value: Any) -> str:
     return text if len(text) <= 40 else f"{text[:37]}..."
 
 
-def _follow(loc: Sequence[str | int], model: type[BaseModel]) -> tuple[Key, list[str]]:
-    """Drop pydantic's tags of unions from a path, and list the keys that are known at its last step."""
+def _follow(loc: Sequence[str | int], model: type[BaseModel]) -> tuple[Key, list[str], list[str]]:
+    """Drop pydantic's tags of unions from a path, and list the keys and kinds that are known at its end."""
     steps: list[str | int] = []
     known: list[str] = []
     types: list[Any] = [model]
@@ -136,7 +136,8 @@ def _follow(loc: Sequence[str | int], model: type[BaseModel]) -> tuple[Key, list
             fields = [c.model_fields[step].annotation for c in models if step in c.model_fields]
             # A step that is no field is the key of a mapping, and what follows is inside its value.
             types = [inner for annotation in fields for inner in _inside(annotation)] if fields else types
-    return tuple(steps), known
+    kinds = sorted({tag for candidate in types if _is_model(candidate) and (tag := _tag(candidate))})
+    return tuple(steps), known, kinds
 
 
 def _is_model(candidate: Any) -> bool:

@@ -142,7 +142,7 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
     ),
     "camera without a kind": (
         lambda d: d["robot"].update(cameras={"rear": {"yaw_deg": 180.0}}),
-        ("robot.cameras.rear: missing key 'kind'",),
+        ("robot.cameras.rear: missing key 'kind'; choose from colour, depth, panorama, thermal",),
     ),
     "camera of an unknown kind": (
         camera(kind="termal"),
