@@ -13,8 +13,8 @@ unexport PYTHONDONTWRITEBYTECODE
 demo: $(INSTALLED)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
 
-# A file's tests in one process: what they share is made, and compiled, once. `make test THOROUGH=1` does
-# besides what tests do with a few with all: scenarios of the library, long films, whole studies.
+# A file's tests in one process: what they share is made, and compiled, once. `make test THOROUGH=1` runs the
+# slow ones, too, and does with all what tests do with a few: scenarios of the library, long films, whole studies.
 test: $(READY)
 	$(BIN)/python -m pytest -n 2 --dist loadfile $(if $(THOROUGH),-m 'not heavy and not install and not pages')
 
