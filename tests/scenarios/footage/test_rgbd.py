@@ -33,8 +33,6 @@ SCENE: dict[str, Any] = {
     ],
     "robot": {
         "at_m": [0.6, 0.0],
-        "behaviour": "scripted",
-        "commands": [],
         "tracker": "rgbd",
         "cameras": {
             "thermal": {"kind": "thermal", "width_px": 80, "height_px": 60},

@@ -8,7 +8,7 @@ EMPTY = {
     "description": "Nobody is in a room that is colder than the thermal camera's span.",
     "duration_s": 1.0,
     "place": {"kind": "room", "length_m": 14.0, "width_m": 7.0},
-    "robot": {"at_m": [1.0, 0.0], "behaviour": "scripted", "commands": []},
+    "robot": {"at_m": [1.0, 0.0]},
 }
 
 
