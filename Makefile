@@ -8,19 +8,17 @@ PIP := $(BIN)/uv pip install --quiet --python $(BIN)/python --constraint constra
 # Bytecode that is kept saves each of the processes that tests start some of its start.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-slow test-pages test-heavy test-install lint format bench peers rl pages docs dist docker clean
+.PHONY: demo test test-pages test-heavy test-install lint format bench peers rl pages docs dist docker clean
 
 demo: $(INSTALLED)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
 
-# A file's tests in one process: what they share is made, and compiled, once. `make test THOROUGH=1` runs the
-# slow ones, too, and does with all what tests do with a few: scenarios of the library, long films, whole studies.
+# A file's tests in one process: what they share is made, and compiled, once. `make test SLOW=1` runs whole runs,
+# lessons and reports, too, a second or more each; `make test THOROUGH=1` besides does with all what tests do with a
+# few: scenarios of the library, long films, whole studies.
+OTHERS_OUT := not heavy and not install and not pages
 test: $(READY)
-	$(BIN)/python -m pytest -n 2 --dist loadfile $(if $(THOROUGH),-m 'not heavy and not install and not pages')
-
-# Whole runs, lessons and reports, a second or more each.
-test-slow: $(READY)
-	$(BIN)/python -m pytest -n 2 --dist loadfile -m slow
+	$(BIN)/python -m pytest -n 2 --dist loadfile $(if $(THOROUGH),-m '$(OTHERS_OUT)',$(if $(SLOW),-m '$(OTHERS_OUT) and not thorough'))
 
 # All that the README, the tutorials and the pages on tasks tell their readers to type.
 test-pages: $(READY)
