@@ -53,7 +53,7 @@ def print_figures(title: str, runs: Mapping[str, Sequence[Figures]], console: Co
         table.add_column(name, justify="right")
     for figure, (words, _, unit) in FIGURES.items():
         cells = [
-            f"{found.mean:.2f} [{found.low:.2f}, {found.high:.2f}]"
+            f"{found.mean:.2f} [{found.low:.2f}, {found.high:.2f}]" if found.is_known else f"{found.mean:.2f}"
             for found in (of_one[figure] for of_one in summary(runs).values())
         ]
         table.add_row(f"{words}{', ' + unit if unit else ''}", *cells)

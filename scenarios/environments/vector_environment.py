@@ -50,7 +50,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
     }  # fmt: skip
 
     def __init__(self, num_envs: int = 1, *, threads: int | None = None, **settings: Any) -> None:
-        if not (isinstance(num_envs, int) and num_envs >= 1):
+        if not (isinstance(num_envs, int | np.integer) and num_envs >= 1):
             raise BadInput(f"num_envs {num_envs!r}: must be 1 or more")
         if settings.get("render_mode") is not None:
             raise BadInput("render_mode: many worlds draw no pictures; leave it out, or take one environment")
@@ -59,7 +59,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
                 f"{name}: gymnasium's own ways to put worlds together have that; "
                 "give vectorization_mode='sync' or 'async'"
             )
-        if threads is not None and not (isinstance(threads, int) and threads >= 1):
+        if threads is not None and not (isinstance(threads, int | np.integer) and threads >= 1):
             raise BadInput(
                 f"threads {threads!r}: must be 1 or more, or None for as many as there are processors"
             )

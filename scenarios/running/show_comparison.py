@@ -37,7 +37,7 @@ def show_comparison(scenario: str, runs: Mapping[Controller, Sequence[Figures]])
     for controller in means:
         table.add_column(str(controller), justify="right")
     for name in _names(means):
-        table.add_row(_label(name), *[_cell(of_one.get(name), name, seeds) for of_one in means.values()])
+        table.add_row(_label(name), *[_cell(of_one.get(name), name) for of_one in means.values()])
     Console(width=None if sys.stdout.isatty() else 44 + 30 * len(means)).print(table)
 
 
@@ -78,11 +78,11 @@ def _scale(name: str) -> float:
     return 100.0 if name in _SHARES else math.degrees(1.0) if name.endswith("_rad") else 1.0
 
 
-def _cell(interval: Interval | None, name: str, seeds: int) -> str:
+def _cell(interval: Interval | None, name: str) -> str:
     if interval is None or math.isnan(interval.mean):
         return "-"
     mean, low, high = (_scale(name) * value for value in (interval.mean, interval.low, interval.high))
-    return f"{mean:.2f} [{low:.2f}, {high:.2f}]" if seeds > 1 else f"{mean:.2f}"
+    return f"{mean:.2f} [{low:.2f}, {high:.2f}]" if interval.is_known else f"{mean:.2f}"
 
 
 def _content(
@@ -95,10 +95,7 @@ def _content(
         "controllers": {
             str(controller): {
                 "runs": [{k: _or_none(v) for k, v in figures.items()} for figures in of_one],
-                "mean": {
-                    name: [_or_none(value) for value in (i.mean, i.low, i.high)]
-                    for name, i in means[controller].items()
-                },
+                "mean": {name: interval.to_json() for name, interval in means[controller].items()},
             }
             for controller, of_one in runs.items()
         },

@@ -14,11 +14,23 @@ LEVEL = 0.95
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """A mean and where it lies with a confidence of 95 %; NaN where nothing was measured."""
+    """A mean and where it lies with a confidence of 95 %.
+
+    All are NaN where nothing was measured, and the ends where a single value was.
+    """
 
     mean: float
     low: float
     high: float
+
+    @property
+    def is_known(self) -> bool:
+        """Whether there are ends."""
+        return not math.isnan(self.low)
+
+    def to_json(self) -> list[float | None]:
+        """Give mean and ends, None for those that there are not."""
+        return [None if math.isnan(value) else value for value in (self.mean, self.low, self.high)]
 
 
 def bootstrap(values: Sequence[float], rng: np.random.Generator) -> Interval:
@@ -29,6 +41,8 @@ def bootstrap(values: Sequence[float], rng: np.random.Generator) -> Interval:
     known = np.array([value for value in values if not math.isnan(value)])
     if known.size == 0:
         return Interval(math.nan, math.nan, math.nan)
+    if known.size == 1:
+        return Interval(float(known[0]), math.nan, math.nan)
     means = known[rng.integers(0, known.size, (DRAWS, known.size))].mean(axis=1)
     low, high = np.quantile(means, [(1.0 - LEVEL) / 2.0, (1.0 + LEVEL) / 2.0])
     return Interval(float(known.mean()), float(low), float(high))

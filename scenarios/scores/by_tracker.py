@@ -111,8 +111,7 @@ def figures_of_all(groups: Groups) -> dict[str, Any]:
                 "from": one.other,
                 "pairs": one.pairs,
                 "figures": {
-                    name: None if math.isnan(i.mean) else [i.mean, i.low, i.high]
-                    for name, i in one.figures.items()
+                    name: None if math.isnan(i.mean) else i.to_json() for name, i in one.figures.items()
                 },
             }
             for one in differences(groups)

@@ -99,7 +99,7 @@ def _print_beside(groups: Groups, who: str) -> None:
         if not any(figure.is_told_by(whole) for whole in wholes):
             continue
         values = [_number(figure.of(whole), figure.unit) for whole in wholes]
-        apart = [_interval(one.figures[figure.name], figure.unit, one.pairs) for one in compared]
+        apart = [_interval(one.figures[figure.name], figure.unit) for one in compared]
         table.add_row(figure.name, *values, *apart)
     console = Console(width=None if sys.stdout.isatty() else 30 + 30 * (len(wholes) + len(compared)))
     console.print(table)
@@ -125,11 +125,11 @@ def _by_what(groups: Groups) -> str:
     return f" Boxes are held by their own truth: {'; '.join(told)}."
 
 
-def _interval(interval: Interval, unit: str, pairs: int) -> str:
+def _interval(interval: Interval, unit: str) -> str:
     if math.isnan(interval.mean):
         return "-"
     mean, low, high = (f"{value:+.2f}" for value in (interval.mean, interval.low, interval.high))
-    return f"{mean} {unit}".rstrip() + (f" [{low}, {high}]" if pairs > 1 else "")
+    return f"{mean} {unit}".rstrip() + (f" [{low}, {high}]" if interval.is_known else "")
 
 
 def _single_person(scores: Scores) -> str:

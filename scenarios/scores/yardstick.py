@@ -122,22 +122,21 @@ def notes_on(folder: Path, by: Yardstick, truth: TrueBoxes, tracks: TrackBoxes) 
 
 
 def _of_other_kind(folder: Path, by: Yardstick, truth: TrueBoxes, tracks: TrackBoxes) -> str:
-    """Say so if boxes are nearly as wide as the truth's of the other kind, in the median."""
+    """Say so if boxes are wider than any people, or nearly as wide as the truth's of the other kind."""
     other = BoxKind.TORSO if by.boxes is BoxKind.WHOLE else BoxKind.WHOLE
     there = true_boxes(*truth_files(folder, by.camera), other)
     given, wide, elsewhere = (width_per_height(rows) for rows in (tracks, truth, there))
-    if (
-        not all(one > 0.0 for one in (given, wide, elsewhere))
-        or abs(math.log(elsewhere / wide)) < _LEAST_APART
-    ):
-        return ""
-    if math.log(given / wide) / math.log(elsewhere / wide) < _NEAR_OTHER:
+    if not all(one > 0.0 for one in (given, wide, elsewhere)):
         return ""
     if given > _WIDEST * max(wide, elsewhere):
         return (
             f"boxes are {given:.2f} as wide as high, and whole people {max(wide, elsewhere):.2f}; "
             "they must be left, top, width and height, and no corners"
         )
+    if abs(math.log(elsewhere / wide)) < _LEAST_APART:
+        return ""
+    if math.log(given / wide) / math.log(elsewhere / wide) < _NEAR_OTHER:
+        return ""
     return (
         f"boxes are {given:.2f} as wide as high, the truth's {CALLED[by.boxes]} {wide:.2f} and its "
         f"{CALLED[other]} {elsewhere:.2f}; --boxes {other} holds them against those"

@@ -200,14 +200,14 @@ def _whose(story: RunStory, number: int, end: int, own: Story | None) -> str:
 
 def _during_faults(story: RunStory, end: int) -> str:
     """Name the faults that there were at index `end`; nothing if there were none."""
-    there: list[str] = []
+    there: dict[str, None] = {}
     for line in story.run.events:
         if line.frame > end + 1:
             break
         if line.kind == "fault starts":
-            there.append(line.who)
+            there[line.who] = None
         elif line.kind == "fault ends":
-            there.remove(line.who)
+            there.pop(line.who, None)
     return f", during the fault {' and '.join(there)}" if there else ""
 
 

@@ -94,7 +94,10 @@ def test_perfect_boxes_of_whole_people_are_perfect_and_scored_so_again(
 
 
 @pytest.mark.slow
-def test_boxes_that_are_corners_are_said_to_be(seen: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize("kind", ["torso", "whole"])
+def test_boxes_that_are_corners_are_said_to_be(
+    kind: str, seen: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     rows = [line.split(",") for line in perfect(seen).read_text(encoding="utf-8").splitlines()]
     corners = seen.parent / "corners.txt"
     lines = []
@@ -102,8 +105,9 @@ def test_boxes_that_are_corners_are_said_to_be(seen: Path, capsys: pytest.Captur
         right, bottom = float(left) + float(width), float(top) + float(height)
         lines.append(",".join([frame, number, left, top, f"{right:.2f}", f"{bottom:.2f}", *rest]))
     corners.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    out = seen.parent / "corners"
-    assert run_cli("adopt", seen, corners, "--name", "theirs", "--no-rrd", "--out", out) == 0
+    out = seen.parent / f"corners_{kind}"
+    options = ("--name", "theirs", "--boxes", kind, "--no-rrd", "--out", out)
+    assert run_cli("adopt", seen, corners, *options) == 0
     (note,) = figures(capsys, out)["notes"]
     assert_names(note, "no corners", "left, top, width and height")
 
