@@ -6,7 +6,7 @@ from enum import Enum, auto
 from typing import Final
 
 from peopleboy.tracker.by_detection.config import ByDetectionConfig
-from peopleboy.tracker.by_detection.finder import ThermalFinder
+from peopleboy.tracker.by_detection.looking.finder import ThermalFinder
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, WEAKEST, Grey, PeopleDetector, look
 from peopleboy.tracker.proposals.looks.second_look import look_again, shipped_network
 from peopleboy.tracker.proposals.model import shipped_model

@@ -47,12 +47,16 @@ def _without_revision(old: RecognitionConfig) -> RecognitionConfig:
     return replace(old, parted_s=math.inf, gone_s=math.inf)
 
 
-_EVERYWHERE: Final = replace(_ALL, existence=replace(_ALL.existence, soon_s=0.0))
+_EVERYBODY: Final = replace(_ALL, gaze=replace(_ALL.gaze, look_s=0.0))
+_OFTEN: Final = replace(_EVERYBODY, gaze=replace(_EVERYBODY.gaze, settled_s=_ALL.gaze.unsettled_s))
+_EVERYWHERE: Final = replace(_ALL, gaze=replace(_ALL.gaze, unsettled_s=0.0, settled_s=0.0))
 
 VARIANTS: Final[Mapping[str, Variant]] = {
     "as it is": Variant(),
     "nothing is known of the cameras": Variant(is_calibrated=False),
     "everybody is 1.72 m tall": Variant(replace(_ALL, path=replace(_ALL.path, build=1e-3, posture=0.0))),
+    "the detector looks at everybody in each image": Variant(_EVERYBODY),
+    "and every third image is searched everywhere": Variant(_OFTEN),
     "every image is searched everywhere": Variant(_EVERYWHERE),
     "proposed by the thermal image alone": Variant(stage=Stage.CLOSER_LOOK),
     "and without the closer look": Variant(stage=Stage.SECOND_LOOK),

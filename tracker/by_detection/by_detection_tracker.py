@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -14,12 +14,14 @@ from peopleboy.tracker.boxes import intersection, iou
 from peopleboy.tracker.by_detection.config import (
     ByDetectionConfig,
     ExistenceConfig,
+    GazeConfig,
     MatchingConfig,
     RecognitionConfig,
 )
 from peopleboy.tracker.by_detection.explanation import DetectionExplanation
-from peopleboy.tracker.by_detection.finder import Finder, PeopleFinder
 from peopleboy.tracker.by_detection.identities import known_again, resolve
+from peopleboy.tracker.by_detection.looking.finder import Finder, PeopleFinder
+from peopleboy.tracker.by_detection.looking.gaze import Gaze
 from peopleboy.tracker.by_detection.matching import matched
 from peopleboy.tracker.by_detection.overlaps import CLEAR, beside, hidden_by, shared
 from peopleboy.tracker.by_detection.paths import (
@@ -31,6 +33,7 @@ from peopleboy.tracker.by_detection.paths import (
     corrected,
     distances,
 )
+from peopleboy.tracker.by_detection.portrait import Grey, Portrait
 from peopleboy.tracker.by_detection.proposed import Proposed
 from peopleboy.tracker.by_detection.target import Finding, Target
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
@@ -54,6 +57,7 @@ class _Instant(NamedTuple):
     dt_s: float
     view: Viewpoint
     outline: Floats
+    gaze: GazeConfig
     existence: ExistenceConfig
     matching: MatchingConfig
     identity: RecognitionConfig
@@ -74,7 +78,7 @@ class ByDetectionTracker:
         self._targets: list[Target] = []
         self._paths = NOBODY
         self._last_s: float | None = None
-        self._everywhere_s = -math.inf
+        self._gaze = Gaze()
         self._born = 0
         self._view: tuple[Calibration | None, tuple[int, int], Viewpoint] | None = None
 
@@ -101,17 +105,18 @@ class ByDetectionTracker:
         rows, columns = frame.grey(THERMAL).shape
         view = self._viewpoint(frame.calibrations.get(THERMAL), (rows, columns))
         outline = np.array([-0.5, -0.5, columns, rows])
-        before_s = self._last_s
         now = _Instant(frame.time_s, self._time_step(frame.time_s), view, outline, *self._beliefs(view))
         self._carry_on(now.dt_s, frame.odometry or _STANDING)
         expected = self._boxes(view)
-        alone = self._looked_for(expected, before_s, now)
-        seen = self._find(frame, alone)
+        aim = self._gaze.aim(frame.grey(THERMAL), self._targets, expected, now.time_s, now.gaze)
+        seen = self._find(frame, aim.alone)
         seen = seen._replace(score=now.existence.trust * seen.score + now.existence.lasting)
-        proposed = Proposed.of(frame, seen, view)
-        found = self._matched(expected, proposed, now)
+        proposed = Proposed.of(frame, aim.with_followed(seen, self._targets), view)
+        followed = {row: len(seen.box) + place for place, row in enumerate(aim.followed)}
+        found = self._matched(expected, proposed, followed, now)
         self._take_in(found, expected, proposed, now)
-        if alone is None:
+        self._portray(frame.grey(THERMAL), found.items() - followed.items(), proposed, now)
+        if aim.alone is None:
             self._begin(found, proposed, now)
         if self._introduced is not None:
             self._meet(np.array([self._introduced]), frame, now)
@@ -136,32 +141,24 @@ class ByDetectionTracker:
     def _carry_on(self, dt_s: float, moved: Odometry) -> None:
         self._paths = advanced(self._paths, dt_s, moved, self._config.path)
 
-    def _looked_for(self, expected: Floats, before_s: float | None, now: _Instant) -> Proposals | None:
-        """Give who was seen in the last image, if they alone are looked for in this one."""
-        if now.time_s - self._everywhere_s > now.existence.soon_s:
-            self._everywhere_s = now.time_s
-            return None
-        was_seen = np.array([target.seen_s == before_s for target in self._targets], bool)
-        rows = np.flatnonzero(was_seen & (intersection(expected, now.outline) > 0.0))
-        trees = np.array([self._targets[row].trees for row in rows.tolist()], np.float64)
-        alone = Proposals.of_trees(expected[rows], trees)
-        return alone.taken(np.argsort(-trees, kind="stable"))
-
     def _told(self) -> NDArray[np.bool_]:
         return np.array([target.is_told for target in self._targets], np.bool_)
 
     def _boxes(self, view: Viewpoint) -> Floats:
         return boxes_of(self._paths, view, np.array([target.ratio for target in self._targets]))
 
-    def _matched(self, expected: Floats, proposed: Proposed, now: _Instant) -> dict[int, int]:
-        if not self._targets or len(proposed) == 0:
-            return {}
+    def _matched(
+        self, expected: Floats, proposed: Proposed, followed: dict[int, int], now: _Instant
+    ) -> dict[int, int]:
+        if not self._targets or len(proposed) == len(followed):
+            return followed
         return matched(
             self._targets,
             distances(self._paths, proposed.boxes, now.view, self._config.path),
             iou(expected[:, None], proposed.boxes[None]),
             *proposed.likeness(self._targets),
             proposed.scores,
+            followed,
             now.time_s,
             now.matching,
         )
@@ -191,6 +188,15 @@ class ByDetectionTracker:
             rows = np.array(sorted(found))
             boxes = proposed.boxes[[found[row] for row in rows]]
             self._correct(rows, boxes, was_lost[rows], now.view)
+
+    def _portray(self, grey: Grey, looked: Set[tuple[int, int]], proposed: Proposed, now: _Instant) -> None:
+        """Keep what those look like at whom the detector looked."""
+        if now.view.floor_m is None:
+            return  # there it looks at everybody in each image
+        for row, column in looked:
+            target = self._targets[row]
+            target.looked_s, target.score = now.time_s, float(proposed.scores[column])
+            target.portrait = Portrait.of(grey, proposed.boxes[column])
 
     def _correct(
         self,
@@ -279,11 +285,18 @@ class ByDetectionTracker:
         elif not target.is_told:
             self._tell(target, now.time_s, now.existence)
 
-    def _beliefs(self, view: Viewpoint) -> tuple[ExistenceConfig, MatchingConfig, RecognitionConfig]:
+    def _beliefs(
+        self, view: Viewpoint
+    ) -> tuple[GazeConfig, ExistenceConfig, MatchingConfig, RecognitionConfig]:
         config = self._config
         if view.floor_m is None:
-            return config.existence_uncalibrated, config.matching_uncalibrated, config.identity_uncalibrated
-        return config.existence, config.matching, config.identity
+            return (
+                config.gaze_uncalibrated,
+                config.existence_uncalibrated,
+                config.matching_uncalibrated,
+                config.identity_uncalibrated,
+            )
+        return config.gaze, config.existence, config.matching, config.identity
 
     def _tell(self, target: Target, time_s: float, config: ExistenceConfig) -> None:
         target.told_s = time_s

@@ -38,6 +38,28 @@ class PathConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class GazeConfig:
+    """Where an image is looked at, and how closely.
+
+    Attributes:
+        unsettled_s: as long as it is open who is there, images that come so soon after one that was searched
+            everywhere are looked at where people are expected who were seen just before, and nowhere else: of
+            15 images a second two of three.
+        settled_s: the same while whoever is known is a person, and was just seen: five of six.
+        lost_s: for how long it is open where somebody is who was not found.
+        look_s: of who stands apart, images that come so soon after the detector's networks looked there are
+            only compared with a portrait of then.
+        alike: least correlation with it.
+    """
+
+    unsettled_s: float = 0.14
+    settled_s: float = 0.34
+    lost_s: float = 1.0
+    look_s: float = 0.19
+    alike: float = 0.6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class MatchingConfig:
     """What it costs to take a proposal for a person.
 
@@ -89,8 +111,6 @@ class ExistenceConfig:
     """When somebody is believed to be there, by the log odds that add up.
 
     Attributes:
-        soon_s: images that come so soon after one that was searched everywhere are searched where those are
-            expected who were seen just before, and nowhere else: of 15 images a second two of three.
         weakest: proposals of a lower score are not looked at.
         trust: what a unit of the others counts: of cameras unlike those that taught it the detector is too
             sure.
@@ -121,7 +141,6 @@ class ExistenceConfig:
         brief_forget_s: who was hardly seen is forgotten sooner.
     """
 
-    soon_s: float = 0.14
     weakest: float = -2.0
     trust: float = 0.8
     lasting: float = -0.2
@@ -153,6 +172,7 @@ class BothCamerasConfig:
 
     Attributes:
         every_s: how often it looks there, at the most.
+        beside_s: the same while the thermal image shows somebody.
         alone_every_s: the same while colours show somebody whom the thermal image does not.
         believed: share of its log odds that is believed.
         same: IoU from which on what both cameras show is one person.
@@ -161,6 +181,7 @@ class BothCamerasConfig:
     """
 
     every_s: float = 0.79
+    beside_s: float = 1.59
     alone_every_s: float = 0.19
     believed: float = 0.85
     same: float = 0.45
@@ -174,9 +195,11 @@ class ByDetectionConfig:
 
     Attributes:
         path: how people move.
+        gaze: where images are looked at.
         matching: what it costs to take a proposal for a person.
         existence: when somebody is believed to be there.
         identity: when people turn out to be others.
+        gaze_uncalibrated: where images are looked at where nothing is known of the camera: everywhere.
         existence_uncalibrated: when somebody is, where nothing is known of the camera: neither does the
             detector know images like its, nor is anybody known to stand on the floor.
         matching_uncalibrated: what it costs to take a proposal for a person there, where no colours tell
@@ -186,12 +209,13 @@ class ByDetectionConfig:
     """
 
     path: PathConfig = field(default_factory=PathConfig)
+    gaze: GazeConfig = field(default_factory=GazeConfig)
     matching: MatchingConfig = field(default_factory=MatchingConfig)
     existence: ExistenceConfig = field(default_factory=ExistenceConfig)
     identity: RecognitionConfig = field(default_factory=RecognitionConfig)
+    gaze_uncalibrated: GazeConfig = field(default_factory=lambda: GazeConfig(unsettled_s=0.0, settled_s=0.0))
     existence_uncalibrated: ExistenceConfig = field(
         default_factory=lambda: ExistenceConfig(
-            soon_s=0.0,
             birth=0.5,
             sightings=4,
             at_once=math.inf,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -25,6 +25,7 @@ def matched(
     likeness: Floats,
     is_coloured: NDArray[np.bool_],
     score: Floats,
+    known: Mapping[int, int],
     time_s: float,
     config: MatchingConfig,
 ) -> dict[int, int]:
@@ -37,6 +38,7 @@ def matched(
         likeness: (K, M) of looks, -1 to 1.
         is_coloured: (K, M) whether that is by colours, which tell somebody who was lost wherever he is.
         score: (M,) of proposals.
+        known: whose proposals are known.
         time_s: now.
         config: what things cost.
     """
@@ -52,9 +54,9 @@ def matched(
     )
     cost[(distance > config.gate) | (cost > config.highest)] = _NEVER
     cost[is_lost & ~np.where(is_coloured, is_same, likeness > config.looks_of_lost)] = _NEVER
-    found: dict[int, int] = {}
+    found = dict(known)
     for rank in (_SEEN, _UNTOLD, _LOST):
-        rows = np.flatnonzero(ranks == rank)
+        rows = np.array([i for i in np.flatnonzero(ranks == rank) if i not in known], int)
         columns = np.array([j for j in range(len(score)) if j not in found.values()], int)
         if len(rows) and len(columns):
             some = cost[np.ix_(rows, columns)]

@@ -11,6 +11,7 @@ import numpy as np
 from peopleboy.tracker.by_detection.colours import FEATURES, Colours, alike, blended
 from peopleboy.tracker.by_detection.config import ExistenceConfig
 from peopleboy.tracker.by_detection.looks import Pattern
+from peopleboy.tracker.by_detection.portrait import Portrait
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.track import Status
 
@@ -46,6 +47,9 @@ class Target:
         shown: (4,) its box in the image in which it was last seen [px].
         watched_s: for how long it was seen in all.
         trees: log odds by the detector's trees alone, when it was last found among all.
+        score: log odds of the proposal when the detector last found it.
+        looked_s: when that was.
+        portrait: what it looked like then.
         log_odds: that it is a person.
         surest: most that a single image said.
         id: 0 as long as it is not told.
@@ -65,6 +69,9 @@ class Target:
     shown: Floats
     watched_s: float = 0.0
     trees: float = 0.0
+    score: float = 0.0
+    looked_s: float = -math.inf
+    portrait: Portrait | None = None
     log_odds: float = 0.0
     surest: float = -math.inf
     id: int = 0

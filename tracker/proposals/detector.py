@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +12,7 @@ from peopleboy.tracker.proposals.channels import Memory
 from peopleboy.tracker.proposals.looks.closer_look import CloserLook, look_closer, shipped_closer_look
 from peopleboy.tracker.proposals.looks.second_look import SecondLook, look_again, shipped_network
 from peopleboy.tracker.proposals.model import PeopleModel, shipped_model
-from peopleboy.tracker.proposals.motion import change, shifted, turned
+from peopleboy.tracker.proposals.past_images import PastImages
 from peopleboy.tracker.proposals.patches import summed
 from peopleboy.tracker.proposals.pyramid import levels
 from peopleboy.tracker.proposals.suppression import Proposals, suppress
@@ -22,23 +21,11 @@ from peopleboy.tracker.thermal.mount import Mount
 
 Grey = NDArray[np.uint8]
 
-EARLIER_S: Final = 0.2
-"""Age of the image that the present one is compared with."""
-
 SMALLEST_PX: Final = 24.0
 """Height of the smallest people who are looked for."""
 
 WEAKEST: Final = -3.5
 """Score of what trees propose from which on it is looked at again."""
-
-_OLDEST_S: Final = 2.5 * EARLIER_S
-
-
-class _Past(NamedTuple):
-    grey: Grey
-    time_s: float
-    heading_rad: float
-    is_known: bool  # how the robot turned since the image before
 
 
 class PeopleDetector:
@@ -67,7 +54,7 @@ class PeopleDetector:
         self._closer_look = shipped_closer_look() if closer_look is None else closer_look
         self._smallest_px = smallest_px
         self._least_score = least_score
-        self._past: deque[_Past] = deque()
+        self._past = PastImages()
         self._memory = Memory()
 
     def update(
@@ -88,7 +75,10 @@ class PeopleDetector:
             expected: who alone is looked for, by what trees said of them when they were found; None for
                 whoever is there.
         """
-        return self.found(grey, self._change(grey, time_s, odometry, mount), mount, expected)
+        self._past.keep(grey, time_s, odometry)
+        if expected is not None and len(expected.box) == 0:
+            return expected
+        return self.found(grey, self._past.change(mount), mount, expected)
 
     def found(
         self, grey: Grey, change: Grey, mount: Mount | None, expected: Proposals | None = None
@@ -99,26 +89,6 @@ class PeopleDetector:
             first = look(self._model, grey, change, mount, self._smallest_px, WEAKEST, self._memory)
         found = look_again(self._second_look, grey, change, first, mount, self._least_score)
         return look_closer(self._closer_look, grey, change, found, mount)
-
-    def _change(self, grey: Grey, time_s: float, odometry: Odometry | None, mount: Mount | None) -> Grey:
-        """Compare an image with the one of about 0.2 s ago, and keep it for later ones."""
-        past = self._past
-        if past and (past[-1].time_s >= time_s or past[-1].grey.shape != grey.shape):
-            past.clear()
-        heading = past[-1].heading_rad if past else 0.0
-        turn_rad = odometry.turn_rad if odometry is not None else 0.0
-        now = _Past(grey.copy(), time_s, heading + turn_rad, odometry is not None)
-        past.append(now)
-        while now.time_s - past[0].time_s > _OLDEST_S:
-            past.popleft()
-        earlier = [one for one in past if one is not now]
-        if not earlier:
-            return np.zeros_like(grey)
-        before = min(earlier, key=lambda one: abs(now.time_s - one.time_s - EARLIER_S))
-        since = [one for one in past if one.time_s > before.time_s]
-        if mount is not None and all(one.is_known for one in since):
-            return change(before.grey, grey, turned(mount, grey.shape, now.heading_rad - before.heading_rad))
-        return change(before.grey, grey, shifted(before.grey, grey))
 
 
 def look(

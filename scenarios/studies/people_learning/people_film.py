@@ -17,8 +17,8 @@ from peopleboy.scenarios.studies.blind_drive import blind_drive
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.frame import THERMAL
-from peopleboy.tracker.proposals.detector import EARLIER_S
 from peopleboy.tracker.proposals.motion import change, turned
+from peopleboy.tracker.proposals.past_images import EARLIER_S
 from peopleboy.tracker.thermal.mount import Mount, mount_of
 
 Floats = NDArray[np.float64]

@@ -7,10 +7,8 @@ from peopleboy.scenarios.studies.people_learning.judge_detector import judge_det
 from peopleboy.scenarios.studies.people_learning.people_film import film_upright
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, PeopleDetector, look
 from peopleboy.tracker.proposals.model import shipped_model
-from peopleboy.tracker.thermal.mount import Mount
 
 Grey = NDArray[np.uint8]
 
@@ -76,42 +74,3 @@ def test_scores_fall_and_nobody_below_the_least_is_told(shots: list[PeopleShot])
     assert (np.diff(found.score) <= 0.0).all()
     assert (found.score >= 0.5).all()
     assert len(PeopleDetector(least_score=np.inf).update(image, 0.0).score) == 0
-
-
-def plain(value: int) -> Grey:
-    return np.full((120, 160), value, np.uint8)
-
-
-def test_the_image_of_about_a_fifth_of_a_second_ago_tells_what_moves() -> None:
-    detector, odometry, mount = PeopleDetector(), Odometry(), Mount(59.5, 150.0, 1.2)
-    changes = [detector._change(plain(10 * k), k / 15.0, odometry, mount).max() for k in range(8)]
-    assert changes == [0, 10, 20, 30, 30, 30, 30, 30]
-
-
-def test_what_is_older_than_twice_that_tells_nothing() -> None:
-    detector = PeopleDetector()
-    detector._change(plain(0), 0.0, None, None)
-    assert not detector._change(plain(90), 1.0, None, None).any()
-
-
-def test_time_that_goes_back_and_an_image_of_another_size_begin_anew() -> None:
-    detector = PeopleDetector()
-    for k in range(3):
-        detector._change(plain(0), 5.0 + k / 15.0, None, None)
-    assert not detector._change(plain(90), 0.0, None, None).any()
-    assert not detector._change(np.full((60, 80), 90, np.uint8), 0.1, None, None).any()
-
-
-def test_the_turn_of_a_robot_with_odometry_is_no_motion() -> None:
-    rng, mount = np.random.default_rng(0), Mount(59.5, 150.0, 1.2)
-    wide = np.kron(rng.integers(0, 256, (30, 60)), np.ones((4, 4))).astype(np.uint8)
-    step = Odometry(turn_rad=4.0 / 150.0)  # 4 px in the middle of the image
-    known = PeopleDetector()
-    for k in range(4):
-        start = 40 - 4 * k
-        change = known._change(wide[:, start : start + 160].copy(), k / 15.0, step, mount)
-    still = PeopleDetector()
-    for k in range(4):
-        start = 40 - 4 * k
-        other = still._change(wide[:, start : start + 160].copy(), k / 15.0, Odometry(), mount)
-    assert change[20:100, 40:120].mean() < 0.5 * other[20:100, 40:120].mean()

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from peopleboy.tracker.by_detection.colour_finder import ColourFinder
 from peopleboy.tracker.by_detection.config import ByDetectionConfig
+from peopleboy.tracker.by_detection.looking.colour_finder import ColourFinder
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import Proposals

@@ -46,9 +46,13 @@ class ColourFinder:
         if not (isinstance(here, PinholeCalibration) and isinstance(there, PinholeCalibration)):
             return thermal
         both = seen_by_both(thermal, self._found(frame, here, there), self._config)
-        is_alone = len(both.score) > len(thermal.score)
-        self._pause_s = self._config.alone_every_s if is_alone else self._config.every_s
+        self._pause_s = self._pause_after(thermal, both)
         return both
+
+    def _pause_after(self, thermal: Proposals, both: Proposals) -> float:
+        if len(both.score) > len(thermal.score):
+            return self._config.alone_every_s
+        return self._config.beside_s if (thermal.score > 0.0).any() else self._config.every_s
 
     def _found(self, frame: Frame, here: PinholeCalibration, there: PinholeCalibration) -> Proposals:
         """Look for people in the colour image, and carry them over to the thermal one."""

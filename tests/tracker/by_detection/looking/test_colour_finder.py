@@ -14,10 +14,10 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
-from peopleboy.tracker.by_detection.colour_finder import ColourFinder, seen_by_both
 from peopleboy.tracker.by_detection.config import BothCamerasConfig, ByDetectionConfig
-from peopleboy.tracker.by_detection.finder import ThermalFinder
-from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.by_detection.looking.colour_finder import ColourFinder, seen_by_both
+from peopleboy.tracker.by_detection.looking.finder import ThermalFinder
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.track import confirmed
@@ -117,9 +117,18 @@ def looks_s(frames: Iterable[Frame], thermal: Proposals) -> list[float]:
 def test_it_looks_now_and_then_and_more_often_while_heat_shows_nobody(frames: list[Frame]) -> None:
     everywhere = Proposals.of_trees(np.array([[0.0, 0.0, 320.0, 240.0]]), np.array([5.0]))
     seldom, often = looks_s(frames, everywhere), looks_s(frames, NOBODY)
-    assert len(seldom) > 2
-    assert CONFIG.every_s <= np.diff(seldom).min() < CONFIG.every_s + 0.1
+    assert len(seldom) >= 2
+    assert CONFIG.beside_s <= np.diff(seldom).min() < CONFIG.beside_s + 0.1
     assert CONFIG.alone_every_s <= np.diff(often).min() < CONFIG.alone_every_s + 0.1
+
+
+def test_it_looks_more_seldom_while_heat_shows_somebody(frames: list[Frame]) -> None:
+    dark = [replace(one, images={THERMAL: one.grey(THERMAL), COLOUR: 0 * one.rgb(COLOUR)}) for one in frames]
+    later = [frame if frame.time_s > 0.5 else nobody for frame, nobody in zip(frames, dark, strict=True)]
+    assert CONFIG.every_s <= looks_s(later, NOBODY)[0] < CONFIG.every_s + 0.1
+    surely, hardly = (Proposals.of_trees(ONE.box + 200.0, np.array([score])) for score in (0.1, -0.1))
+    assert looks_s(later, hardly)[0] < CONFIG.every_s + 0.1
+    assert looks_s(later, surely)[0] >= CONFIG.beside_s
 
 
 def test_it_looks_where_both_cameras_are_known_and_the_image_is_new(frames: list[Frame]) -> None:
