@@ -73,7 +73,7 @@ class PeopleDetector:
             odometry: how the robot moved since the last one; None if that is not known.
             mount: how the camera sits; None if that is not known: then people may be anywhere.
             expected: who alone is looked for, by what trees said of them when they were found; None for
-                whoever is there.
+                whoever is there. If that is nobody the image is kept, and not looked at.
         """
         self._past.keep(grey, time_s, odometry)
         if expected is not None and len(expected.box) == 0:
