@@ -56,7 +56,7 @@ class GazeConfig:
     settled_s: float = 0.34
     lost_s: float = 1.0
     look_s: float = 0.19
-    alike: float = 0.6
+    alike: float = 0.8
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
