@@ -64,7 +64,7 @@ class _Instant(NamedTuple):
 
 
 class ByDetectionTracker:
-    """Follows people in metres round the camera by what a detector proposes in each image.
+    """Follows people in metres round the camera by what a detector proposes, and by portraits in between.
 
     A track is told once enough speaks for it, and who is whom is decided late.
     """
