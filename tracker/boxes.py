@@ -4,7 +4,7 @@ A box is left, top, width, height in pixels; pixel (0, 0) spans -0.5..0.5.
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +43,12 @@ def image_shares(box: Box, width_px: int, height_px: int) -> ImageShares:
         top=(top + 0.5) / height_px,
         bottom=(top + height + 0.5) / height_px,
     )
+
+
+def outline(image: NDArray[Any]) -> Floats:
+    """Give the box (4,) that an image (H, W, ...) fills."""
+    rows, columns = image.shape[:2]
+    return np.array([-0.5, -0.5, columns, rows])
 
 
 def within_image(box: Floats, width_px: int, height_px: int) -> Floats:

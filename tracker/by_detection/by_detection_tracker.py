@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.boxes import intersection, iou
+from peopleboy.tracker.boxes import intersection, iou, outline
 from peopleboy.tracker.by_detection.config import (
     ByDetectionConfig,
     ExistenceConfig,
@@ -33,7 +33,7 @@ from peopleboy.tracker.by_detection.paths import (
     corrected,
     distances,
 )
-from peopleboy.tracker.by_detection.portrait import Grey, Portrait
+from peopleboy.tracker.by_detection.portrait import Portrait
 from peopleboy.tracker.by_detection.proposed import Proposed
 from peopleboy.tracker.by_detection.target import Finding, Target
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
@@ -104,8 +104,8 @@ class ByDetectionTracker:
         """
         rows, columns = frame.grey(THERMAL).shape
         view = self._viewpoint(frame.calibrations.get(THERMAL), (rows, columns))
-        outline = np.array([-0.5, -0.5, columns, rows])
-        now = _Instant(frame.time_s, self._time_step(frame.time_s), view, outline, *self._beliefs(view))
+        whole = outline(frame.grey(THERMAL))
+        now = _Instant(frame.time_s, self._time_step(frame.time_s), view, whole, *self._beliefs(view))
         self._carry_on(now.dt_s, frame.odometry or _STANDING)
         expected = self._boxes(view)
         aim = self._gaze.aim(frame.grey(THERMAL), self._targets, expected, now.time_s, now.gaze)
@@ -115,7 +115,7 @@ class ByDetectionTracker:
         followed = {row: len(seen.box) + place for place, row in enumerate(aim.followed)}
         found = self._matched(expected, proposed, followed, now)
         self._take_in(found, expected, proposed, now)
-        self._portray(frame.grey(THERMAL), found.items() - followed.items(), proposed, now)
+        self._portray(frame, found.items() - followed.items(), proposed)
         if aim.alone is None:
             self._begin(found, proposed, now)
         if self._introduced is not None:
@@ -189,14 +189,12 @@ class ByDetectionTracker:
             boxes = proposed.boxes[[found[row] for row in rows]]
             self._correct(rows, boxes, was_lost[rows], now.view)
 
-    def _portray(self, grey: Grey, looked: Set[tuple[int, int]], proposed: Proposed, now: _Instant) -> None:
+    def _portray(self, frame: Frame, looked: Set[tuple[int, int]], proposed: Proposed) -> None:
         """Keep what those look like at whom the detector looked."""
-        if now.view.floor_m is None:
-            return  # there it looks at everybody in each image
         for row, column in looked:
             target = self._targets[row]
-            target.looked_s, target.score = now.time_s, float(proposed.scores[column])
-            target.portrait = Portrait.of(grey, proposed.boxes[column])
+            target.looked_s, target.score = frame.time_s, float(proposed.scores[column])
+            target.portrait = Portrait.of(frame.grey(THERMAL), proposed.boxes[column])
 
     def _correct(
         self,

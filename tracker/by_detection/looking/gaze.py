@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.boxes import area, cover, intersection
+from peopleboy.tracker.boxes import area, cover, intersection, outline
 from peopleboy.tracker.by_detection.config import GazeConfig
 from peopleboy.tracker.by_detection.portrait import Grey
 from peopleboy.tracker.by_detection.target import Target
@@ -61,14 +61,15 @@ class Gaze:
             config: what it takes.
         """
         last_s, self._last_s = self._last_s, time_s
-        was_seen = np.array([target.seen_s == last_s for target in targets], bool)
-        share = cover(intersection(expected, _outline(grey)), area(expected))
-        is_missed = ~was_seen & (share > 0.0) & _were_seen(targets, time_s - config.lost_s)
+        seen_s = np.array([target.seen_s for target in targets])
+        was_seen, is_recent = seen_s == last_s, seen_s > time_s - config.lost_s
+        share = cover(intersection(expected, outline(grey)), area(expected))
+        is_missed = ~was_seen & (share > 0.0) & is_recent
         is_settled = bool(targets) and all(target.is_told for target in targets) and not is_missed.any()
         if time_s - self._everywhere_s > (config.settled_s if is_settled else config.unsettled_s):
             self._everywhere_s = time_s
             return Aim(None, {})
-        is_easy = (share > _WHOLE) & _are_apart(expected, _were_seen(targets, time_s - config.lost_s))
+        is_easy = (share > _WHOLE) & _are_apart(expected, is_recent)
         followed = {}
         for row in np.flatnonzero(was_seen & is_easy).tolist():
             box = _followed(targets[row], grey, expected[row], time_s, config)
@@ -78,15 +79,6 @@ class Gaze:
         trees = np.array([targets[row].trees for row in rows], np.float64)
         alone = Proposals.of_trees(expected[rows], trees)
         return Aim(alone.taken(np.argsort(-trees, kind="stable")), followed)
-
-
-def _outline(grey: Grey) -> Floats:
-    rows, columns = grey.shape
-    return np.array([-0.5, -0.5, columns, rows])
-
-
-def _were_seen(targets: Sequence[Target], since_s: float) -> NDArray[np.bool_]:
-    return np.array([target.seen_s > since_s for target in targets], bool)
 
 
 def _are_apart(expected: Floats, counts: NDArray[np.bool_]) -> NDArray[np.bool_]:
