@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 import numpy as np
@@ -43,20 +44,13 @@ def colours_of(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
     image = frame.rgb(COLOUR)
     there = _seen_there(frame, boxes, view, (image.shape[0], image.shape[1]))
     least = -np.inf if view.floor_m is None else _LEAST_INSIDE
-    for row, box in enumerate(there):
-        parts = [_histogram(_part(image, box, *part)) for part in _PARTS]
-        if parts[0] is None:
-            continue
-        for half, part, extent in zip(told[row].reshape(PARTS, -1), parts, _PARTS, strict=True):
-            if part is not None and _share_inside(box, extent, image.shape[0]) >= least:
-                half[:] = part / np.sqrt(PARTS)
+    _describe(image, there, np.array(_PARTS), least, *_BIN_OF, told)
     return told
 
 
 def alike(one: Colours, other: Colours) -> float:
     """Give Bhattacharyya's coefficient of colours: of the same clothes above 0.8, of others below 0.4."""
-    ours, theirs = one.reshape(PARTS, -1).any(axis=1), other.reshape(PARTS, -1).any(axis=1)
-    return float(one @ other) * PARTS / max(int(np.count_nonzero(ours & theirs)), 1)
+    return float(one @ other) * PARTS / max(_common_parts(one, other), 1)
 
 
 def coefficients(some: Colours, others: Colours) -> tuple[Colours, NDArray[np.bool_]]:
@@ -72,9 +66,9 @@ def coefficients(some: Colours, others: Colours) -> tuple[Colours, NDArray[np.bo
 
 def blended(before: Colours, now: Colours, share: float) -> Colours:
     """Give the colours that are remembered after others are seen, by the parts that are."""
-    was, is_ = (one.reshape(PARTS, -1) for one in (before, now))
-    gain = np.where(_are_seen(before[None])[0], np.float32(share), np.float32(1.0)) * _are_seen(now[None])[0]
-    return np.asarray((was + gain[:, None] * (is_ - was)).ravel(), np.float32)
+    told = np.empty_like(before)
+    _blend(before, now, np.float32(share), told)
+    return told
 
 
 def _are_seen(colours: Colours) -> NDArray[np.bool_]:
@@ -91,29 +85,6 @@ def _seen_there(frame: Frame, boxes: Floats, view: Viewpoint, shape: tuple[int, 
     return carried_over(boxes, view, thermal, colour)
 
 
-def _part(image: NDArray[np.uint8], box: Floats, first: float, last: float) -> NDArray[np.uint8]:
-    left, top, width, height = box.tolist()
-    inset = (1.0 - _WIDE) / 2.0 * width
-    rows = slice(max(round(top + first * height), 0), max(round(top + last * height), 0))
-    return image[rows, max(round(left + inset), 0) : max(round(left + width - inset), 0)]
-
-
-def _share_inside(box: Floats, extent: tuple[float, float], rows: int) -> float:
-    """Tell which share of a part's height is among the rows of the image."""
-    top, bottom = box[1] + box[3] * np.array(extent)
-    return float((min(bottom, rows) - max(top, 0.0)) / (bottom - top))
-
-
-def _histogram(pixels: NDArray[np.uint8]) -> Colours | None:
-    """Give the root of the shares (256,) of pixels (h, w, 3) by brightness and opponent colours."""
-    count = pixels.shape[0] * pixels.shape[1]
-    if count < _LEAST_PX:
-        return None
-    bins = np.zeros(_BINS, np.float32)
-    light = _count(pixels, *_BIN_OF, bins)
-    return None if light / (3 * count) < _DARK else np.sqrt(bins.ravel() / np.float32(count))
-
-
 def _bins_of(values: Floats, bins: int) -> NDArray[np.uint8]:
     """Tell in which of so many bins values are; what is beyond -_SPREAD to _SPREAD is in the outer ones."""
     return np.clip(np.floor((values + _SPREAD) * bins / (2.0 * _SPREAD)), 0, bins - 1).astype(np.uint8)
@@ -128,19 +99,79 @@ _BIN_OF: Final = (
 
 
 @njit(cache=True, nogil=True)
-def _count(
+def _describe(
+    image: NDArray[np.uint8],
+    boxes: Floats,
+    parts: Floats,
+    least: float,
+    of_light: NDArray[np.uint8],
+    of_red: NDArray[np.uint8],
+    of_blue: NDArray[np.uint8],
+    told: Colours,
+) -> None:  # pragma: no cover
+    """Describe boxes (M, 4) of an image (H, W, 3) by parts (2, 2), of which so much must be in the image."""
+    rows = float(image.shape[0])
+    size = told.shape[1] // len(parts)
+    for number, (left, top, width, height) in enumerate(boxes):
+        inset = (1.0 - _WIDE) / 2.0 * width
+        begin, end = max(round(left + inset), 0), max(round(left + width - inset), 0)
+        for part, (first, last) in enumerate(parts):
+            upper, lower = top + first * height, top + last * height
+            pixels = image[max(round(upper), 0) : max(round(lower), 0), begin:end]
+            bins = told[number, part * size : (part + 1) * size]
+            is_seen = _histogram(pixels, of_light, of_red, of_blue, bins)
+            if part == 0 and not is_seen:
+                break
+            if is_seen and (min(lower, rows) - max(upper, 0.0)) / (lower - upper) < least:
+                bins[:] = np.float32(0.0)
+
+
+@njit(cache=True, nogil=True)
+def _histogram(
     pixels: NDArray[np.uint8],
     of_light: NDArray[np.uint8],
     of_red: NDArray[np.uint8],
     of_blue: NDArray[np.uint8],
     bins: Colours,
-) -> int:  # pragma: no cover
-    """Count pixels in bins, and give the sum of all they have of red, green and blue."""
-    total = 0
+) -> bool:  # pragma: no cover
+    """Give the roots of shares of pixels (h, w, 3) by brightness and opponent colours, if they are enough.
+
+    Of all parts together squares add up to 1.
+    """
+    count, total = pixels.shape[0] * pixels.shape[1], 0
+    if count < _LEAST_PX:
+        return False
     for row in pixels:
         for one in row:
             red, green, blue = int(one[0]), int(one[1]), int(one[2])
             light = red + green + blue
-            bins[of_light[light], of_red[red - green + 255], of_blue[2 * blue - red - green + 510]] += 1.0
+            at = of_light[light] * _BINS[1] * _BINS[2] + of_red[red - green + 255] * _BINS[2]
+            bins[at + of_blue[2 * blue - red - green + 510]] += np.float32(1.0)
             total += light
-    return total
+    is_light = bool(total / (3 * count) >= _DARK)
+    for k in range(len(bins)):
+        bins[k] = math.sqrt(bins[k] / np.float32(count)) / math.sqrt(PARTS) if is_light else 0.0
+    return is_light
+
+
+@njit(cache=True, nogil=True)
+def _common_parts(one: Colours, other: Colours) -> int:  # pragma: no cover
+    """Count the parts that are seen of both."""
+    count, size = 0, len(one) // PARTS
+    for first in range(0, len(one), size):
+        if one[first : first + size].any() and other[first : first + size].any():
+            count += 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _blend(before: Colours, now: Colours, share: np.float32, told: Colours) -> None:  # pragma: no cover
+    size = len(before) // PARTS
+    for first in range(0, len(before), size):
+        part = slice(first, first + size)
+        was, seen, put = before[part], now[part], told[part]
+        gain = np.float32(0.0)
+        if seen.any():
+            gain = share if was.any() else np.float32(1.0)
+        for k in range(size):
+            put[k] = was[k] + gain * (seen[k] - was[k])

@@ -30,7 +30,9 @@ def hidden_by(expected: Floats, is_told: Flags, found: Iterable[int]) -> list[in
     covered = cover(intersection(expected[:, None], expected[None]), area(expected)[:, None])
     foot = expected[:, 1] + expected[:, 3]
     hides = (covered > _COVERED) & (foot[None] > (foot - _LOWER * expected[:, 3])[:, None]) & is_told[None]
-    hides &= np.isin(np.arange(len(expected)), list(found))[None] & ~np.eye(len(expected), dtype=bool)
+    is_found = np.zeros(len(expected), np.bool_)
+    is_found[list(found)] = True
+    hides &= is_found[None] & ~np.eye(len(expected), dtype=bool)
     return [
         int(np.argmax(covered[row] * hides[row])) if hides[row].any() else None for row in range(len(hides))
     ]

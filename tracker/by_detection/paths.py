@@ -78,12 +78,13 @@ def advanced(paths: Paths, dt_s: float, moved: Odometry, config: PathConfig) -> 
     """Carry paths on to the next frame, by white acceleration, and into the frame of a robot that moved."""
     step = np.eye(STATE)
     step[:3, 3:6] = dt_s * np.eye(3)
-    grown = [[dt_s**3 / 3.0, dt_s**2 / 2.0], [dt_s**2 / 2.0, dt_s]]
+    pushed = np.diag(np.square(config.acceleration_m_s2))
     spread = np.zeros((STATE, STATE))
-    spread[:6, :6] = np.kron(grown, np.diag(np.square(config.acceleration_m_s2)))
+    spread[:3, :3], spread[3:6, 3:6] = dt_s**3 / 3.0 * pushed, dt_s * pushed
+    spread[:3, 3:6] = spread[3:6, :3] = dt_s**2 / 2.0 * pushed
     spread[6, 6] = config.posture**2 * dt_s
     whole = np.eye(STATE)
-    whole[:6, :6] = np.kron(np.eye(2), _turn(moved))
+    whole[:3, :3] = whole[3:6, 3:6] = _turn(moved)
     walked = paths.mean @ step.T
     mean = walked @ whole.T
     mean[:, :3] = carried(walked[:, :3], moved)
@@ -100,8 +101,8 @@ def carried(points_m: Floats, moved: Odometry) -> Floats:
 def distances(paths: Paths, boxes: Floats, view: Viewpoint, config: PathConfig) -> Floats:
     """Give the Mahalanobis distances (K, M) of proposals (M, 4) from where people are expected."""
     expected, slope = _expected(paths, view)
-    there = boxes_of(paths, view, np.zeros(len(paths)))
-    spread = _spread(paths, slope, _noise(there[:, 3], config))
+    height = np.maximum(expected[:, 2] - expected[:, 1], 1.0)
+    spread = _spread(paths, slope, _noise(height, config))
     gap = _ends(boxes)[None] - expected[:, None]
     return np.asarray(np.sqrt(np.einsum("kmi,kij,kmj->km", gap, np.linalg.inv(spread), gap)))
 

@@ -33,16 +33,19 @@ class Portrait:
     Attributes:
         cells: (34, C) greys, 40 cells a height, down to the knees.
         ratio: width of the box over its height.
+        is_flat: whether it shows nothing that could be found again.
     """
 
     cells: Grey
     ratio: float
+    is_flat: bool
 
     @classmethod
     def of(cls, grey: Grey, box: Floats) -> Portrait:
         """Take it of who is in a box (4,) of an image (H, W)."""
         ratio = float(box[2] / box[3])
-        return cls(_cells(grey, box, _columns(ratio), 0), ratio)
+        cells = _cells(grey, box, _columns(ratio), 0)
+        return cls(cells, ratio, float(cv2.meanStdDev(cells)[1][0, 0]) < _FLAT)
 
     def found(self, grey: Grey, expected: Floats, least: float) -> Floats | None:
         """Tell where in an image (H, W) somebody is.
@@ -55,7 +58,7 @@ class Portrait:
         Returns:
             (4,) a box of the expected height; None if nothing near is like this.
         """
-        if self.cells.std() < _FLAT:
+        if self.is_flat:
             return None
         around = _cells(grey, expected, self.cells.shape[1], _MARGIN)
         alike = cv2.matchTemplate(around, self.cells, cv2.TM_CCOEFF_NORMED)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.by_detection.config import STATURE_M
@@ -68,22 +69,14 @@ class Viewpoint:
             feet_m: (K, 3) where they stand.
             build: (K,) logarithm of their stature over the usual one.
         """
-        heads = feet_m.copy()
-        heads[:, 1] -= STATURE_M * np.exp(build)
-        foot, head = self._pixels(feet_m), self._pixels(heads)
-        return np.stack([(foot[:, 0] + head[:, 0]) / 2.0, head[:, 1], foot[:, 1]], axis=1)
+        told = np.empty((len(feet_m), 3))
+        _see(feet_m, build, self.camera_from_level, self.focal_px, self.centre_px, told)
+        return told
 
     def slopes(self, feet_m: Floats, build: Floats) -> Floats:
         """Give the derivatives (K, 3, 4) of `seen` by x, y, z of the feet, and the build."""
-        stature = STATURE_M * np.exp(build)
-        heads = feet_m.copy()
-        heads[:, 1] -= stature
-        foot, head = self._pixel_slopes(feet_m), self._pixel_slopes(heads)
-        slope = np.zeros((len(feet_m), 3, 4))
-        slope[:, 0, :3] = (foot[:, 0] + head[:, 0]) / 2.0
-        slope[:, 1, :3], slope[:, 2, :3] = head[:, 1], foot[:, 1]
-        slope[:, 0, 3] = -head[:, 0, 1] * stature / 2.0
-        slope[:, 1, 3] = -head[:, 1, 1] * stature
+        slope = np.empty((len(feet_m), 3, 4))
+        _slope(feet_m, build, self.camera_from_level, self.focal_px, slope)
         return slope
 
     def feet(self, boxes: Floats) -> Floats:
@@ -103,21 +96,64 @@ class Viewpoint:
         across, down = (plumb[:2] - plumb[2] * middle).T
         return np.asarray(across / np.maximum(down, 1e-3) * self.focal_px[0] / self.focal_px[1])
 
-    def _pixels(self, points_m: Floats) -> Floats:
-        turned = points_m @ self.camera_from_level.T
-        depth = np.maximum(turned[:, 2], _LEAST_DEPTH_M)
-        return turned[:, :2] / depth[:, None] * self.focal_px + self.centre_px
-
-    def _pixel_slopes(self, points_m: Floats) -> Floats:
-        """Give the derivatives (K, 2, 3) of columns and rows by x, y, z."""
-        turned = points_m @ self.camera_from_level.T
-        depth = np.maximum(turned[:, 2], _LEAST_DEPTH_M)[:, None, None]
-        across, ahead = self.camera_from_level[:2], self.camera_from_level[2]
-        slope = across[None] / depth - turned[:, :2, None] / depth**2 * ahead
-        return np.asarray(slope * np.array(self.focal_px)[:, None])
-
     def _rays(self, pixels: Floats) -> Floats:
         """Give directions (K, 3) in the level frame, of depth 1 along the floor."""
         straight = np.column_stack([(pixels - self.centre_px) / self.focal_px, np.ones(len(pixels))])
         level = straight @ self.camera_from_level
         return level / np.maximum(level[:, 2:], 1e-3)
+
+
+@njit(cache=True, nogil=True)
+def _see(
+    feet_m: Floats,
+    build: Floats,
+    camera_from_level: Floats,
+    focal_px: tuple[float, float],
+    centre_px: tuple[float, float],
+    told: Floats,
+) -> None:  # pragma: no cover
+    for number in range(len(feet_m)):
+        x, y, z = feet_m[number]
+        foot = _seen_from(x, y, z, camera_from_level)
+        head = _seen_from(x, y - STATURE_M * math.exp(build[number]), z, camera_from_level)
+        middle = (foot[0] / foot[2] + head[0] / head[2]) / 2.0
+        told[number, 0] = middle * focal_px[0] + centre_px[0]
+        told[number, 1] = head[1] / head[2] * focal_px[1] + centre_px[1]
+        told[number, 2] = foot[1] / foot[2] * focal_px[1] + centre_px[1]
+
+
+@njit(cache=True, nogil=True)
+def _slope(
+    feet_m: Floats, build: Floats, camera_from_level: Floats, focal_px: tuple[float, float], slope: Floats
+) -> None:  # pragma: no cover
+    across, down, ahead = camera_from_level
+    for number in range(len(feet_m)):
+        x, y, z = feet_m[number]
+        stature = STATURE_M * math.exp(build[number])
+        foot = _seen_from(x, y, z, camera_from_level)
+        head = _seen_from(x, y - stature, z, camera_from_level)
+        put = slope[number]
+        for axis in range(3):
+            of_foot = (across[axis] - foot[0] / foot[2] * ahead[axis]) / foot[2]
+            of_head = (across[axis] - head[0] / head[2] * ahead[axis]) / head[2]
+            put[0, axis] = (of_foot + of_head) / 2.0 * focal_px[0]
+            put[1, axis] = (down[axis] - head[1] / head[2] * ahead[axis]) / head[2] * focal_px[1]
+            put[2, axis] = (down[axis] - foot[1] / foot[2] * ahead[axis]) / foot[2] * focal_px[1]
+            if axis == 1:
+                put[0, 3] = -of_head / 2.0 * focal_px[0] * stature
+                put[1, 3] = -put[1, 1] * stature
+                put[2, 3] = 0.0
+
+
+@njit(cache=True, nogil=True)
+def _seen_from(
+    x: float, y: float, z: float, camera_from_level: Floats
+) -> tuple[float, float, float]:  # pragma: no cover
+    """Give where a point is to the right, down and ahead of a camera, and that it is not behind it."""
+    right, down, ahead = camera_from_level
+    depth = ahead[0] * x + ahead[1] * y + ahead[2] * z
+    return (
+        right[0] * x + right[1] * y + right[2] * z,
+        down[0] * x + down[1] * y + down[2] * z,
+        max(depth, _LEAST_DEPTH_M),
+    )

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.proposals.channels import Memory
 from peopleboy.tracker.proposals.looks.closer_look import CloserLook, look_closer, shipped_closer_look
+from peopleboy.tracker.proposals.looks.convolution import Desk
+from peopleboy.tracker.proposals.looks.one_thread import one_thread
 from peopleboy.tracker.proposals.looks.second_look import SecondLook, look_again, shipped_network
 from peopleboy.tracker.proposals.model import PeopleModel, shipped_model
 from peopleboy.tracker.proposals.past_images import PastImages
@@ -55,7 +57,7 @@ class PeopleDetector:
         self._smallest_px = smallest_px
         self._least_score = least_score
         self._past = PastImages()
-        self._memory = Memory()
+        self._memory, self._desk = Memory(), Desk()
 
     def update(
         self,
@@ -87,8 +89,9 @@ class PeopleDetector:
         first = expected
         if first is None:
             first = look(self._model, grey, change, mount, self._smallest_px, WEAKEST, self._memory)
-        found = look_again(self._second_look, grey, change, first, mount, self._least_score)
-        return look_closer(self._closer_look, grey, change, found, mount)
+        with one_thread():  # here once for both networks: to tell the library takes a while
+            found = look_again(self._second_look, grey, change, first, mount, self._least_score, self._desk)
+            return look_closer(self._closer_look, grey, change, found, mount, self._desk)
 
 
 def look(

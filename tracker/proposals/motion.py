@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 import cv2
 import numpy as np
@@ -13,7 +14,9 @@ from peopleboy.tracker.thermal.mount import Mount
 Grey = NDArray[np.uint8]
 Matrix = NDArray[np.float64]
 
-_SURE = 0.12  # response of the correlation below which nothing is said of a shift
+_STILL_PX: Final = 1.0 / 64.0
+"""Shift up to which no pixel moves: pixels between others are read to 1/32."""
+_SURE: Final = 0.12  # response of the correlation below which nothing is said of a shift
 
 
 def turned(mount: Mount, shape: tuple[int, int], turn_rad: float) -> Matrix:
@@ -57,7 +60,7 @@ def change(before: Grey, now: Grey, moved: Matrix) -> Grey:
     What has come into view since is no difference.
     """
     rows, columns = now.shape
-    if not np.array_equal(moved, np.eye(3)):
+    if _farthest_px(moved, rows, columns) > _STILL_PX:
         before = np.asarray(
             cv2.warpPerspective(
                 before, moved, (columns, rows), dst=now.copy(), borderMode=cv2.BORDER_TRANSPARENT
@@ -65,3 +68,11 @@ def change(before: Grey, now: Grey, moved: Matrix) -> Grey:
             np.uint8,
         )
     return np.asarray(cv2.absdiff(now, before), np.uint8)
+
+
+def _farthest_px(moved: Matrix, rows: int, columns: int) -> float:
+    """Tell how far the corner of an image moves that moves farthest, along columns or rows."""
+    right, bottom = columns - 1.0, rows - 1.0
+    corners = np.array([[0.0, right, 0.0, right], [0.0, 0.0, bottom, bottom], [1.0, 1.0, 1.0, 1.0]])
+    there = moved @ corners
+    return float(np.abs(there[:2] / there[2] - corners[:2]).max())

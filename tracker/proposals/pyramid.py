@@ -21,6 +21,7 @@ from peopleboy.tracker.proposals.window import (
     Kind,
     boxes_of,
     cells_of,
+    row_of,
 )
 from peopleboy.tracker.thermal.mount import Mount
 
@@ -165,8 +166,7 @@ def _beginnings(mount: Mount | None, high: int, down: float) -> tuple[int, int]:
     # Whoever stands has the feet as far below the horizon as the camera is high.
     height = PERSON_PX / down
     feet = [mount.horizon_px + height * mount.height_m / stature for stature in _STATURES_M]
-    box = np.array([[0.0, foot - height, 0.0, height] for foot in (min(feet), max(feet))])
     slack = _SLACK * PERSON_PX / CELL_PX
-    upper, lower = cells_of(box, (down, down))[:, 0].tolist()
-    start, end = int(np.floor(upper - slack)), int(np.ceil(lower + slack)) + 1
+    upper, lower = row_of(min(feet) - height, down), row_of(max(feet) - height, down)
+    start, end = math.floor(upper - slack), math.ceil(lower + slack) + 1
     return max(start, everywhere[0]), min(end, everywhere[1])

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import Final
+from typing import Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Top = TypeVar("Top", float, Floats)
 
 CELL_PX: Final = 2  # side of a cell of a level of the pyramid
 ROWS: Final = 20
@@ -24,6 +25,11 @@ class Kind(StrEnum):
 
     WHOLE = "whole"
     CUT = "cut"
+
+
+def row_of(top: Top, down: float) -> Top:
+    """Give the row of the windows that people fill whose heads are at some rows of the image, or at one."""
+    return ((top + 0.5) * down - ABOVE_PX) / CELL_PX
 
 
 def boxes_of(row: Floats, column: Floats, scale: tuple[float, float]) -> Floats:
@@ -45,6 +51,6 @@ def boxes_of(row: Floats, column: Floats, scale: tuple[float, float]) -> Floats:
 def cells_of(box: Floats, scale: tuple[float, float]) -> Floats:
     """Give row and column (N, 2) of the windows that the people of boxes (N, 4) fill, as a fraction."""
     down, right = scale
-    row = ((box[:, 1] + 0.5) * down - ABOVE_PX) / CELL_PX
+    row = row_of(box[:, 1], down)
     column = (box[:, 0] + box[:, 2] / 2.0 + 0.5) * right / CELL_PX - COLUMNS / 2.0
     return np.stack([row, column], axis=1)

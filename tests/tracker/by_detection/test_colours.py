@@ -8,6 +8,7 @@ from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
 from peopleboy.tracker.by_detection.colours import (
+    _BIN_OF,
     FEATURES,
     PARTS,
     _histogram,
@@ -89,12 +90,30 @@ def test_legs_are_remembered_while_the_torso_is_learned() -> None:
 def test_colours_are_the_shares_of_numpys_own_bins(pixels: NDArray[np.uint8]) -> None:
     red, green, blue = pixels.reshape(-1, 3).T.astype(np.float64)
     light = (red + green + blue) / 3.0
-    told = _histogram(pixels)
-    if light.mean() < 24.0:
-        assert told is None
+    told = np.zeros(FEATURES // PARTS, np.float32)
+    is_told = _histogram(pixels, *_BIN_OF, told)
+    assert is_told == (light.mean() >= 24.0)
+    if not is_told:
+        assert not told.any()
         return
     axes = [light, np.clip(red - green, -59.9, 59.9), np.clip(blue - (red + green) / 2.0, -59.9, 59.9)]
     edges = [np.linspace(0.0, 256.0, 5), np.linspace(-60.0, 60.0, 9), np.linspace(-60.0, 60.0, 9)]
     counts, _ = np.histogramdd(np.stack(axes, axis=1), edges)
-    assert told is not None
-    np.testing.assert_allclose(told**2, counts.ravel() / len(light), atol=1e-6)
+    np.testing.assert_allclose(PARTS * told**2, counts.ravel() / len(light), atol=1e-6)
+
+
+@given(st.integers(0, 10_000), st.sampled_from([0.1, 0.2, 1.0]))
+def test_colours_are_blended_by_the_parts_that_are_seen(seed: int, share: float) -> None:
+    rng = np.random.default_rng(seed)
+    before, now = (
+        (rng.random((PARTS, FEATURES // PARTS)) * rng.integers(0, 2, (PARTS, 1))).astype(np.float32)
+        for _ in range(2)
+    )
+    told = blended(before.ravel(), now.ravel(), share).reshape(PARTS, -1)
+    for was, seen, both in zip(before, now, told, strict=True):
+        gain = 0.0 if not seen.any() else share if was.any() else 1.0
+        np.testing.assert_allclose(both, (1.0 - gain) * was + gain * seen, atol=1e-6)
+    common = max(int((before.any(axis=1) & now.any(axis=1)).sum()), 1)
+    assert alike(before.ravel(), now.ravel()) == pytest.approx(
+        PARTS * float((before * now).sum()) / common, rel=1e-5
+    )

@@ -70,3 +70,12 @@ def test_what_has_come_into_view_is_no_change() -> None:
     now = np.roll(speckled(), 12, axis=1)
     moved = np.array([[1.0, 0.0, 12.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     assert change(speckled(), now, moved).mean() < 1.0
+
+
+@pytest.mark.parametrize(
+    ("turn_rad", "is_still"), [(1e-7, True), (-5e-5, True), (2e-4, False), (-0.01, False)]
+)
+def test_a_turn_by_less_than_pixels_are_told_apart_moves_nothing(turn_rad: float, is_still: bool) -> None:
+    before, now = speckled(), speckled()[:, ::-1].copy()
+    moved = turned(mount_of(camera(0.1), ROWS), (ROWS, COLUMNS), turn_rad)
+    assert np.array_equal(change(before, now, moved), cv2.absdiff(now, before)) == is_still

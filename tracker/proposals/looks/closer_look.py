@@ -9,6 +9,7 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.tracker.proposals.looks.convolution import Desk
 from peopleboy.tracker.proposals.looks.crops import (
     NUMBERS,
     CropSize,
@@ -43,20 +44,25 @@ class CloserLook(CropNetwork):
     )
     COMMAND: ClassVar[str] = "peopleboy train-detector --closer-look"
 
-    def told(self, planes: Planes, numbers: Planes) -> Floats:
+    def told(self, planes: Planes, numbers: Planes, desk: Desk | None = None) -> Floats:
         """Tell offsets (N, 4) of crops (N, 96, 72, 3) with numbers (N, 9), the score aside."""
-        return np.asarray(self.last(planes, numbers[:, 1:]).astype(np.float64) * SCALES + USUAL)
+        return np.asarray(self.last(planes, numbers[:, 1:], desk).astype(np.float64) * SCALES + USUAL)
 
 
 def look_closer(
-    network: CloserLook, grey: Grey, change: Grey, found: Proposals, mount: Mount | None
+    network: CloserLook,
+    grey: Grey,
+    change: Grey,
+    found: Proposals,
+    mount: Mount | None,
+    desk: Desk | None = None,
 ) -> Proposals:
     """Place those who were found in an image of which it is known by how much (H, W) greys changed."""
     if len(found.box) == 0:
         return found
     crops = crops_of(grey, change, found.box, CloserLook.FORM.crop)
     numbers = numbers_of(found, crops, (grey.shape[0], grey.shape[1]), mount)
-    return found._replace(box=moved(found.box, network.told(planes_of(crops), numbers)))
+    return found._replace(box=moved(found.box, network.told(planes_of(crops), numbers, desk)))
 
 
 @cache

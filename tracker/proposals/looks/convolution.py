@@ -6,6 +6,7 @@ For the latter Winograd's minimal filtering F(2 x 2, 3 x 3) is used (Lavin and G
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
@@ -17,6 +18,7 @@ from peopleboy.tracker.proposals.looks.crops import Planes
 TILE: Final = 4
 """Side of the tiles [px] that F(2 x 2, 3 x 3) takes, 2 px apart, which give 2 x 2 px each."""
 
+_AT_HAND: Final = 2**18  # numbers that are worked with at once; more would be fetched from afar
 _INTO: Final = np.array([[1.0, 0.0, 0.0], [0.5, 0.5, 0.5], [0.5, -0.5, 0.5], [0.0, 0.0, 1.0]])
 
 
@@ -44,7 +46,7 @@ def convolved(planes: Planes, kernel: Planes, bias: Planes, side: int, stride: i
     """Convolve planes, and cut off what is below 0.
 
     Args:
-        planes: (H, W, C); beyond their border is 0.
+        planes: (N, H, W, C); beyond their border is 0.
         kernel: (side side C, K).
         bias: (K,).
         side: of the kernel [px], odd.
@@ -52,18 +54,26 @@ def convolved(planes: Planes, kernel: Planes, bias: Planes, side: int, stride: i
         desk: where to work.
 
     Returns:
-        (H', W', K).
+        (N, H', W', K).
     """
-    high, wide, deep = planes.shape
+    count, high, wide, deep = planes.shape
     rows, columns, edge = -(-high // stride), -(-wide // stride), side // 2
-    edged = desk.take("edged", (high + 2 * edge, (wide + 2 * edge) * deep))
-    _edge(planes, edge, edged)
-    seen = desk.take("seen", (rows * columns, len(kernel)))
-    _gather(edged, side, side * deep, stride, stride * deep, columns, seen)
-    given = desk.given((rows * columns, len(bias)))
-    np.matmul(seen, kernel, out=given)
-    _rectify(given, bias)
-    return given.reshape(rows, columns, len(bias))
+    places = rows * columns
+    given = desk.given((count, places, len(bias)))
+    for some in _parts(count, places * len(kernel)):
+        edged = desk.take("edged", (len(planes[some]), high + 2 * edge, (wide + 2 * edge) * deep))
+        _edge(planes[some], edge, edged)
+        seen = desk.take("seen", (len(edged) * places, len(kernel)))
+        _gather(edged, side, side * deep, stride, stride * deep, columns, seen)
+        np.matmul(seen, kernel, out=given[some].reshape(len(seen), -1))
+    _rectify(given.reshape(-1, len(bias)), bias)
+    return given.reshape(count, rows, columns, len(bias))
+
+
+def _parts(count: int, size: int) -> Iterator[slice]:
+    """Take as many of those that need room for so many numbers each at once as a processor has at hand."""
+    step = max(_AT_HAND // size, 1)
+    return (slice(first, first + step) for first in range(0, count, step))
 
 
 def turned(kernel: Planes) -> Planes:
@@ -75,14 +85,16 @@ def turned(kernel: Planes) -> Planes:
 
 def convolved_by_tiles(planes: Planes, kernel: Planes, bias: Planes, desk: Desk) -> Planes:
     """Do what `convolved` does with side 3 and stride 1, by a kernel (16, C, K) that is `turned`."""
-    rows, columns, deep = planes.shape
-    down, right = -(-rows // 2), -(-columns // 2)
-    tiles = desk.take("seen", (TILE * TILE, down * right, deep))
-    _into_tiles(planes, right, tiles)
-    products = desk.take("products", (TILE * TILE, down * right, len(bias)))
-    np.matmul(tiles, kernel, out=products)
-    given = desk.given((rows, columns, len(bias)))
-    _out_of_tiles(products, bias, right, given)
+    count, rows, columns, deep = planes.shape
+    right = -(-columns // 2)
+    each = -(-rows // 2) * right
+    given = desk.given((count, rows, columns, len(bias)))
+    for some in _parts(count, TILE * TILE * each * (deep + len(bias))):
+        tiles = desk.take("seen", (TILE * TILE, len(planes[some]) * each, deep))
+        _into_tiles(planes[some], right, tiles)
+        products = desk.take("products", (*tiles.shape[:2], len(bias)))
+        np.matmul(tiles, kernel, out=products)
+        _out_of_tiles(products, bias, right, given[some])
     return given
 
 
@@ -92,14 +104,15 @@ def convolved_by_tiles(planes: Planes, kernel: Planes, bias: Planes, desk: Desk)
 @njit(cache=True, nogil=True)
 def _edge(planes: Planes, edge: int, edged: Planes) -> None:  # pragma: no cover
     """Surround planes by zeros."""
-    high, wide, deep = planes.shape
-    given, put = planes.ravel(), edged.ravel()
-    run, row, begin = np.uint64(wide * deep), np.uint64(edged.shape[1]), np.uint64(edge * deep)
-    put[:] = np.float32(0.0)
-    for i in range(np.uint64(high)):
-        to = (i + np.uint64(edge)) * row + begin
-        for k in range(run):
-            put[to + k] = given[i * run + k]
+    count, high, wide, deep = planes.shape
+    run, row, begin = np.uint64(wide * deep), np.uint64(edged.shape[2]), np.uint64(edge * deep)
+    for number in range(count):
+        given, put = planes[number].ravel(), edged[number].ravel()
+        put[:] = np.float32(0.0)
+        for i in range(np.uint64(high)):
+            to = (i + np.uint64(edge)) * row + begin
+            for k in range(run):
+                put[to + k] = given[i * run + k]
 
 
 @njit(cache=True, nogil=True)
@@ -107,15 +120,17 @@ def _gather(
     edged: Planes, side: int, run: int, down: int, right: int, columns: int, seen: Planes
 ) -> None:  # pragma: no cover
     """Put what the kernel sees at each place into a row: `side` runs of numbers, one below the other."""
-    given, put, row = edged.ravel(), seen.ravel(), np.uint64(edged.shape[1])
+    put, row = seen.ravel(), np.uint64(edged.shape[2])
     to, length = np.uint64(0), np.uint64(run)
-    for place in range(len(seen)):
-        at = np.uint64(place // columns * down) * row + np.uint64(place % columns * right)
-        for _ in range(side):
-            for k in range(length):
-                put[to + k] = given[at + k]
-            to += length
-            at += row
+    for one in edged:
+        given = one.ravel()
+        for place in range(len(seen) // len(edged)):
+            at = np.uint64(place // columns * down) * row + np.uint64(place % columns * right)
+            for _ in range(side):
+                for k in range(length):
+                    put[to + k] = given[at + k]
+                to += length
+                at += row
 
 
 @njit(cache=True, nogil=True)
@@ -128,16 +143,18 @@ def _rectify(given: Planes, bias: Planes) -> None:  # pragma: no cover
 @njit(cache=True, nogil=True)
 def _into_tiles(planes: Planes, right: int, tiles: Planes) -> None:  # pragma: no cover
     """Give B' d B of each tile d, one of 16 numbers after the other."""
-    high, wide, deep = planes.shape
+    count, high, wide, deep = planes.shape
+    each = tiles.shape[1] // count
     edged = np.zeros((TILE, TILE, deep), np.float32)
     half = np.empty((TILE, TILE, deep), np.float32)
     for tile in range(tiles.shape[1]):
-        top, left = 2 * (tile // right) - 1, 2 * (tile % right) - 1
+        seen, place = planes[tile // each], tile % each
+        top, left = 2 * (place // right) - 1, 2 * (place % right) - 1
         for i in range(TILE):
             for j in range(TILE):
                 if 0 <= top + i < high and 0 <= left + j < wide:
                     for k in range(deep):
-                        edged[i, j, k] = planes[top + i, left + j, k]
+                        edged[i, j, k] = seen[top + i, left + j, k]
                 else:
                     edged[i, j] = 0.0
         for j in range(TILE):
@@ -159,11 +176,13 @@ def _into_tiles(planes: Planes, right: int, tiles: Planes) -> None:  # pragma: n
 @njit(cache=True, nogil=True)
 def _out_of_tiles(products: Planes, bias: Planes, right: int, given: Planes) -> None:  # pragma: no cover
     """Give A' m A of each tile's products m, with the bias, cut off below 0."""
-    high, wide, deep = given.shape
+    count, high, wide, deep = given.shape
+    each = products.shape[1] // count
     half = np.empty((2, TILE, deep), np.float32)
     zero = np.float32(0.0)
     for tile in range(products.shape[1]):
-        top, left = 2 * (tile // right), 2 * (tile % right)
+        put, place = given[tile // each], tile % each
+        top, left = 2 * (place // right), 2 * (place % right)
         for j in range(TILE):
             for k in range(deep):
                 a, b = products[j, tile, k], products[4 + j, tile, k]
@@ -172,8 +191,8 @@ def _out_of_tiles(products: Planes, bias: Planes, right: int, given: Planes) -> 
                 half[1, j, k] = b - c - d
         for i in range(min(2, high - top)):
             for k in range(deep):
-                given[top + i, left, k] = max(half[i, 0, k] + half[i, 1, k] + half[i, 2, k] + bias[k], zero)
+                put[top + i, left, k] = max(half[i, 0, k] + half[i, 1, k] + half[i, 2, k] + bias[k], zero)
             if left + 1 < wide:
                 for k in range(deep):
                     told = half[i, 1, k] - half[i, 2, k] - half[i, 3, k]
-                    given[top + i, left + 1, k] = max(told + bias[k], zero)
+                    put[top + i, left + 1, k] = max(told + bias[k], zero)

@@ -74,7 +74,7 @@ def crops_of(grey: Grey, change: Grey, boxes: Floats, size: CropSize) -> Crops:
             crop[..., plane] = cv2.warpAffine(
                 image, turn, (columns, rows), flags=_FLAGS, borderMode=cv2.BORDER_REPLICATE
             )
-        crop[..., 2] = _inside(turn, size, images[halvings][0].shape)
+        _tell_inside(crop, step, turn[0, 2], turn[1, 2], *images[halvings][0].shape)
     return crops
 
 
@@ -122,7 +122,7 @@ def numbers_of(found: Proposals, crops: Crops, shape: tuple[int, int], mount: Mo
     rows, columns = shape
     left, top, width, height = found.box.T
     over = [-top / height, (top + height - rows) / height, -left / width, (left + width - columns) / width]
-    contrast = np.log((crops[..., 0].std(axis=(1, 2)) + 1.0) / 30.0)
+    contrast = np.log((_deviations(crops) + 1.0) / 30.0)
     stature, is_known = np.zeros(len(crops)), np.zeros(len(crops))
     if mount is not None:
         below = np.maximum(top + height - mount.horizon_px, 1e-3)
@@ -138,9 +138,30 @@ def _half(image: Grey) -> Grey:
     return np.asarray(cv2.resize(image, half, interpolation=cv2.INTER_AREA), np.uint8)
 
 
-def _inside(turn: Floats, size: CropSize, shape: tuple[int, ...]) -> Grey:
-    down = turn[1, 1] * np.arange(size.rows) + turn[1, 2]
-    right = turn[0, 0] * np.arange(size.columns) + turn[0, 2]
-    is_row = (down > -0.5) & (down < shape[0] - 0.5)
-    is_column = (right > -0.5) & (right < shape[1] - 0.5)
-    return np.asarray(np.outer(is_row, is_column), np.uint8) * np.uint8(255)
+@njit(cache=True, nogil=True)
+def _tell_inside(
+    crop: Crops, step: float, left: float, top: float, rows: int, columns: int
+) -> None:  # pragma: no cover
+    """Tell of the pixels of a crop which are inside an image, where they are so far from each other there."""
+    for i in range(crop.shape[0]):
+        down = step * i + top
+        is_row = -0.5 < down < rows - 0.5
+        for j in range(crop.shape[1]):
+            right = step * j + left
+            crop[i, j, 2] = 255 * (is_row and -0.5 < right < columns - 0.5)
+
+
+@njit(cache=True, nogil=True)
+def _deviations(crops: Crops) -> Floats:  # pragma: no cover
+    """Give the deviations (N,) of the greys of crops."""
+    told = np.empty(len(crops))
+    for number in range(len(crops)):
+        total, squares = 0, 0
+        crop = crops[number]
+        for i in range(crop.shape[0]):
+            for j in range(crop.shape[1]):
+                grey = int(crop[i, j, 0])
+                total, squares = total + grey, squares + grey * grey
+        pixels = crop.shape[0] * crop.shape[1]
+        told[number] = math.sqrt(float(pixels * squares - total * total)) / pixels
+    return told

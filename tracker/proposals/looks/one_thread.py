@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from functools import cache
 
 from threadpoolctl import ThreadpoolController
@@ -10,6 +10,8 @@ from threadpoolctl import ThreadpoolController
 
 def one_thread() -> AbstractContextManager[object]:
     """Let NumPy multiply matrices by one thread for a while; small ones take no longer."""
+    if all(library.num_threads == 1 for library in _controller().lib_controllers):
+        return nullcontext()
     limited: AbstractContextManager[object] = _controller().limit(limits=1)
     return limited
 

@@ -9,6 +9,7 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.tracker.proposals.looks.convolution import Desk
 from peopleboy.tracker.proposals.looks.crops import (
     NUMBERS,
     SCORES,
@@ -57,12 +58,12 @@ class SecondLook(CropNetwork):
         """Give the shapes of all weights."""
         return cls.FORM.shapes() | {"line": (2,)}
 
-    def told(self, planes: Planes, numbers: Planes) -> Floats:
+    def told(self, planes: Planes, numbers: Planes, desk: Desk | None = None) -> Floats:
         """Tell of crops (N, 64, 48, 3) with numbers (N, 9) log odds and offsets (N, 5).
 
         Log odds are those of the first look and what is added to them.
         """
-        last = self.last(planes, numbers).astype(np.float64)
+        last = self.last(planes, numbers, desk).astype(np.float64)
         last[:, 0] += SCORES * numbers[:, 0]
         gain, offset = self.weights["line"].tolist()
         last[:, 0] = gain * last[:, 0] + offset
@@ -70,7 +71,13 @@ class SecondLook(CropNetwork):
 
 
 def look_again(
-    network: SecondLook, grey: Grey, change: Grey, first: Proposals, mount: Mount | None, least_score: float
+    network: SecondLook,
+    grey: Grey,
+    change: Grey,
+    first: Proposals,
+    mount: Mount | None,
+    least_score: float,
+    desk: Desk | None = None,
 ) -> Proposals:
     """Look again at what was proposed in an image of which it is known by how much (H, W) greys changed.
 
@@ -80,7 +87,7 @@ def look_again(
         return first
     crops = crops_of(grey, change, first.box, SecondLook.FORM.crop)
     numbers = numbers_of(first, crops, (grey.shape[0], grey.shape[1]), mount)
-    told = network.told(planes_of(crops), numbers)
+    told = network.told(planes_of(crops), numbers, desk)
     believed = BELIEVED_OF_STRANGERS if mount is None else BELIEVED
     score = first.score + believed * (told[:, 0] - first.score)
     again = Proposals(moved(first.box, told[:, 1:]), score, first.trees)

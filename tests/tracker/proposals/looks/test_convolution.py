@@ -26,13 +26,13 @@ def test_a_kernel_is_a_filter_of_what_is_positive_then(
     side: int, stride: int, shape: tuple[int, int]
 ) -> None:
     plane, kernel = drawn(0, *shape), drawn(1, side, side)
-    ours = convolved(plane[..., None], kernel.reshape(-1, 1), NONE, side, stride, Desk())
-    np.testing.assert_allclose(ours[..., 0], filtered(plane, kernel)[::stride, ::stride], atol=1e-5)
+    ours = convolved(plane[None, ..., None], kernel.reshape(-1, 1), NONE, side, stride, Desk())
+    np.testing.assert_allclose(ours[0, ..., 0], filtered(plane, kernel)[::stride, ::stride], atol=1e-5)
 
 
 def test_planes_are_added_up_with_what_is_always_there() -> None:
     planes, kernel, bias = drawn(0, 6, 5, 2), drawn(1, 9 * 2, 4), drawn(2, 4)
-    ours = convolved(planes, kernel, bias, 3, 1, Desk())
+    ours = convolved(planes[None], kernel, bias, 3, 1, Desk())[0]
     square = kernel.reshape(3, 3, 2, 4)
     for number in range(4):
         parts = [
@@ -46,14 +46,15 @@ def test_planes_are_added_up_with_what_is_always_there() -> None:
 def test_tiles_give_the_same_with_fewer_products(
     rows: int, columns: int, deep: int, wide: int, seed: int
 ) -> None:
-    planes, kernel, bias = drawn(seed, rows, columns, deep), drawn(seed + 1, 9 * deep, wide), drawn(9, wide)
+    planes = drawn(seed, 3, rows, columns, deep)
+    kernel, bias = drawn(seed + 1, 9 * deep, wide), drawn(9, wide)
     whole = convolved(planes, kernel, bias, 3, 1, Desk())
     by_tiles = convolved_by_tiles(planes, turned(kernel), bias, Desk())
     np.testing.assert_allclose(by_tiles, whole, atol=1e-4)
 
 
 def test_a_desk_that_was_used_before_gives_the_same() -> None:
-    planes, desk = drawn(0, 12, 9, 4), Desk()
+    planes, desk = drawn(0, 2, 12, 9, 4), Desk()
     first, second = drawn(1, 36, 8), drawn(2, 72, 5)
     told = []
     for _ in range(2):
@@ -64,3 +65,22 @@ def test_a_desk_that_was_used_before_gives_the_same() -> None:
     np.testing.assert_array_equal(
         told[0], convolved_by_tiles(fresh, turned(second), np.ones(5, np.float32), Desk())
     )
+
+
+@pytest.mark.parametrize("count", [2, 9])
+def test_each_of_many_is_as_it_is_alone(count: int) -> None:
+    planes = drawn(0, count, 48, 36, 24)  # so many that not all are worked with at once
+    strided, close, bias = drawn(1, 9 * 24, 48), drawn(2, 9 * 24, 32), drawn(3, 48)
+    together = convolved(planes, strided, bias, 3, 2, Desk()).copy()
+    by_tiles = convolved_by_tiles(planes, turned(close), bias[:32], Desk())
+    for number in range(count):
+        one = planes[number : number + 1]
+        np.testing.assert_allclose(
+            together[number], convolved(one, strided, bias, 3, 2, Desk())[0], rtol=1e-4, atol=1e-4
+        )
+        np.testing.assert_allclose(
+            by_tiles[number],
+            convolved_by_tiles(one, turned(close), bias[:32], Desk())[0],
+            rtol=1e-4,
+            atol=1e-4,
+        )

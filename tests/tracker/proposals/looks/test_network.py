@@ -38,7 +38,7 @@ def test_what_is_told_does_not_hang_on_how_many_threads_there_are(shipped: CropN
 @KINDS
 def test_shapes_follow_from_the_layers(kind: type[CropNetwork]) -> None:
     rows, columns, _ = kind.FORM.crop
-    planes = np.zeros((rows, columns, PLANES), np.float32)
+    planes = np.zeros((1, rows, columns, PLANES), np.float32)
     for layer, (side, stride, deep) in enumerate(kind.FORM.layers):
         kernel = np.zeros(kind.shapes()[f"kernel{layer}"], np.float32)
         planes = convolved(planes, kernel, np.zeros(deep, np.float32), side, stride, Desk())
