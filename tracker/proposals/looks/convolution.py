@@ -56,16 +56,13 @@ def convolved(planes: Planes, kernel: Planes, bias: Planes, side: int, stride: i
     Returns:
         (N, H', W', K).
     """
-    count, high, wide, deep = planes.shape
-    rows, columns, edge = -(-high // stride), -(-wide // stride), side // 2
-    places = rows * columns
-    given = desk.given((count, places, len(bias)))
-    for some in _parts(count, places * len(kernel)):
-        edged = desk.take("edged", (len(planes[some]), high + 2 * edge, (wide + 2 * edge) * deep))
-        _edge(planes[some], edge, edged)
-        seen = desk.take("seen", (len(edged) * places, len(kernel)))
-        _gather(edged, side, side * deep, stride, stride * deep, columns, seen)
-        np.matmul(seen, kernel, out=given[some].reshape(len(seen), -1))
+    count, high, wide, _ = planes.shape
+    rows, columns = -(-high // stride), -(-wide // stride)
+    given = desk.given((count, rows * columns, len(bias)))
+    for some in _parts(count, rows * columns * len(kernel)):
+        seen = desk.take("seen", (len(planes[some]), rows, columns, len(kernel)))
+        _gather(planes[some], side, stride, seen)
+        np.matmul(seen.reshape(-1, len(kernel)), kernel, out=given[some].reshape(-1, len(bias)))
     _rectify(given.reshape(-1, len(bias)), bias)
     return given.reshape(count, rows, columns, len(bias))
 
@@ -102,35 +99,35 @@ def convolved_by_tiles(planes: Planes, kernel: Planes, bias: Planes, desk: Desk)
 
 
 @njit(cache=True, nogil=True)
-def _edge(planes: Planes, edge: int, edged: Planes) -> None:  # pragma: no cover
-    """Surround planes by zeros."""
-    count, high, wide, deep = planes.shape
-    run, row, begin = np.uint64(wide * deep), np.uint64(edged.shape[2]), np.uint64(edge * deep)
+def _gather(planes: Planes, side: int, stride: int, seen: Planes) -> None:  # pragma: no cover
+    """Put what the kernel sees at each place into a row: `side` runs of numbers, one after the other."""
+    count, rows, columns, _ = seen.shape
+    _, high, wide, deep = planes.shape
+    put, to, edge = seen.ravel(), np.uint64(0), side // 2
     for number in range(count):
-        given, put = planes[number].ravel(), edged[number].ravel()
-        put[:] = np.float32(0.0)
-        for i in range(np.uint64(high)):
-            to = (i + np.uint64(edge)) * row + begin
-            for k in range(run):
-                put[to + k] = given[i * run + k]
+        given = planes[number].ravel()
+        for row in range(rows):
+            for column in range(columns):
+                first = column * stride - edge
+                begin, end = max(first, 0), min(first + side, wide)
+                before, after = np.uint64((begin - first) * deep), np.uint64((first + side - end) * deep)
+                length = np.uint64((end - begin) * deep)
+                for line in range(row * stride - edge, row * stride - edge + side):
+                    if 0 <= line < high:
+                        to = _blank(put, to, before)
+                        at = np.uint64((line * wide + begin) * deep)
+                        for k in range(length):
+                            put[to + k] = given[at + k]
+                        to = _blank(put, to + length, after)
+                    else:
+                        to = _blank(put, to, before + length + after)
 
 
-@njit(cache=True, nogil=True)
-def _gather(
-    edged: Planes, side: int, run: int, down: int, right: int, columns: int, seen: Planes
-) -> None:  # pragma: no cover
-    """Put what the kernel sees at each place into a row: `side` runs of numbers, one below the other."""
-    put, row = seen.ravel(), np.uint64(edged.shape[2])
-    to, length = np.uint64(0), np.uint64(run)
-    for one in edged:
-        given = one.ravel()
-        for place in range(len(seen) // len(edged)):
-            at = np.uint64(place // columns * down) * row + np.uint64(place % columns * right)
-            for _ in range(side):
-                for k in range(length):
-                    put[to + k] = given[at + k]
-                to += length
-                at += row
+@njit(inline="always")
+def _blank(put: Planes, to: np.uint64, length: np.uint64) -> np.uint64:  # pragma: no cover
+    for k in range(length):
+        put[to + k] = np.float32(0.0)
+    return to + length
 
 
 @njit(cache=True, nogil=True)
