@@ -10,7 +10,7 @@ from peopleboy.tracker.by_detection.looking.finder import ThermalFinder
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, WEAKEST, Grey, PeopleDetector, look
 from peopleboy.tracker.proposals.looks.second_look import look_again, shipped_network
 from peopleboy.tracker.proposals.model import shipped_model
-from peopleboy.tracker.proposals.suppression import Proposals
+from peopleboy.tracker.proposals.suppression import NOBODY, Proposals
 from peopleboy.tracker.thermal.mount import Mount
 
 LEAST: Final = ByDetectionConfig().existence.weakest
@@ -33,19 +33,25 @@ class DetectorOfStage(PeopleDetector):
         self._stage = stage
 
     def found(
-        self, grey: Grey, change: Grey, mount: Mount | None, expected: Proposals | None = None
+        self,
+        grey: Grey,
+        change: Grey,
+        mount: Mount | None,
+        expected: Proposals = NOBODY,
+        *,
+        everywhere: bool = True,
     ) -> Proposals:
         """Look for people in an image of which it is known by how much (H, W) greys changed.
 
-        Trees look everywhere, whoever is expected.
+        Trees by themselves look everywhere, whoever is expected.
         """
         if self._stage is Stage.CLOSER_LOOK:
-            return super().found(grey, change, mount, expected)
+            return super().found(grey, change, mount, expected, everywhere=everywhere)
         if self._stage is Stage.TREES:
             return look(shipped_model(), grey, change, mount, SMALLEST_PX, LEAST)
         first = expected
-        if first is None:
-            first = look(shipped_model(), grey, change, mount, SMALLEST_PX, WEAKEST)
+        if everywhere:
+            first = look(shipped_model(), grey, change, mount, SMALLEST_PX, WEAKEST, expected)
         return look_again(shipped_network(), grey, change, first, mount, LEAST)
 
 

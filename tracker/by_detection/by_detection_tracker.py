@@ -21,7 +21,7 @@ from peopleboy.tracker.by_detection.config import (
 from peopleboy.tracker.by_detection.explanation import DetectionExplanation
 from peopleboy.tracker.by_detection.identities import known_again, resolve
 from peopleboy.tracker.by_detection.looking.finder import Finder, PeopleFinder
-from peopleboy.tracker.by_detection.looking.gaze import Gaze
+from peopleboy.tracker.by_detection.looking.gaze import Aim, Gaze
 from peopleboy.tracker.by_detection.matching import matched
 from peopleboy.tracker.by_detection.overlaps import CLEAR, beside, hidden_by, shared
 from peopleboy.tracker.by_detection.paths import (
@@ -109,14 +109,14 @@ class ByDetectionTracker:
         self._carry_on(now.dt_s, frame.odometry or _STANDING)
         expected = self._boxes(view)
         aim = self._gaze.aim(frame.grey(THERMAL), self._targets, expected, now.time_s, now.gaze)
-        seen = self._find(frame, aim.alone)
+        seen = self._find(frame, aim.proposed(self._targets), everywhere=aim.everywhere)
         seen = seen._replace(score=now.existence.trust * seen.score + now.existence.lasting)
-        proposed = Proposed.of(frame, aim.with_followed(seen, self._targets), view)
+        proposed = Proposed.of(frame, aim.with_followed(seen, self._targets), view, len(aim.followed))
         followed = {row: len(seen.box) + place for place, row in enumerate(aim.followed)}
         found = self._matched(expected, proposed, followed, now)
-        self._take_in(found, expected, proposed, now)
-        self._portray(frame, found.items() - followed.items(), proposed)
-        if aim.alone is None:
+        self._take_in(found, followed, expected, proposed, now)
+        self._portray(frame, found.items() - followed.items(), proposed, aim)
+        if aim.everywhere:
             self._begin(found, proposed, now)
         if self._introduced is not None:
             self._meet(np.array([self._introduced]), frame, now)
@@ -163,7 +163,14 @@ class ByDetectionTracker:
             now.matching,
         )
 
-    def _take_in(self, found: dict[int, int], expected: Floats, proposed: Proposed, now: _Instant) -> None:
+    def _take_in(
+        self,
+        found: dict[int, int],
+        followed: dict[int, int],
+        expected: Floats,
+        proposed: Proposed,
+        now: _Instant,
+    ) -> None:
         """Take in what is seen of those who were found, and look for who hides the others."""
         is_told = self._told()
         front = hidden_by(expected, is_told, found)
@@ -183,18 +190,22 @@ class ByDetectionTracker:
             if is_beside[row]:
                 target.overlap()
             else:
-                target.learn(proposed.looks[seen], proposed.colours[seen], now.dt_s)
+                target.stand_apart(now.dt_s)
+                if row not in followed:
+                    target.learn(proposed.looks[seen], proposed.colours[seen])
         if found:
             rows = np.array(sorted(found))
             boxes = proposed.boxes[[found[row] for row in rows]]
             self._correct(rows, boxes, was_lost[rows], now.view)
 
-    def _portray(self, frame: Frame, looked: Set[tuple[int, int]], proposed: Proposed) -> None:
+    def _portray(self, frame: Frame, looked: Set[tuple[int, int]], proposed: Proposed, aim: Aim) -> None:
         """Keep what those look like at whom the detector looked."""
         for row, column in looked:
             target = self._targets[row]
             target.looked_s, target.score = frame.time_s, float(proposed.scores[column])
             target.portrait = Portrait.of(frame.grey(THERMAL), proposed.boxes[column])
+            if aim.everywhere and row not in aim.expected:
+                target.searched_s = frame.time_s
 
     def _correct(
         self,

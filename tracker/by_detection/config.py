@@ -50,6 +50,8 @@ class GazeConfig:
         look_s: of who stands apart, images that come so soon after the detector's networks looked there are
             only compared with a portrait of then.
         alike: least correlation with it.
+        anew_s: searches that come so soon after trees found somebody who stands apart pass him by, if his
+            portrait shows where he is: the networks look there.
     """
 
     unsettled_s: float = 0.14
@@ -57,6 +59,7 @@ class GazeConfig:
     lost_s: float = 1.0
     look_s: float = 0.19
     alike: float = 0.8
+    anew_s: float = 1.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -213,7 +216,9 @@ class ByDetectionConfig:
     matching: MatchingConfig = field(default_factory=MatchingConfig)
     existence: ExistenceConfig = field(default_factory=ExistenceConfig)
     identity: RecognitionConfig = field(default_factory=RecognitionConfig)
-    gaze_uncalibrated: GazeConfig = field(default_factory=lambda: GazeConfig(unsettled_s=0.0, settled_s=0.0))
+    gaze_uncalibrated: GazeConfig = field(
+        default_factory=lambda: GazeConfig(unsettled_s=0.0, settled_s=0.0, anew_s=0.0)
+    )
     existence_uncalibrated: ExistenceConfig = field(
         default_factory=lambda: ExistenceConfig(
             birth=0.5,

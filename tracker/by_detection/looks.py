@@ -12,11 +12,12 @@ Pattern = NDArray[np.float32]
 
 ROWS: Final = 12
 COLUMNS: Final = 6
+SAMPLES: Final = ROWS * COLUMNS
 _FAINT_GREY: Final = 4.0  # contrast below which a pattern is mostly noise
 
 
 def patterns(image: NDArray[np.float32], boxes: NDArray[np.float64]) -> Pattern:
-    """Describe what is in boxes (M, 4) of an image (H, W): (M, ROWS * COLUMNS), mean 0 and length up to 1.
+    """Describe what is in boxes (M, 4) of an image (H, W): (M, SAMPLES), mean 0 and length up to 1.
 
     Neither the brightness of the image nor its contrast matters.
     """
@@ -25,7 +26,7 @@ def patterns(image: NDArray[np.float32], boxes: NDArray[np.float64]) -> Pattern:
     x = boxes[:, 0, None, None] + boxes[:, 2, None, None] * across[None, None, :]
     y = boxes[:, 1, None, None] + boxes[:, 3, None, None] * down[None, :, None]
     if len(boxes) == 0:
-        return np.empty((0, ROWS * COLUMNS), np.float32)
+        return np.empty((0, SAMPLES), np.float32)
     at_x, at_y = (
         np.broadcast_to(grid, (len(boxes), ROWS, COLUMNS)).reshape(-1, COLUMNS).astype(np.float32)
         for grid in (x, y)

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.by_detection.colours import Colours, coefficients, colours_of
-from peopleboy.tracker.by_detection.looks import Pattern, patterns
+from peopleboy.tracker.by_detection.colours import FEATURES, Colours, coefficients, colours_of
+from peopleboy.tracker.by_detection.looks import SAMPLES, Pattern, patterns
 from peopleboy.tracker.by_detection.target import Target
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import THERMAL, Floats, Frame
@@ -23,8 +23,8 @@ class Proposed:
         boxes: (M, 4) [px].
         scores: (M,) log odds.
         trees: (M,) likewise, as the detector's trees see it alone.
-        looks: (M, 72) in the thermal image.
-        colours: (M, 512) of clothes; 0 where nobody knows.
+        looks: (M, 72) in the thermal image; 0 of those who are followed.
+        colours: (M, 512) of clothes; 0 of those, too, and where nobody knows.
     """
 
     boxes: Floats
@@ -34,10 +34,15 @@ class Proposed:
     colours: Colours
 
     @classmethod
-    def of(cls, frame: Frame, found: Proposals, view: Viewpoint) -> Proposed:
-        """Look at what is proposed in a frame."""
-        image = frame.grey(THERMAL).astype(np.float32)
-        return cls(*found, patterns(image, found.box), colours_of(frame, found.box, view))
+    def of(cls, frame: Frame, found: Proposals, view: Viewpoint, followed: int = 0) -> Proposed:
+        """Look at what is proposed in a frame, but for the last few, who are followed."""
+        count = len(found.box)
+        looks, colours = np.zeros((count, SAMPLES), np.float32), np.zeros((count, FEATURES), np.float32)
+        new = slice(count - followed)
+        if followed < count:
+            looks[new] = patterns(frame.grey(THERMAL).astype(np.float32), found.box[new])
+            colours[new] = colours_of(frame, found.box[new], view)
+        return cls(*found, looks, colours)
 
     def __len__(self) -> int:
         return len(self.boxes)

@@ -49,6 +49,7 @@ class Target:
         trees: log odds by the detector's trees alone, when it was last found among all.
         score: log odds of the proposal when the detector last found it.
         looked_s: when that was.
+        searched_s: when trees found it among all.
         portrait: what it looked like then.
         log_odds: that it is a person.
         surest: most that a single image said.
@@ -71,6 +72,7 @@ class Target:
     trees: float = 0.0
     score: float = 0.0
     looked_s: float = -math.inf
+    searched_s: float = -math.inf
     portrait: Portrait | None = None
     log_odds: float = 0.0
     surest: float = -math.inf
@@ -106,10 +108,13 @@ class Target:
         self.shown = box
         self.ratio += _LEARNING * (float(box[2] / box[3]) - self.ratio)
 
-    def learn(self, looks: Pattern, colours: Colours, dt_s: float) -> None:
+    def stand_apart(self, dt_s: float) -> None:
+        """Take in that it is seen apart from others now."""
+        self.clear_s += dt_s
+
+    def learn(self, looks: Pattern, colours: Colours) -> None:
         """Take in how it looks now, apart from others."""
         self.looks = self.looks + np.float32(_LEARNING) * (looks - self.looks)
-        self.clear_s += dt_s
         self.recent = blended(self.recent, colours, _LEARNING_SOON)
         if not self.colours.any() or alike(self.recent, self.colours) > _OWN:
             self.colours = blended(self.colours, colours, max(_LEARNING, 1.0 / self.sightings))

@@ -26,6 +26,10 @@ _EARLY: Final = 32
 PROMISING: Final = 256
 """Trees: beside windows that come through so many there may be a better one."""
 
+_BESIDE: Final = (5, 2)
+"""Rows and columns up to which windows show mostly the same."""
+_WORSE: Final = 3.0  # log odds; a twentieth of the weight
+
 
 class Hits(NamedTuple):
     """Windows that came through.
@@ -39,6 +43,16 @@ class Hits(NamedTuple):
     row: NDArray[np.int64]
     column: NDArray[np.int64]
     score: NDArray[np.float64]
+
+    def taken(self, these: NDArray[np.bool_]) -> Hits:
+        """Give some of them."""
+        return Hits(self.row[these], self.column[these], self.score[these])
+
+    def best(self) -> Hits:
+        """Give those that count: beside one that is much surer others hardly matter."""
+        is_kept = np.empty(len(self.score), np.bool_)
+        _compare(*self, is_kept)
+        return self.taken(is_kept)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,13 +80,20 @@ class Cascade:
         object.__setattr__(self, "_layouts", Layouts(self.patches, self.feature))
 
     def scan(
-        self, sums: Sums, rows: tuple[int, int], *, stride: int = STRIDE, promising: int = PROMISING
+        self,
+        sums: Sums,
+        rows: tuple[int, int],
+        is_known: NDArray[np.bool_] | None = None,
+        *,
+        stride: int = STRIDE,
+        promising: int = PROMISING,
     ) -> Hits:
         """Look through all windows of a level, with their first cell in some rows, borders included.
 
         Args:
             sums: (9, h + 1, w + 1) of its channels.
             rows: the first one, and the one after the last.
+            is_known: (h - 19, w - 9) of windows by their first cell, at which nobody looks; None for none.
             stride: cells between windows; with 2 and more, those beside a promising one are looked at, too.
             promising: how many trees such a one must come through.
         """
@@ -82,9 +103,10 @@ class Cascade:
             return Hits(np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0))
         offset, weight = self._layouts.of(sums)
         found = np.full((end - first, wide - COLUMNS), -np.inf, np.float32)
+        is_passed = np.zeros(found.shape, np.bool_) if is_known is None else is_known[first:end]
         _scan(
             sums.ravel(), wide, first, offset, weight, self.threshold.ravel(), self.leaf.ravel(), self.least,
-            stride, min(promising, len(self.least)), found,
+            stride, min(promising, len(self.least)), is_passed, found,
         )  # fmt: skip
         at_row, at_column = np.nonzero(found > -np.inf)
         return Hits(at_row + first, at_column, found[at_row, at_column].astype(np.float64))
@@ -117,6 +139,7 @@ def _scan(
     least: Cells,
     stride: int,
     promising: int,
+    is_passed: NDArray[np.bool_],
     found: Cells,
 ) -> None:  # pragma: no cover
     """Look at every so many windows, then at those beside promising ones; leave their scores.
@@ -134,7 +157,7 @@ def _scan(
         count = none
         for j in range(0, columns, stride):
             at[left + count], score[left + count] = (i + first) * wide + j, 0.0
-            count += 1
+            count += not is_passed[i, j]
         some, theirs = at[left : left + count], score[left : left + count]
         left += _walk(sums, some, theirs, count, offset, weight, threshold, leaf, least[:early], none)
     left = _walk(sums, at, score, left, offset, weight, threshold, leaf, least[:promising], early)
@@ -148,12 +171,26 @@ def _scan(
     left = none
     for i in range(rows):
         for j in range(columns):
-            if is_wanted[i, j] and (i % stride != 0 or j % stride != 0):
+            if is_wanted[i, j] and not is_passed[i, j] and (i % stride != 0 or j % stride != 0):
                 at[left], score[left] = (i + first) * wide + j, 0.0
                 left += 1
     left = _walk(sums, at, score, left, offset, weight, threshold, leaf, least, none)
     for k in range(left):
         found[np.int64(at[k]) // wide - first, np.int64(at[k]) % wide] = score[k]
+
+
+@njit(cache=True, nogil=True)
+def _compare(
+    row: NDArray[np.int64], column: NDArray[np.int64], score: NDArray[np.float64], is_kept: NDArray[np.bool_]
+) -> None:  # pragma: no cover
+    """Tell which windows are not much worse than one beside them."""
+    rows, columns = _BESIDE
+    for k in range(len(row)):
+        is_kept[k] = True
+        for j in range(len(row)):
+            is_near = abs(row[j] - row[k]) <= rows and abs(column[j] - column[k]) <= columns
+            if is_near and score[k] < score[j] - _WORSE:
+                is_kept[k] = False
 
 
 @njit(cache=True, nogil=True)

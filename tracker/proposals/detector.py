@@ -17,8 +17,7 @@ from peopleboy.tracker.proposals.model import PeopleModel, shipped_model
 from peopleboy.tracker.proposals.past_images import PastImages
 from peopleboy.tracker.proposals.patches import summed
 from peopleboy.tracker.proposals.pyramid import levels
-from peopleboy.tracker.proposals.suppression import Proposals, suppress
-from peopleboy.tracker.proposals.window import Floats
+from peopleboy.tracker.proposals.suppression import NOBODY, SHARED, Proposals, suppress
 from peopleboy.tracker.thermal.mount import Mount
 
 Grey = NDArray[np.uint8]
@@ -65,7 +64,9 @@ class PeopleDetector:
         time_s: float,
         odometry: Odometry | None = None,
         mount: Mount | None = None,
-        expected: Proposals | None = None,
+        expected: Proposals = NOBODY,
+        *,
+        everywhere: bool = True,
     ) -> Proposals:
         """Look for people.
 
@@ -74,21 +75,27 @@ class PeopleDetector:
             time_s: when it was taken.
             odometry: how the robot moved since the last one; None if that is not known.
             mount: how the camera sits; None if that is not known: then people may be anywhere.
-            expected: who alone is looked for, by what trees said of them when they were found; None for
-                whoever is there. If that is nobody the image is kept, and not looked at.
+            expected: who is known, and how sure trees were when they found them: they need not be found.
+            everywhere: whether others are looked for, too. If nobody is the image is kept, and not looked at.
         """
         self._past.keep(grey, time_s, odometry)
-        if expected is not None and len(expected.box) == 0:
+        if not everywhere and len(expected.box) == 0:
             return expected
-        return self.found(grey, self._past.change(mount), mount, expected)
+        return self.found(grey, self._past.change(mount), mount, expected, everywhere=everywhere)
 
     def found(
-        self, grey: Grey, change: Grey, mount: Mount | None, expected: Proposals | None = None
+        self,
+        grey: Grey,
+        change: Grey,
+        mount: Mount | None,
+        expected: Proposals = NOBODY,
+        *,
+        everywhere: bool = True,
     ) -> Proposals:
         """Look for people in an image of which it is known by how much (H, W) greys changed."""
         first = expected
-        if first is None:
-            first = look(self._model, grey, change, mount, self._smallest_px, WEAKEST, self._memory)
+        if everywhere:
+            first = look(self._model, grey, change, mount, self._smallest_px, WEAKEST, expected, self._memory)
         with one_thread():  # here once for both networks: to tell the library takes a while
             found = look_again(self._second_look, grey, change, first, mount, self._least_score, self._desk)
             return look_closer(self._closer_look, grey, change, found, mount, self._desk)
@@ -101,20 +108,26 @@ def look(
     mount: Mount | None,
     smallest_px: float,
     least_score: float,
+    known: Proposals = NOBODY,
     memory: Memory | None = None,
 ) -> Proposals:
-    """Let trees look for people in an image of which it is known by how much (H, W) greys changed."""
-    boxes: list[Floats] = [np.empty((0, 4))]
-    scores: list[Floats] = [np.empty(0)]
+    """Let trees look for people in an image of which it is known by how much (H, W) greys changed.
+
+    They pass by those who are known, and propose them as well.
+    """
+    boxes, scores = [known.box], [known.trees]
     for level in levels(grey, change, mount, smallest_px, memory or Memory()):
         sums = summed(level.cells)
+        is_known = level.covered(known.box, SHARED) if len(known.box) else None
         for kind, trees in model.trees.items():
             for rows in level.rows[kind]:
-                hits = trees.cascade.scan(sums, rows)
+                hits = trees.cascade.scan(sums, rows, is_known)
                 is_sure = hits.score >= least_score
                 if not is_sure.any():
                     continue
-                row, column = hits.row[is_sure], hits.column[is_sure]
-                boxes.append(trees.placing.boxes(sums, row, column, level.boxes(row, column)))
-                scores.append(hits.score[is_sure])
+                best = hits.taken(is_sure).best()
+                boxes.append(
+                    trees.placing.boxes(sums, best.row, best.column, level.boxes(best.row, best.column))
+                )
+                scores.append(best.score)
     return suppress(Proposals.of_trees(np.concatenate(boxes), np.concatenate(scores)))

@@ -9,6 +9,7 @@ from typing import Final
 
 import cv2
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.proposals.channels import BESIDE, OVER, Cells, Image, Memory, channels, noise_of
@@ -65,6 +66,19 @@ class Level:
         """Give the boxes (N, 4) [px] of the people who fill windows, by their first cell in `cells`."""
         corner = np.stack([row + self.first - OVER, column - BESIDE]).astype(np.float64)
         return boxes_of(corner[0], corner[1], self.scale)
+
+    def covered(self, box: Floats, share: float) -> NDArray[np.bool_]:
+        """Tell of windows (h - 19, w - 9) whether their people and one of boxes (K, 4) have much in common.
+
+        Args:
+            box: of some people [px].
+            share: of the smaller box of both, from which on it is much.
+        """
+        _, high, wide = self.cells.shape
+        is_covered = np.zeros((max(high - ROWS + 1, 0), max(wide - COLUMNS + 1, 0)), np.bool_)
+        first, second = self.boxes(np.arange(2), np.arange(2))
+        _cover(box, first, second[:2] - first[:2], share, is_covered)
+        return is_covered
 
     def windows(self, box: Floats) -> Floats:
         """Give row and column (N, 2) in `cells` of the windows that people of boxes (N, 4) fill."""
@@ -170,3 +184,24 @@ def _beginnings(mount: Mount | None, high: int, down: float) -> tuple[int, int]:
     upper, lower = row_of(min(feet) - height, down), row_of(max(feet) - height, down)
     start, end = math.floor(upper - slack), math.ceil(lower + slack) + 1
     return max(start, everywhere[0]), min(end, everywhere[1])
+
+
+@njit(cache=True, nogil=True)
+def _cover(
+    boxes: Floats, first: Floats, step: Floats, share: float, is_covered: NDArray[np.bool_]
+) -> None:  # pragma: no cover
+    """Tell of windows, the first of which is a box (4,), at some steps (2,) [px], who covers them."""
+    rows, columns = is_covered.shape
+    wide, high = first[2], first[3]
+    for left, top, width, height in boxes:
+        narrow = width / height * high  # windows are wider than people
+        least = share * min(width * height, narrow * high)
+        for i in range(rows):
+            y = first[1] + i * step[1]
+            down = min(y + high, top + height) - max(y, top)
+            if down <= 0.0:
+                continue
+            for j in range(columns):
+                x = first[0] + j * step[0] + (wide - narrow) / 2.0
+                across = min(x + narrow, left + width) - max(x, left)
+                is_covered[i, j] |= across * down > least

@@ -13,7 +13,7 @@ from peopleboy.tracker.boxes import area, cover, intersection
 
 Floats = NDArray[np.float64]
 
-_SHARED: Final = 0.65  # of the smaller box: from then on two boxes are of one person
+SHARED: Final = 0.65  # of the smaller box: from then on two boxes are of one person
 _ALIKE: Final = 0.5  # IoU of boxes of whom the mean is taken
 _TOUCHED: Final = 0.12  # share of a box that is theirs who are to its left and right, each at least
 _BETWEEN: Final = 0.6  # share of it that is one's or the other's
@@ -40,6 +40,9 @@ class Proposals(NamedTuple):
     def taken(self, rows: NDArray[np.bool_] | NDArray[np.intp]) -> Proposals:
         """Give some of them."""
         return Proposals(self.box[rows], self.score[rows], self.trees[rows])
+
+
+NOBODY: Final = Proposals.of_trees(np.empty((0, 4)), np.empty(0))
 
 
 def suppress(found: Proposals) -> Proposals:
@@ -73,7 +76,7 @@ def _best(box: Floats, score: Floats, means: Floats) -> NDArray[np.intp]:  # pra
                 weight = math.exp(score[j] - score[k])
                 total += weight
                 mean += weight * box[j]
-            is_left[j] &= common <= _SHARED * min(ours, theirs)
+            is_left[j] &= common <= SHARED * min(ours, theirs)
         means[count], kept[count] = mean / total, k
         count += 1
     return kept[:count]

@@ -82,6 +82,7 @@ def test_who_was_lost_is_no_more_once_somebody_goes_on_as_him() -> None:
 def test_what_was_worn_is_not_unlearned_while_somebody_looks_unlike_himself() -> None:
     target = person(1, was=1.0, now=None)
     for _ in range(30):
-        target.learn(np.zeros(72, np.float32), wearing(0.0), 1 / 15)
+        target.stand_apart(1 / 15)
+        target.learn(np.zeros(72, np.float32), wearing(0.0))
     assert target.colours == pytest.approx(wearing(1.0))
     assert target.recent == pytest.approx(wearing(0.0))

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from peopleboy.tracker.proposals.cascade import STRIDE, Cascade
+from peopleboy.tracker.proposals.cascade import STRIDE, Cascade, Hits
 from peopleboy.tracker.proposals.patches import summed
 from peopleboy.tracker.proposals.window import COLUMNS, ROWS
 from tests.helpers.images import drawn_trees
@@ -84,6 +84,26 @@ def test_sums_of_many_sizes_are_looked_through_as_those_of_one() -> None:
         sums = summed(np.ascontiguousarray(cells[:, :, :columns]))
         for one, other in zip(cascade.scan(sums, (0, 34)), drawn_cascade().scan(sums, (0, 34)), strict=True):
             np.testing.assert_array_equal(one, other)
+
+
+def test_windows_that_are_known_are_passed_by_and_nothing_else_changes() -> None:
+    sums, cascade = summed(drawn_cells()), drawn_cascade(least=-1.0)
+    is_known = np.zeros((drawn_trees.ROWS - ROWS + 1, drawn_trees.COLUMNS - COLUMNS + 1), np.bool_)
+    is_known[:, 13:16] = True
+    every, some = (
+        set(zip(*cascade.scan(sums, (0, 34), known, stride=1), strict=True)) for known in (None, is_known)
+    )
+    assert some == {hit for hit in every if hit[1] not in (13, 14, 15)}
+    assert 0 < len(some) < len(every)
+
+
+def test_beside_one_that_is_much_surer_windows_do_not_count() -> None:
+    hits = Hits(
+        np.array([10, 11, 10, 20, 15]), np.array([5, 5, 8, 5, 7]), np.array([4.0, 0.5, 0.5, 0.5, 1.5])
+    )
+    best = hits.best()
+    assert best.score.tolist() == [4.0, 0.5, 0.5, 1.5]
+    assert best.row.tolist() == [10, 10, 20, 15]
 
 
 def test_only_the_rows_that_are_asked_for_are_looked_at() -> None:

@@ -6,7 +6,7 @@ from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.studies.people_learning.judge_detector import judge_detector
 from peopleboy.scenarios.studies.people_learning.people_film import film_upright
 from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
-from peopleboy.tracker.boxes import iou
+from peopleboy.tracker.boxes import iou, shared_of_smaller
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, PeopleDetector, look
 from peopleboy.tracker.proposals.model import shipped_model
 
@@ -74,3 +74,20 @@ def test_scores_fall_and_nobody_below_the_least_is_told(shots: list[PeopleShot])
     assert (np.diff(found.score) <= 0.0).all()
     assert (found.score >= 0.5).all()
     assert len(PeopleDetector(least_score=np.inf).update(image, 0.0).score) == 0
+
+
+def test_who_is_known_is_passed_by_and_proposed_and_others_are_found_as_ever(shots: list[PeopleShot]) -> None:
+    seen = 0
+    for shot in shots:
+        found = look(shipped_model(), shot.grey, shot.change, None, SMALLEST_PX, 0.0)
+        for number in range(len(found.box)):
+            one = found.taken(np.array([number]))
+            both = look(shipped_model(), shot.grey, shot.change, None, SMALLEST_PX, 0.0, one)
+            shared = shared_of_smaller(both.box, one.box)
+            assert (shared > 0.65).sum() == 1
+            assert iou(both.box[shared.argmax()], one.box[0]) > 0.8
+            apart = found.taken(shared_of_smaller(found.box, one.box) == 0.0)
+            again = iou(apart.box[:, None], both.box[None])
+            assert (again.max(axis=1, initial=0.0) > 0.9).all()
+            seen += len(apart.box)
+    assert seen >= 3

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from peopleboy.tracker.boxes import shared_of_smaller
 from peopleboy.tracker.proposals.channels import CHANNELS, OVER
 from peopleboy.tracker.proposals.pyramid import STEP, levels
 from peopleboy.tracker.proposals.window import COLUMNS, PERSON_PX, ROWS, Kind, boxes_of, cells_of
@@ -87,3 +88,18 @@ def test_who_is_cut_off_is_looked_for_beyond_the_image() -> None:
             beyond = [(OVER - row, row + ROWS - OVER - high) for row in range(first, end)]
             assert all(above >= 6 or below >= 9 for above, below in beyond)
             assert all(above <= OVER and below <= OVER for above, below in beyond)
+
+
+def test_windows_are_covered_by_people_with_whom_theirs_share_much() -> None:
+    people = np.array([[40.0, 60.0, 30.0, 80.0], [200.0, 20.0, 40.0, 180.0], [-20.0, 150.0, 30.0, 120.0]])
+    for level in levels(GREY, STILL, MOUNT, 24.0):
+        is_covered = level.covered(people, 0.65)
+        row, column = np.indices(is_covered.shape).reshape(2, -1)
+        theirs = np.repeat(level.boxes(row, column)[:, None], len(people), axis=1)
+        middle = theirs[..., 0] + theirs[..., 2] / 2.0
+        theirs[..., 2] = people[:, 2] / people[:, 3] * theirs[..., 3]  # as broad as those
+        theirs[..., 0] = middle - theirs[..., 2] / 2.0
+        shared = shared_of_smaller(theirs, people[None]).max(axis=1)
+        is_clear = np.abs(shared - 0.65) > 1e-9
+        assert is_covered.shape == (level.cells.shape[1] - ROWS + 1, level.cells.shape[2] - COLUMNS + 1)
+        np.testing.assert_array_equal(is_covered.ravel()[is_clear], (shared > 0.65)[is_clear])

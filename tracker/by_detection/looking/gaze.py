@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,19 +16,28 @@ from peopleboy.tracker.by_detection.target import Target
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.proposals.suppression import Proposals
 
-_WHOLE = 0.99  # share of a box that must be inside the image
+_WHOLE: Final = 0.99  # share of a box that must be inside the image
 
 
 class Aim(NamedTuple):
     """What is looked at in one image.
 
     Attributes:
-        alone: where the detector looks; None for everywhere.
-        followed: boxes (4,) [px] of those whom their portraits show, by their row.
+        everywhere: whether the detector looks for anybody.
+        expected: boxes (4,) [px] in which the detector's networks look at who is known, by their row; where
+            it looks for anybody its trees pass them by.
+        followed: boxes of those whom their portraits show, at whom nobody looks, likewise.
     """
 
-    alone: Proposals | None
+    everywhere: bool
+    expected: Mapping[int, Floats]
     followed: Mapping[int, Floats]
+
+    def proposed(self, targets: Sequence[Target]) -> Proposals:
+        """Propose who is expected, as sure as trees were when they last found them, the surest first."""
+        trees = np.array([targets[row].trees for row in self.expected], np.float64)
+        found = Proposals.of_trees(np.array(list(self.expected.values())).reshape(-1, 4), trees)
+        return found.taken(np.argsort(-trees, kind="stable"))
 
     def with_followed(self, found: Proposals, targets: Sequence[Target]) -> Proposals:
         """Give who was found by the detector, and then who is followed, as sure as when last looked at."""
@@ -65,33 +74,36 @@ class Gaze:
         was_seen, is_recent = seen_s == last_s, seen_s > time_s - config.lost_s
         share = cover(intersection(expected, outline(grey)), area(expected))
         is_missed = ~was_seen & (share > 0.0) & is_recent
+        is_easy = was_seen & (share > _WHOLE) & _are_apart(expected, is_recent) & _are_sure(targets)
         is_settled = bool(targets) and all(target.is_told for target in targets) and not is_missed.any()
         if time_s - self._everywhere_s > (config.settled_s if is_settled else config.unsettled_s):
             self._everywhere_s = time_s
-            return Aim(None, {})
-        is_easy = (share > _WHOLE) & _are_apart(expected, is_recent)
-        followed = {}
-        for row in np.flatnonzero(was_seen & is_easy).tolist():
-            box = _followed(targets[row], grey, expected[row], time_s, config)
-            if box is not None:
-                followed[row] = box
-        rows = np.array([row for row in np.flatnonzero(was_seen & (share > 0.0)) if row not in followed], int)
-        trees = np.array([targets[row].trees for row in rows], np.float64)
-        alone = Proposals.of_trees(expected[rows], trees)
-        return Aim(alone.taken(np.argsort(-trees, kind="stable")), followed)
+            since_s = time_s - np.array([target.searched_s for target in targets])
+            return Aim(True, _shown(is_easy & (since_s < config.anew_s), targets, grey, expected, config), {})
+        since_s = time_s - np.array([target.looked_s for target in targets])
+        followed = _shown(is_easy & (since_s < config.look_s), targets, grey, expected, config)
+        looked = [row for row in np.flatnonzero(was_seen & (share > 0.0)).tolist() if row not in followed]
+        return Aim(False, {row: expected[row] for row in looked}, followed)
+
+
+def _shown(
+    these: NDArray[np.bool_], targets: Sequence[Target], grey: Grey, expected: Floats, config: GazeConfig
+) -> dict[int, Floats]:
+    """Give the boxes (4,) of some (K,) of those whom their portraits show, by their row."""
+    shown = {}
+    for row in np.flatnonzero(these).tolist():
+        portrait = targets[row].portrait
+        box = None if portrait is None else portrait.found(grey, expected[row], config.alike)
+        if box is not None:
+            shown[row] = box
+    return shown
+
+
+def _are_sure(targets: Sequence[Target]) -> NDArray[np.bool_]:
+    return np.array([target.is_told and target.log_odds >= 0.0 for target in targets], np.bool_)
 
 
 def _are_apart(expected: Floats, counts: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Tell whose boxes (K, 4) touch no other one that counts, (K,)."""
     common = intersection(expected[:, None], expected[None]) * ~np.eye(len(expected), dtype=bool)
     return np.asarray(~(counts[None] & (common > 0.0)).any(axis=1))
-
-
-def _followed(
-    target: Target, grey: Grey, expected: Floats, time_s: float, config: GazeConfig
-) -> Floats | None:
-    """Give the box (4,) of somebody by the portrait, if that is good enough for now."""
-    is_sure = target.is_told and target.log_odds >= 0.0
-    if target.portrait is None or not is_sure or time_s - target.looked_s >= config.look_s:
-        return None
-    return target.portrait.found(grey, expected, config.alike)

@@ -53,11 +53,13 @@ def aims(who: list[Target], images: int, boxes: Floats = BOXES, config: GazeConf
             if target.seen_s == last_s:
                 target.seen_s = time_s
                 target.looked_s = target.looked_s if row in found[-1].followed else time_s
+                is_anew = found[-1].everywhere and row not in found[-1].expected
+                target.searched_s = time_s if is_anew else target.searched_s
     return found
 
 
 def everywhere(told: list[Aim]) -> list[int]:
-    return [image for image, aim in enumerate(told) if aim.alone is None]
+    return [image for image, aim in enumerate(told) if aim.everywhere]
 
 
 def test_five_of_six_images_are_not_searched_where_it_is_clear_who_is_there() -> None:
@@ -89,12 +91,10 @@ def test_who_stands_apart_is_followed_by_his_portrait_for_a_while() -> None:
     for image in (1, 2, 4, 5):
         assert list(told[image].followed) == [0, 1]
         np.testing.assert_allclose(list(told[image].followed.values()), BOXES, atol=0.5)
-        alone = told[image].alone
-        assert alone is not None
-        assert len(alone.box) == 0
-    alone = told[3].alone  # 0.2 s after the last look
-    assert alone is not None
-    assert alone.trees.tolist() == [2.0, 1.0]
+        assert not told[image].expected
+    aim = told[3]  # 0.2 s after the last look
+    assert list(aim.expected) == [0, 1]
+    assert aim.proposed(targets()).trees.tolist() == [2.0, 1.0]
 
 
 def close() -> list[Target]:
@@ -117,8 +117,7 @@ def test_the_detector_looks_at_who_is_near_others_or_unsure_or_looks_different(
     who = make()
     aim = aims(who, 2, np.array([target.shown for target in who]))[1]
     assert not aim.followed
-    assert aim.alone is not None
-    assert aim.alone.trees.tolist() == [2.0, 1.0]
+    assert sorted(aim.expected) == [0, 1]
 
 
 def test_who_is_partly_outside_the_image_is_looked_at() -> None:
@@ -128,12 +127,24 @@ def test_who_is_partly_outside_the_image_is_looked_at() -> None:
 
 def test_who_is_followed_is_as_sure_as_when_looked_at() -> None:
     who = targets()
-    aim = Aim(None, {1: BOXES[1] + 1.0})
+    aim = Aim(True, {}, {1: BOXES[1] + 1.0})
     seen = aim.with_followed(Proposals.of_trees(BOXES[:1], np.array([0.5])), who)
     np.testing.assert_array_equal(seen.box, [BOXES[0], BOXES[1] + 1.0])
     assert (seen.score.tolist(), seen.trees.tolist()) == ([0.5, 2.0], [0.5, 2.0])
 
 
 def test_every_image_is_searched_everywhere_where_no_pause_is_asked_for() -> None:
-    config = GazeConfig(unsettled_s=0.0, settled_s=0.0)
+    config = GazeConfig(unsettled_s=0.0, settled_s=0.0, anew_s=0.0)
     assert everywhere(aims(targets(), 5, config=config)) == [0, 1, 2, 3, 4]
+
+
+def test_two_of_three_searches_pass_by_who_stands_apart() -> None:
+    told = aims(targets(), 25)
+    assert [list(told[image].expected) for image in (0, 6, 12, 18, 24)] == [[], [0, 1], [0, 1], [], [0, 1]]
+
+
+@pytest.mark.parametrize("make", [close, untold])
+def test_no_search_passes_by_who_is_near_others_or_unsure(make: Callable[[], list[Target]]) -> None:
+    who = make()
+    told = aims(who, 13, np.array([target.shown for target in who]))
+    assert not any(aim.expected for aim in told if aim.everywhere)
