@@ -47,9 +47,9 @@ def _without_revision(old: RecognitionConfig) -> RecognitionConfig:
     return replace(old, parted_s=math.inf, gone_s=math.inf)
 
 
-_EVERYBODY: Final = replace(_ALL, gaze=replace(_ALL.gaze, look_s=0.0))
+_EVERYBODY: Final = replace(_ALL, gaze=replace(_ALL.gaze, look_s=0.0, anew_s=0.0))
 _OFTEN: Final = replace(_EVERYBODY, gaze=replace(_EVERYBODY.gaze, settled_s=_ALL.gaze.unsettled_s))
-_EVERYWHERE: Final = replace(_ALL, gaze=replace(_ALL.gaze, unsettled_s=0.0, settled_s=0.0))
+_EVERYWHERE: Final = replace(_ALL, gaze=replace(_ALL.gaze, unsettled_s=0.0, settled_s=0.0, anew_s=0.0))
 
 VARIANTS: Final[Mapping[str, Variant]] = {
     "as it is": Variant(),
