@@ -70,6 +70,8 @@ class Level:
     def covered(self, box: Floats, share: float) -> NDArray[np.bool_]:
         """Tell of windows (h - 19, w - 9) whether their people and one of boxes (K, 4) have much in common.
 
+        Windows are broader than people: theirs are taken to be as broad, in heights, as the one compared.
+
         Args:
             box: of some people [px].
             share: of the smaller box of both, from which on it is much.
@@ -194,7 +196,7 @@ def _cover(
     rows, columns = is_covered.shape
     wide, high = first[2], first[3]
     for left, top, width, height in boxes:
-        narrow = width / height * high  # windows are wider than people
+        narrow = width / height * high
         least = share * min(width * height, narrow * high)
         for i in range(rows):
             y = first[1] + i * step[1]
