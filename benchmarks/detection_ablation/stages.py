@@ -1,12 +1,16 @@
-"""The detector as it is, or as far as one of its looks."""
+"""The detector as it is, or as far as one of its looks, or an absolute threshold in its place."""
 
 from __future__ import annotations
 
 from enum import Enum, auto
 from typing import Final
 
+import numpy as np
+
+from benchmarks.peers.detectors import Blobs
 from peopleboy.tracker.by_detection.config import ByDetectionConfig
-from peopleboy.tracker.by_detection.looking.finder import ThermalFinder
+from peopleboy.tracker.by_detection.looking.finder import Finder, ThermalFinder
+from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, WEAKEST, Grey, PeopleDetector, look
 from peopleboy.tracker.proposals.looks.second_look import look_again, shipped_network
 from peopleboy.tracker.proposals.model import shipped_model
@@ -14,11 +18,13 @@ from peopleboy.tracker.proposals.suppression import NOBODY, Proposals
 from peopleboy.tracker.thermal.mount import Mount
 
 LEAST: Final = ByDetectionConfig().existence.weakest
+_SURE: Final = 3.0  # log odds of a warm blob
 
 
 class Stage(Enum):
     """How far it looks."""
 
+    THRESHOLD = auto()
     TREES = auto()
     SECOND_LOOK = auto()
     CLOSER_LOOK = auto()
@@ -55,6 +61,15 @@ class DetectorOfStage(PeopleDetector):
         return look_again(shipped_network(), grey, change, first, mount, LEAST)
 
 
-def thermal_finder(stage: Stage) -> ThermalFinder:
+class WarmFinder:
+    """Takes whatever is upright and warmer than a grey for somebody: evidence that is not relative."""
+
+    def __call__(self, frame: Frame, expected: Proposals, *, everywhere: bool) -> Proposals:  # noqa: ARG002
+        """Find people in a frame, whoever is expected."""
+        boxes = Blobs().detect(frame).box
+        return Proposals.of_trees(boxes, np.full(len(boxes), _SURE))
+
+
+def thermal_finder(stage: Stage) -> Finder:
     """Make one that looks no further than to a stage."""
-    return ThermalFinder(DetectorOfStage(stage))
+    return WarmFinder() if stage is Stage.THRESHOLD else ThermalFinder(DetectorOfStage(stage))

@@ -61,6 +61,7 @@ VARIANTS: Final[Mapping[str, Variant]] = {
     "proposed by the thermal image alone": Variant(stage=Stage.CLOSER_LOOK),
     "and without the closer look": Variant(stage=Stage.SECOND_LOOK),
     "and without the second look, by trees alone, everywhere": Variant(_EVERYWHERE, Stage.TREES),
+    "by what is warmer than a grey and upright, everywhere": Variant(_EVERYWHERE, Stage.THRESHOLD),
     "nested boxes are as good": Variant(
         replace(
             _ALL,

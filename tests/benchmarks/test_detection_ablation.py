@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
 from benchmarks.detection_ablation.film import Film
-from benchmarks.detection_ablation.stages import LEAST, DetectorOfStage, Stage
+from benchmarks.detection_ablation.stages import LEAST, DetectorOfStage, Stage, thermal_finder
 from benchmarks.detection_ablation.variants import VARIANTS
 from benchmarks.tracker_ablation import recorded
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.proposals.detector import PeopleDetector
+from peopleboy.tracker.proposals.suppression import NOBODY
 
 
 @pytest.fixture(scope="module")
@@ -36,6 +39,14 @@ def test_as_it_is_it_is_the_tracker(film: Film) -> None:
     expected = [tracker.update(frame) for frame in film.frames]
     assert VARIANTS["as it is"].tracked(film) == expected
     assert expected[-1]
+
+
+def test_a_threshold_finds_people_by_the_greys_it_was_made_for_alone(film: Film) -> None:
+    find = thermal_finder(Stage.THRESHOLD)
+    frame = film.frames[-1]
+    warmer = np.clip(frame.grey(THERMAL).astype(int) + 60, 0, 255).astype(np.uint8)
+    assert len(find(frame, NOBODY, everywhere=True).box) >= 1
+    assert len(find(replace(frame, images={THERMAL: warmer}), NOBODY, everywhere=True).box) == 0
 
 
 def test_every_variant_is_another_tracker() -> None:
