@@ -125,9 +125,10 @@ def look(
                 is_sure = hits.score >= least_score
                 if not is_sure.any():
                     continue
-                best = hits.taken(is_sure).best()
-                boxes.append(
-                    trees.placing.boxes(sums, best.row, best.column, level.boxes(best.row, best.column))
-                )
-                scores.append(best.score)
+                hits = hits.taken(is_sure)
+                if mount is not None:  # of a camera that is not known all tell something
+                    hits = hits.best()
+                row, column = hits.row, hits.column
+                boxes.append(trees.placing.boxes(sums, row, column, level.boxes(row, column)))
+                scores.append(hits.score)
     return suppress(Proposals.of_trees(np.concatenate(boxes), np.concatenate(scores)))
