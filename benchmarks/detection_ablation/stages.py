@@ -11,10 +11,10 @@ from benchmarks.peers.detectors import Blobs
 from peopleboy.tracker.by_detection.config import ByDetectionConfig
 from peopleboy.tracker.by_detection.looking.finder import Finder, ThermalFinder
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.proposals.detector import SMALLEST_PX, WEAKEST, Grey, PeopleDetector, look
+from peopleboy.tracker.proposals.detector import SMALLEST_PX, Grey, PeopleDetector, look
 from peopleboy.tracker.proposals.looks.second_look import look_again, shipped_network
 from peopleboy.tracker.proposals.model import shipped_model
-from peopleboy.tracker.proposals.suppression import NOBODY, Proposals
+from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.thermal.mount import Mount
 
 LEAST: Final = ByDetectionConfig().existence.weakest
@@ -22,7 +22,7 @@ _SURE: Final = 3.0  # log odds of a warm blob
 
 
 class Stage(Enum):
-    """How far it looks."""
+    """By what people are found: a threshold, or the detector as far as it looks."""
 
     THRESHOLD = auto()
     TREES = auto()
@@ -39,13 +39,7 @@ class DetectorOfStage(PeopleDetector):
         self._stage = stage
 
     def found(
-        self,
-        grey: Grey,
-        change: Grey,
-        mount: Mount | None,
-        expected: Proposals = NOBODY,
-        *,
-        everywhere: bool = True,
+        self, grey: Grey, change: Grey, mount: Mount | None, expected: Proposals, *, everywhere: bool
     ) -> Proposals:
         """Look for people in an image of which it is known by how much (H, W) greys changed.
 
@@ -55,9 +49,7 @@ class DetectorOfStage(PeopleDetector):
             return super().found(grey, change, mount, expected, everywhere=everywhere)
         if self._stage is Stage.TREES:
             return look(shipped_model(), grey, change, mount, SMALLEST_PX, LEAST)
-        first = expected
-        if everywhere:
-            first = look(shipped_model(), grey, change, mount, SMALLEST_PX, WEAKEST, expected)
+        first = self.proposed(grey, change, mount, expected) if everywhere else expected
         return look_again(shipped_network(), grey, change, first, mount, LEAST)
 
 

@@ -49,8 +49,8 @@ class Target:
         trees: log odds by the detector's trees alone, when it was last found among all.
         score: log odds of the proposal when the detector last found it.
         looked_s: when that was.
-        searched_s: when trees found it among all.
         portrait: what it looked like then.
+        searched_s: when trees last found it among all.
         log_odds: that it is a person.
         surest: most that a single image said.
         id: 0 as long as it is not told.
@@ -72,8 +72,8 @@ class Target:
     trees: float = 0.0
     score: float = 0.0
     looked_s: float = -math.inf
-    searched_s: float = -math.inf
     portrait: Portrait | None = None
+    searched_s: float = -math.inf
     log_odds: float = 0.0
     surest: float = -math.inf
     id: int = 0

@@ -84,21 +84,17 @@ class PeopleDetector:
         return self.found(grey, self._past.change(mount), mount, expected, everywhere=everywhere)
 
     def found(
-        self,
-        grey: Grey,
-        change: Grey,
-        mount: Mount | None,
-        expected: Proposals = NOBODY,
-        *,
-        everywhere: bool = True,
+        self, grey: Grey, change: Grey, mount: Mount | None, expected: Proposals, *, everywhere: bool
     ) -> Proposals:
         """Look for people in an image of which it is known by how much (H, W) greys changed."""
-        first = expected
-        if everywhere:
-            first = look(self._model, grey, change, mount, self._smallest_px, WEAKEST, expected, self._memory)
+        first = self.proposed(grey, change, mount, expected) if everywhere else expected
         with one_thread():  # here once for both networks: to tell the library takes a while
             found = look_again(self._second_look, grey, change, first, mount, self._least_score, self._desk)
             return look_closer(self._closer_look, grey, change, found, mount, self._desk)
+
+    def proposed(self, grey: Grey, change: Grey, mount: Mount | None, known: Proposals) -> Proposals:
+        """Let trees look for people, and propose those who are known as well."""
+        return look(self._model, grey, change, mount, self._smallest_px, WEAKEST, known, self._memory)
 
 
 def look(

@@ -14,6 +14,7 @@ from peopleboy.scenarios.studies.people_learning.people_film import PeopleFilm, 
 from peopleboy.tracker.proposals.channels import BESIDE, FIRST_DIRECTION, GRADIENT, MOTION, OVER
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, PeopleDetector
 from peopleboy.tracker.proposals.pyramid import levels
+from peopleboy.tracker.proposals.suppression import NOBODY
 
 WORLDS = (3, 24, 28)
 """Seeds of worlds; of each that image is shown in which most people are plain to see."""
@@ -46,7 +47,7 @@ def _plainest(film: PeopleFilm) -> int:
 
 def _found(panel: Axes, film: PeopleFilm, k: int) -> None:
     show(panel, film.grey[k] // _STEP * _STEP)
-    found = PeopleDetector().found(film.grey[k], film.change[k], film.seen_by())
+    found = PeopleDetector().found(film.grey[k], film.change[k], film.seen_by(), NOBODY, everywhere=True)
     for (left, top, width, height), score in zip(found.box.tolist(), found.score.tolist(), strict=True):
         panel.add_patch(Rectangle((left, top), width, height, fill=False, edgecolor="tab:orange", lw=1.5))
         panel.text(left, max(top - 2.0, 12.0), f"{score:.1f}", color="tab:orange", fontsize=8)
