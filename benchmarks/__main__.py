@@ -101,7 +101,7 @@ def _tracker() -> Iterator[BenchFigure]:
     yield BenchFigure((of, by, "ratio"), hog.frame_ratio, "{:.1f}", Goal(least=30), reason)
     other, where = (
         "anywhere, 4 people",
-        "two fifths of it is trees that search every third to sixth image, a third networks that look at people",
+        "two fifths are trees that search every third to sixth image, a third networks that look at people",
     )
     yield BenchFigure((other, "ms"), hog.detection_ms, "{:.1f} ms, mean of some frames")
     yield BenchFigure((other, by, "ratio"), hog.detection_ratio, "{:.1f}", Goal(least=9.8), where)
