@@ -32,7 +32,7 @@ from peopleboy.sim.world import World
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import THERMAL, Frame
-from peopleboy.tracker.trackers import make_tracker
+from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
 SCENES: Final = ("crossing_2", "single_stationary")
 _HEIGHT_M: Final = 1.2  # of the cameras, as they are
@@ -173,7 +173,7 @@ def rows(names: tuple[str, ...], seeds: int, tracker: str) -> Iterator[tuple[str
 
 @click.command()
 @click.option("--seeds", default=5, show_default=True, help="Runs of each scene.")
-@click.option("--tracker", default="peopleboy", show_default=True)
+@click.option("--tracker", default=DEFAULT_TRACKER, show_default=True)
 @click.argument("cameras", nargs=-1, type=click.Choice(tuple(CAMERAS)))
 def main(seeds: int, tracker: str, cameras: tuple[str, ...]) -> None:
     """Print how a tracker does with these cameras, or with all, as a Markdown table [%]."""

@@ -25,7 +25,7 @@ from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.track_footage import track_footage
 from peopleboy.scenarios.running.run import RunOptions, run
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
-from peopleboy.tracker.trackers import FOOTAGE_TRACKER
+from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 SCENES: Final = (
     "crossing_2",
@@ -53,7 +53,7 @@ _FOLDER: Final = click.Path(exists=True, file_okay=False, path_type=Path)
     "--tracker",
     "trackers",
     multiple=True,
-    default=(FOOTAGE_TRACKER,),
+    default=(DEFAULT_TRACKER,),
     show_default=True,
     help="With --clips; may be given several times.",
 )

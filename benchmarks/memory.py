@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.speed.whole_tracker import STEP_S, shoot
+from benchmarks.speed.contour_tracker import STEP_S, shoot
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker

@@ -75,8 +75,8 @@ Factory = Callable[[np.random.Generator], Tracker]
 """Makes a tracker that draws all that is random from the generator."""
 
 
-DEFAULT_TRACKER: Final = "peopleboy"
-FOOTAGE_TRACKER: Final = "anywhere"
+DEFAULT_TRACKER: Final = "anywhere"
+CONTOUR_TRACKER: Final = "peopleboy"
 
 
 def explanation_of(tracker: Tracker) -> object:
@@ -112,7 +112,7 @@ def _panoramic_tracker(rng: np.random.Generator) -> PanoramicTracker:  # noqa: A
 
 
 def _handover_tracker(rng: np.random.Generator) -> HandoverTracker:
-    return HandoverTracker(_contour_tracker(DEFAULT_TRACKER, rng), _panoramic_tracker(rng))
+    return HandoverTracker(_contour_tracker(CONTOUR_TRACKER, rng), _panoramic_tracker(rng))
 
 
 def _rgbd_tracker(config: RgbdConfig, rng: np.random.Generator) -> RgbdTracker:
@@ -121,17 +121,17 @@ def _rgbd_tracker(config: RgbdConfig, rng: np.random.Generator) -> RgbdTracker:
 
 def _fused_tracker(rng: np.random.Generator) -> FusedTracker:
     by_heat, by_depth = rng.spawn(2)
-    thermal = _contour_tracker(DEFAULT_TRACKER, by_heat)
+    thermal = _contour_tracker(CONTOUR_TRACKER, by_heat)
     rgbd = RgbdTracker(RgbdConfig(), shipped_windows(sees_depth=True), by_depth, is_warm)
     return FusedTracker(AheadTracker(thermal, rgbd, FusionConfig()), _panoramic_tracker(rng))
 
 
 def _attentive_tracker(rng: np.random.Generator) -> AttentiveTracker[ColourLook, ColourLook]:
-    return AttentiveTracker(_contour_tracker(DEFAULT_TRACKER, rng), ByColour())
+    return AttentiveTracker(_contour_tracker(CONTOUR_TRACKER, rng), ByColour())
 
 
 def _attentive_printed_tracker(rng: np.random.Generator) -> AttentiveTracker[PersonLook, Spotted]:
-    return AttentiveTracker(_contour_tracker(DEFAULT_TRACKER, rng), ByFocus(PRINTED_ATTENTION), AS_FOUND)
+    return AttentiveTracker(_contour_tracker(CONTOUR_TRACKER, rng), ByFocus(PRINTED_ATTENTION), AS_FOUND)
 
 
 def _attentive_fused_tracker(rng: np.random.Generator) -> AttentiveTracker[ColourLook, ColourLook]:
@@ -139,8 +139,8 @@ def _attentive_fused_tracker(rng: np.random.Generator) -> AttentiveTracker[Colou
 
 
 TRACKERS: Final[dict[str, Factory]] = {
+    DEFAULT_TRACKER: _by_detection_tracker,
     **{name: partial(_contour_tracker, name) for name in VARIANTS},
-    FOOTAGE_TRACKER: _by_detection_tracker,
     "panoramic-paper": _panoramic_paper_tracker,
     "panoramic": _panoramic_tracker,
     "handover": _handover_tracker,

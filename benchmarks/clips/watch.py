@@ -20,7 +20,7 @@ from peopleboy.scenarios.running.engine.task import Tell
 from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
-from peopleboy.tracker.trackers import FOOTAGE_TRACKER, is_own
+from peopleboy.tracker.trackers import DEFAULT_TRACKER, is_own
 
 PEERS: Final = {"HOG x 2 + ByteTrack": 2.0, "HOG x 3 + ByteTrack": 3.0}
 """How many times each enlarges the pictures: HOG sees people from 96 px of the enlarged ones on."""
@@ -72,7 +72,7 @@ class WatchTask:
             BadInput: the tracker is unknown or wants other cameras, or a picture cannot be used.
         """
         watcher = make_watcher(self.tracker, self.seed)
-        name = FOOTAGE_TRACKER if self.tracker in PEERS else self.tracker
+        name = DEFAULT_TRACKER if self.tracker in PEERS else self.tracker
         views = open_views(
             TrackOptions(footage=self.clip.folder, out=Path(), tracker=name, rate_hz=self.rate_hz)
         )

@@ -17,7 +17,7 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.variants import VARIANTS
-from peopleboy.tracker.trackers import FOOTAGE_TRACKER
+from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 RATE_HZ = 15.0
 # The package counts in frames at 30 Hz: five seconds. Of 1, 2, 5 and 10 s it is best for the oracle's IDF1,
@@ -81,7 +81,7 @@ JOINT = "thermal+mcmc"
 
 def contestants() -> list[str]:
     """Name all who can compete."""
-    return [*VARIANTS, FOOTAGE_TRACKER, *PEERS, JOINT]
+    return [*VARIANTS, DEFAULT_TRACKER, *PEERS, JOINT]
 
 
 def make_contestant(name: str, seed: int, truth: TrueBoxes) -> Contestant:

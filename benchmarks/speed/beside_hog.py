@@ -1,4 +1,4 @@
-"""The whole tracker, a step of its filter, and that by detection beside OpenCV's HOG detector, by turns.
+"""The default tracker, the contour tracker and a step of its filter beside OpenCV's HOG detector, by turns.
 
 A machine that does other work is now quick and now slow: what takes turns within a second meets the same.
 """
@@ -15,11 +15,11 @@ from typing import Final
 import cv2
 
 from benchmarks.peers.detectors import Hog
+from benchmarks.speed.contour_tracker import MOST, people_in
 from benchmarks.speed.filter_step import FilterStep
-from benchmarks.speed.whole_tracker import MOST, people_in
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.trackers import DEFAULT_TRACKER, FOOTAGE_TRACKER, make_tracker
+from peopleboy.tracker.trackers import CONTOUR_TRACKER, DEFAULT_TRACKER, make_tracker
 
 COUNT: Final = 1000
 _FRAMES: Final = 10  # of a turn: one after the other, as in a run
@@ -28,18 +28,18 @@ _STEPS: Final = 100  # likewise of the filter; then comes HOG, once
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Turn:
-    """CPU times [ms] within a second or less; those of tracker and filter are medians.
+    """CPU times [ms] within a second or less; those of contours and filter are medians.
 
     Attributes:
-        frame_ms: of the tracker, of those frames in which each person has a filter.
+        contour_ms: of the contour tracker, of those frames in which each person has a filter.
         step_ms: of a filter with 1000 samples.
-        detection_ms: of the tracker by detection, mean of the same frames, as some take longer than others.
+        default_ms: of the default tracker, mean of the same frames, as some take longer than others.
         hog_ms: of HOG, once.
     """
 
-    frame_ms: float
+    contour_ms: float
     step_ms: float
-    detection_ms: float
+    default_ms: float
     hog_ms: float
 
 
@@ -55,9 +55,9 @@ class BesideHog:
         return median(turn.hog_ms for turn in self.turns)
 
     @property
-    def frame_ratio(self) -> float:
-        """How many times longer HOG takes than the whole tracker, median over the turns."""
-        return median(turn.hog_ms / turn.frame_ms for turn in self.turns)
+    def contour_ratio(self) -> float:
+        """How many times longer HOG takes than the contour tracker, median over the turns."""
+        return median(turn.hog_ms / turn.contour_ms for turn in self.turns)
 
     @property
     def step_ratio(self) -> float:
@@ -65,14 +65,14 @@ class BesideHog:
         return median(turn.hog_ms / turn.step_ms for turn in self.turns)
 
     @property
-    def detection_ms(self) -> float:
-        """What the tracker by detection takes [ms], median over the turns."""
-        return median(turn.detection_ms for turn in self.turns)
+    def default_ms(self) -> float:
+        """What the default tracker takes [ms], median over the turns."""
+        return median(turn.default_ms for turn in self.turns)
 
     @property
-    def detection_ratio(self) -> float:
-        """How many times longer HOG takes than the tracker by detection, likewise."""
-        return median(turn.hog_ms / turn.detection_ms for turn in self.turns)
+    def default_ratio(self) -> float:
+        """How many times longer HOG takes than the default tracker, likewise."""
+        return median(turn.hog_ms / turn.default_ms for turn in self.turns)
 
 
 def beside_hog(film: Sequence[Frame]) -> BesideHog:
@@ -86,25 +86,25 @@ def beside_hog(film: Sequence[Frame]) -> BesideHog:
 
 
 def _turns(film: Sequence[Frame]) -> list[Turn]:
-    tracker, other = (make_tracker(name, stream(0, "tracker")) for name in (DEFAULT_TRACKER, FOOTAGE_TRACKER))
+    trackers = [make_tracker(name, stream(0, "tracker")) for name in (CONTOUR_TRACKER, DEFAULT_TRACKER)]
     hog, step = Hog(uses_colour=True), FilterStep(COUNT)
     hog.detect(film[0])
     turns = []
     for first in range(0, len(film), _FRAMES):
-        frames_ms, others_ms = [], []
+        contours_ms, defaults_ms = [], []
         for frame in film[first : first + _FRAMES]:
-            spent_ms, other_ms = (_spent_ms(partial(one.update, frame)) for one in (tracker, other))
-            if len(people_in(tracker)) == MOST:
-                frames_ms.append(spent_ms)
-                others_ms.append(other_ms)
+            contour_ms, default_ms = (_spent_ms(partial(one.update, frame)) for one in trackers)
+            if len(people_in(trackers[0])) == MOST:
+                contours_ms.append(contour_ms)
+                defaults_ms.append(default_ms)
         steps_ms = [_spent_ms(step) for _ in range(_STEPS)]
         hog_ms = _spent_ms(partial(hog.detect, film[first]))
-        if frames_ms:
+        if contours_ms:
             turns.append(
                 Turn(
-                    frame_ms=median(frames_ms),
+                    contour_ms=median(contours_ms),
                     step_ms=median(steps_ms),
-                    detection_ms=mean(others_ms),
+                    default_ms=mean(defaults_ms),
                     hog_ms=hog_ms,
                 )
             )

@@ -19,7 +19,7 @@ from tempfile import TemporaryDirectory
 import click
 
 from benchmarks import call
-from benchmarks.speed.whole_tracker import SCENARIO
+from benchmarks.speed.contour_tracker import SCENARIO
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.frame_cache import film, frames_of, open_film
 from peopleboy.sim.random_streams import stream

@@ -8,19 +8,19 @@ from docs.generate.markdown import table
 from peopleboy.tracker.trackers import TRACKERS
 
 ABOUT: Mapping[str, tuple[str, str]] = {
+    "anywhere": (
+        "the default: any camera, any room, recorded video",
+        "A detector that has seen nothing but rendered random worlds proposes people, and a Kalman filter in "
+        "metres follows each. No temperature matters, only contrast; colours tell who came back.",
+    ),
     "peopleboy": (
-        "the default",
+        "thesis, chapters 4 to 7, and beyond",
         "Particles, contour, colour and thermal looks. People who overlap are sorted by depth, those in "
         "front are explained away, hidden people walk on. It knows how the robot moved.",
     ),
     "learned": (
-        "the default, taught",
+        "the same, taught",
         "The same, but who is in front is told by the classifier that `peopleboy train-occlusion` learned.",
-    ),
-    "anywhere": (
-        "any camera, any room; recorded video",
-        "A detector that has seen nothing but rendered random worlds proposes people, and a Kalman filter in "
-        "metres follows each. No temperature matters, only contrast; colours tell who came back.",
     ),
     "thesis": (
         "thesis, chapters 4 to 7",

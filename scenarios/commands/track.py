@@ -110,7 +110,7 @@ def track(
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.tracker.footage.box_kinds import BoxKind
     from peopleboy.tracker.footage.grey import Radiometry, parse_scale
-    from peopleboy.tracker.trackers import FOOTAGE_TRACKER
+    from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
     camera = {
         "height_m": camera_height_m,
@@ -129,7 +129,7 @@ def track(
         ),
         rgbd=_rgbd(depth, depth_scale, camera, odometry),
         rate_hz=rate_hz,
-        tracker=tracker or (FOOTAGE_TRACKER if depth is None else RGBD_TRACKER),
+        tracker=tracker or (DEFAULT_TRACKER if depth is None else RGBD_TRACKER),
         truth=truth,
         boxes=None if boxes is None else BoxKind(boxes),
         start=None if start is None else _parse_start(start),

@@ -10,7 +10,7 @@ from peopleboy.scenarios.footage.rgbd_camera import RgbdCamera
 from peopleboy.tracker.boxes import Box
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.footage.grey import Radiometry
-from peopleboy.tracker.trackers import FOOTAGE_TRACKER
+from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 DEFAULT_RATE_HZ: Final = 15.0
 """Pictures a second of a folder: those of the robot's cameras, for which the trackers are made."""
@@ -62,7 +62,7 @@ class TrackOptions:
     radiometry: Radiometry = field(default_factory=Radiometry)
     rgbd: RgbdOptions | None = None
     rate_hz: float | None = None
-    tracker: str = FOOTAGE_TRACKER
+    tracker: str = DEFAULT_TRACKER
     truth: Path | None = None
     boxes: BoxKind | None = None
     start: Box | str | None = None

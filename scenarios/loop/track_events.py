@@ -135,4 +135,4 @@ def why_lost(now: Track, was: Track, width_px: int, heir: int | None = None) -> 
         return f"hidden{by} for too long to know where"
     if was.status is Status.UNKNOWN:
         return "unknown, as its tracker does not tell"
-    return f"the contour is gone, confidence {now.confidence:.2f}"
+    return f"not found any more, confidence {now.confidence:.2f}"

@@ -1,7 +1,7 @@
 """Record the drives of a suite: `python -m peopleboy.scenarios.running.record_drives dataset2`.
 
 A robot that follows people goes where its tracker sees them. For the frames of a data set to be the same for
-every tracker, the default one drives it once, and the commands are kept.
+every tracker, the contour tracker drives it once, and the commands are kept.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from peopleboy.scenarios.files.suite import SuiteRun, drive_path, load_suite, ru
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
-from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
+from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
 
 def record(run: SuiteRun) -> Iterator[Command]:
-    """Play a run with the default tracker, and yield what the robot was told at each step."""
+    """Play a run with the contour tracker, and yield what the robot was told at each step."""
     config = run.scenario.world(run.seed)
-    tracker = make_tracker(DEFAULT_TRACKER, stream(run.seed, "tracker"))
+    tracker = make_tracker(CONTOUR_TRACKER, stream(run.seed, "tracker"))
     frames = round(run.scenario.duration_s * config.control_hz)
     with World(config) as world:
         for tick in closed_loop(world, tracker, run.scenario.make_behaviour(), frames):

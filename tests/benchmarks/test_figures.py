@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks.memory import MemoryCurve, memory_curve
 from benchmarks.speed.beside_hog import BesideHog, Turn
-from benchmarks.speed.whole_tracker import CrowdTime, WholeTracker
+from benchmarks.speed.contour_tracker import ContourTimes, CrowdTime
 from peopleboy.tracker.frame import THERMAL, Frame
 
 
@@ -30,15 +30,15 @@ def test_a_persons_cost_is_the_slope_over_the_crowds() -> None:
     crowds = tuple(
         CrowdTime(people=people, frame_ms=1.0 + 0.5 * people, frames=9, tracked=people) for people in range(5)
     )
-    found = WholeTracker(crowds=crowds, prepare_ms=0.1, parts_ms={})
+    found = ContourTimes(crowds=crowds, prepare_ms=0.1, parts_ms={})
     assert found.person_ms == pytest.approx(0.5)
 
 
 def test_a_machine_that_is_slow_for_some_turns_changes_no_ratio() -> None:
     slow = [1.0, 1.0, 2.0, 2.0, 1.5]
     turns = tuple(
-        Turn(frame_ms=2.0 * by, step_ms=0.1 * by, detection_ms=10.0 * by, hog_ms=60.0 * by) for by in slow
+        Turn(contour_ms=2.0 * by, step_ms=0.1 * by, default_ms=10.0 * by, hog_ms=60.0 * by) for by in slow
     )
-    assert BesideHog(turns).frame_ratio == pytest.approx(30.0)
+    assert BesideHog(turns).contour_ratio == pytest.approx(30.0)
     assert BesideHog(turns).step_ratio == pytest.approx(600.0)
-    assert BesideHog(turns).detection_ratio == pytest.approx(6.0)
+    assert BesideHog(turns).default_ratio == pytest.approx(6.0)

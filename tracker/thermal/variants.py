@@ -198,10 +198,10 @@ PEOPLEBOY = TrackerConfig(
     height=HeightConfig(overlapped_spread=0.1),
     occlusion=WalkOnConfig(remembers_lost=True, shows_only_sure=True),
 )
-"""What works on the robot: the default."""
+"""What works best by contours."""
 
 PEOPLEBOY_LEARNED = replace(PEOPLEBOY, depth=replace(PEOPLEBOY.depth, order="learned"))
-"""The default with a learned order in depth."""
+"""The same with a learned order in depth."""
 
 VARIANTS: Final[Mapping[str, TrackerConfig]] = {
     "peopleboy": PEOPLEBOY,
@@ -211,4 +211,4 @@ VARIANTS: Final[Mapping[str, TrackerConfig]] = {
     "colour": THESIS_COLOUR,
     "paper": PAPER,
 }
-"""The settings of each tracker by name; the first is the default."""
+"""The settings of each contour tracker by name, the best first."""

@@ -39,12 +39,12 @@ def test_who_was_hidden_and_forgotten_is_re_identified_under_the_old_id() -> Non
     assert found[4][0].why == "after 3.0 s"
 
 
-def test_a_lost_track_left_the_image_or_its_contour_is_gone() -> None:
+def test_a_lost_track_left_the_image_or_is_found_no_more() -> None:
     outside = made.with_box((300.0, 50.0, 40.0, 170.0))
     weak = replace(made.with_status(Status.TENTATIVE), confidence=0.12)
     assert play((outside,), ())[1][0].why.endswith("right")
     assert play((made.with_box((-20.0, 50.0, 40.0, 170.0)),), ())[1][0].why.endswith("left")
-    assert_names(play((made.TRACK,), (weak,))[1][0].why, "contour", "0.12")
+    assert_names(play((made.TRACK,), (weak,))[1][0].why, "not found", "0.12")
 
 
 def test_who_is_known_again_after_some_images_goes_on_under_the_old_number_and_is_not_lost() -> None:

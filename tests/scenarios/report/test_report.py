@@ -224,9 +224,9 @@ def test_no_loss_of_the_log_is_counted_twice_or_not_at_all(
 
 def test_a_loss_gives_the_tracker_s_own_reason_and_names_on_whom_the_other_track_lay(tmp_path: Path) -> None:
     path = toy.write_run(tmp_path / "run", toy.until_75, toy.hidden_from_75) / "events.jsonl"
-    assert found_in(path.parent).losses[0].believed == "the contour is gone, confidence 0.90"
+    assert found_in(path.parent).losses[0].believed == "not found any more, confidence 0.90"
     hidden = "hidden by track 1 for too long to know where"
-    path.write_text(path.read_text().replace("the contour is gone, confidence 0.90", hidden))
+    path.write_text(path.read_text().replace("not found any more, confidence 0.90", hidden))
     (loss,) = found_in(path.parent).losses
     assert loss.believed == "hidden by number 1 (on Anna) for too long to know where"
 
@@ -321,7 +321,7 @@ def test_curves_average_over_runs(folders: dict[str, Path]) -> None:
 
 def test_columns_are_named_by_what_tells_them_apart(folders: dict[str, Path]) -> None:
     by_tracker = read_columns([folders["steady"], folders["swapped"]])
-    assert [column.label for column in by_tracker] == ["peopleboy", "thesis"]
+    assert [column.label for column in by_tracker] == ["anywhere", "thesis"]
     assert are_same_scene(by_tracker)
     by_scene = read_columns([folders["steady"], folders["renumbered"]])
     assert [column.label for column in by_scene] == ["toy, seed 0", "toy, seed 1"]
@@ -367,7 +367,7 @@ def test_two_sweeps_give_the_difference_of_their_pairs_with_an_interval(tmp_path
 def test_more_than_four_runs_are_taken_together_by_tracker(folders: dict[str, Path], tmp_path: Path) -> None:
     again = [shutil.copytree(folders[name], tmp_path / name) for name in ("steady", "swapped")]
     columns = read_columns([*folders.values(), *again])
-    assert {column.label: len(column.runs) for column in columns} == {"peopleboy": 3, "thesis": 2}
+    assert {column.label: len(column.runs) for column in columns} == {"anywhere": 3, "thesis": 2}
 
 
 def test_what_cannot_be_rendered_again_is_drawn_as_boxes(folders: dict[str, Path]) -> None:

@@ -264,7 +264,7 @@ def test_short_losses_that_are_left_out_are_counted_also_when_no_other_is_there(
 ) -> None:
     text = " ".join(structure(pages["blinking"]).text.split())
     assert "Losses of less than 0.3 s (1 of them) are left out" in text
-    assert "the contour is gone, confidence 0.90" in text
+    assert "not found any more, confidence 0.90" in text
     write_report(
         [toy.write_run(tmp_path / "run", lambda frame: toy.flickering(min(frame, 40)))],
         tmp_path / "page.html",

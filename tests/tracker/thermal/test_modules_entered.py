@@ -8,7 +8,7 @@ from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.sim.world import World
 from peopleboy.tracker.frame import COLOUR, THERMAL
-from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
+from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
 MOST = 12
 
@@ -42,7 +42,7 @@ def modules_entered(work):
 
 
 def test_one_tick_of_the_tracker_can_be_read_in_a_dozen_modules():
-    tracker = make_tracker(DEFAULT_TRACKER, np.random.default_rng(0))
+    tracker = make_tracker(CONTOUR_TRACKER, np.random.default_rng(0))
     *first, last = frames_of_four(61)
     for frame in first:
         tracker.update(frame)

@@ -1,4 +1,4 @@
-"""The default tracker, whole: a frame with nobody to four people, and the parts of it by their cost."""
+"""The contour tracker, whole: a frame with nobody to four people, and the parts of it by their cost."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.thermal.whereabouts import overlap_shares, person_factor, regions_of
 from peopleboy.tracker.track import Status
-from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
+from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
 SCENARIO = "crossing_4"  # they hide each other, partly and wholly
 MOST = 4
@@ -50,8 +50,8 @@ class CrowdTime:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WholeTracker:
-    """What the whole tracker costs.
+class ContourTimes:
+    """What the contour tracker costs.
 
     Attributes:
         crowds: by the number of people, from 0.
@@ -74,10 +74,10 @@ def films() -> tuple[Sequence[Frame], ...]:
     return tuple(list(shoot(SCENARIO, people)) for people in range(MOST + 1))
 
 
-def whole_tracker(crowds: Sequence[Sequence[Frame]]) -> WholeTracker:
+def contour_times(crowds: Sequence[Sequence[Frame]]) -> ContourTimes:
     """Track crowds of nobody to four people, and time it."""
     film = crowds[-1]
-    return WholeTracker(
+    return ContourTimes(
         crowds=tuple(_crowd_time(film, people) for people, film in enumerate(crowds)),
         prepare_ms=_milliseconds([partial(_view_of, frame) for frame in film]),
         parts_ms=_parts_ms(film),
@@ -99,7 +99,7 @@ def shoot(scenario: str, people: int | None = None, seed: int = 0) -> Iterator[F
 
 
 def _crowd_time(film: Sequence[Frame], people: int) -> CrowdTime:
-    tracker = make_tracker(DEFAULT_TRACKER, stream(0, "tracker"))
+    tracker = make_tracker(CONTOUR_TRACKER, stream(0, "tracker"))
     times, tracked = [], []
     for frame in film:
         start = time.process_time()
@@ -118,7 +118,7 @@ def people_in(tracker: PeopleTracker) -> list[int]:
 
 def _parts_ms(film: Sequence[Frame]) -> dict[str, float]:
     """Time the parts with the samples of people in the middle of a film, each in turn before all others."""
-    tracker = make_tracker(DEFAULT_TRACKER, stream(0, "tracker"))
+    tracker = make_tracker(CONTOUR_TRACKER, stream(0, "tracker"))
     for frame in film[: len(film) // 2]:
         tracker.update(frame)
     view = _view_of(film[len(film) // 2])
