@@ -28,6 +28,8 @@ _SHADES = np.array([(215, 48, 39), (255, 255, 191), (69, 117, 180)])
 OUT_OF_VIEW: Rgb = (110, 110, 110)
 LIKELY: Rgb = (116, 173, 209)
 UNLIKELY: Rgb = (110, 110, 110)
+_CORNERS = 4  # of a box
+_ARM = 0.3  # of a corner, as a share of the box's width
 _HALF = 0.5  # share of a section that must be in view
 
 
@@ -48,10 +50,10 @@ def _(explanation: ContourExplanation, tick: Tick) -> Lines:
 
 @explained_lines.register
 def _(explanation: DetectionExplanation, tick: Tick) -> Lines:  # noqa: ARG001
-    likely = explanation.scores > 0.0
+    shades = [LIKELY if score > 0.0 else UNLIKELY for score in explanation.scores.tolist()]
     return Lines(
-        lines_of([box_outline(box) for box in explanation.boxes], 2),
-        colours_of([LIKELY if is_likely else UNLIKELY for is_likely in likely.tolist()]),
+        lines_of([corner for box in explanation.boxes for corner in box_corners(box)], 2),
+        colours_of([shade for shade in shades for _ in range(_CORNERS)]),
     )
 
 
@@ -111,11 +113,14 @@ def _(explanation: AttentiveExplanation) -> Mapping[int, float]:
     return explanation.likeness
 
 
-def box_outline(box: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Draw a box (4,) [px] as a closed line (5, 2)."""
+def box_corners(box: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Draw the corners of a box (4,) [px] as lines (4, 3, 2), which leave the track's own box to be seen."""
     left, top, width, height = box
-    corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]])
-    return np.asarray(corners * (width, height) + (left, top))
+    arm = _ARM * width
+    inwards = np.array([(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)])
+    corner = (left, top) + (inwards < 0.0) * (width, height)
+    aside, down = inwards * (arm, 0.0), inwards * (0.0, arm)
+    return np.stack([corner + aside, corner, corner + down], axis=1)
 
 
 def section_marks(

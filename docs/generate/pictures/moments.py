@@ -14,17 +14,19 @@ from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.thermal.explanation import ContourExplanation
-from peopleboy.tracker.trackers import make_tracker
+from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
 CROSSING = ("crossing_2", 3)
 """Scenario and seed: nina, who is near, walks in front of olaf, who is far off."""
 
 
-def ticks(scenario: str, seed: int, frames: int) -> Iterator[tuple[World, Tick]]:
+def ticks(
+    scenario: str, seed: int, frames: int, tracker: str = CONTOUR_TRACKER
+) -> Iterator[tuple[World, Tick]]:
     """Play the first frames of a scenario with a standing robot, as `peopleboy run` does."""
     with World(load_scenario(scenario).world(seed)) as world:
-        tracker = make_tracker("peopleboy", stream(seed, "tracker"))
-        for tick in closed_loop(world, tracker, Stand(), frames):
+        eyes = make_tracker(tracker, stream(seed, "tracker"))
+        for tick in closed_loop(world, eyes, Stand(), frames):
             yield world, tick
 
 

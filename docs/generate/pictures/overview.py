@@ -24,6 +24,7 @@ from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.robot.robot_body import RADIUS_M
 from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth
+from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 PATH = Path(__file__).parents[2] / "overview.png"
 SCENARIO, SEED, FRAME = "crossing_4", 0, 41
@@ -40,7 +41,7 @@ TITLES = (
 
 def overview() -> Figure:
     """Draw one instant of a crossing of four people."""
-    *_, (_, tick) = ticks(SCENARIO, SEED, FRAME)
+    *_, (_, tick) = ticks(SCENARIO, SEED, FRAME, DEFAULT_TRACKER)
     figure, (thermal, colour, truth, plan) = panels(TITLES, 8.7, columns=2)
     show(
         thermal,
