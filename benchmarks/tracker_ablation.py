@@ -1,6 +1,6 @@
-"""What each step from the thesis to the default tracker gives: `python -m benchmarks.tracker_ablation`.
+"""What each step from the thesis to the best contour tracker gives: `python -m benchmarks.tracker_ablation`.
 
-Runs are recorded once, driven by the default tracker; every variant then sees the same images.
+Runs are recorded once, driven by that tracker; every variant then sees the same images.
 """
 
 from __future__ import annotations
@@ -158,7 +158,7 @@ def adopt(base: Any, source: Any, names: Sequence[str]) -> Any:
 
 
 def variants() -> Iterator[tuple[str, TrackerConfig]]:
-    """Give the sources' trackers, then one step after the other, then the default without each step."""
+    """Give the sources' trackers, then one step after the other, then the best without each step."""
     yield "paper, literal", PAPER
     yield "thesis, literal, with colour and occlusions", THESIS_OCCLUSION
     yield "thesis, literal, thermal alone", THESIS
@@ -169,7 +169,7 @@ def variants() -> Iterator[tuple[str, TrackerConfig]]:
         config = adopt(config, PEOPLEBOY, names)
         yield f"+ {step}", config
     for step, names in own.items():
-        yield f"default without: {step}", adopt(PEOPLEBOY, THESIS, names)
+        yield f"without: {step}", adopt(PEOPLEBOY, THESIS, names)
 
 
 def record(scenario: str, seed: int) -> Recorded:
@@ -229,7 +229,7 @@ def scores_of(runs: dict[str, list[Recorded]], names: Sequence[str], config: Tra
 @click.command()
 @click.option("--seeds", default=2, show_default=True, help="Runs of each scenario.")
 def main(seeds: int) -> None:
-    """Print what each step from the literal tracker to the default one gives, as a Markdown table [%]."""
+    """Print what each step from the literal tracker to the best by contours gives, as a Markdown table [%]."""
     runs = {name: [record(name, seed) for seed in range(seeds)] for name in (*ONE, *SEVERAL, EMPTY)}
     print_row("", COLUMNS)
     print_row("---", ["---:"] * len(COLUMNS))
