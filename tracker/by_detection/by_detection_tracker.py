@@ -32,6 +32,7 @@ from peopleboy.tracker.by_detection.paths import (
     boxes_of,
     corrected,
     distances,
+    places_of,
 )
 from peopleboy.tracker.by_detection.portrait import Portrait
 from peopleboy.tracker.by_detection.proposed import Proposed
@@ -39,7 +40,6 @@ from peopleboy.tracker.by_detection.target import Finding, Target
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, Odometry
 from peopleboy.tracker.proposals.suppression import Proposals
-from peopleboy.tracker.thermal.whereabouts import places_on_floor
 from peopleboy.tracker.track import Box, FloorPlace, Track
 
 FIRST_STEP_S: Final = 1 / 15
@@ -323,26 +323,24 @@ class ByDetectionTracker:
     def _tracks(self, frame: Frame, now: _Instant) -> tuple[Track, ...]:
         boxes = self._boxes(now.view)
         is_inside = intersection(boxes, now.outline) > 0.0
+        places: Sequence[FloorPlace | None] = [None] * len(boxes)
+        if now.view.floor_m is not None:
+            places = places_of(self._paths, frame.calibrations[THERMAL].position_m)
         shown = [
-            (target, self._told_box(target, box, now.time_s))
-            for target, box, inside in zip(self._targets, boxes, is_inside, strict=True)
+            (target, box, place)
+            for target, box, inside, place in zip(self._targets, boxes, is_inside, places, strict=True)
             if inside and target.is_shown(now.time_s, now.existence)
         ]
-        shown.sort(key=lambda pair: pair[0].id)
-        statuses = [target.status(now.time_s) for target, _ in shown]
-        calibration = frame.calibrations.get(THERMAL)
-        places: Sequence[FloorPlace | None] = [None] * len(shown)
-        if calibration is not None:
-            places = places_on_floor([box for _, box in shown], statuses, calibration)
+        shown.sort(key=lambda one: one[0].id)
         return tuple(
             Track(
                 id=target.id,
-                boxes={THERMAL: box},
+                boxes={THERMAL: self._told_box(target, box, now.time_s)},
                 place=place,
                 confidence=target.confidence,
-                status=status,
+                status=target.status(now.time_s),
                 age_s=now.time_s - target.born_s,
                 occluder=target.occluder,
             )
-            for (target, box), status, place in zip(shown, statuses, places, strict=True)
+            for target, box, place in shown
         )

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from peopleboy.tracker.by_detection.config import PathConfig
 from peopleboy.tracker.by_detection.viewpoint import NEAREST_M, Viewpoint
 from peopleboy.tracker.frame import Odometry
+from peopleboy.tracker.track import FloorPlace
 
 Floats = NDArray[np.float64]
 
@@ -118,6 +119,18 @@ def boxes_of(paths: Paths, view: Viewpoint, ratio: Floats) -> Floats:
     width = ratio * height
     boxes = np.stack([column - width / 2.0, foot - height, width, height], axis=1)
     return np.asarray(boxes, np.float64)
+
+
+def places_of(paths: Paths, camera_m: tuple[float, float, float]) -> list[FloorPlace]:
+    """Tell where on the floor people stand in the frame of the robot whose camera is there [m]."""
+    forward, left, _ = camera_m
+    return [
+        FloorPlace(
+            position_m=(forward + float(mean[2]), left - float(mean[0])),
+            covariance_m2=(float(spread[2, 2]), -float(spread[0, 2]), float(spread[0, 0])),
+        )
+        for mean, spread in zip(paths.mean, paths.covariance, strict=True)
+    ]
 
 
 def _turn(moved: Odometry) -> Floats:

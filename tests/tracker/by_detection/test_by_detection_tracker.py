@@ -93,6 +93,15 @@ def test_who_walks_is_told_within_a_second_and_keeps_one_number() -> None:
     assert seen[-1][0].boxes[THERMAL] == pytest.approx(boxes[-1][0], abs=3.0)
 
 
+def test_who_is_seen_by_a_known_camera_has_a_place_on_the_floor_and_nobody_else() -> None:
+    boxes = [[standing(0.8)]] * 10
+    tracker = ByDetectionTracker(find=Told(boxes))
+    (track,) = [tracker.update(frame) for frame in calibrated(boxes)][-1]
+    assert track.place is not None
+    assert track.place.position_m == pytest.approx((5.0, -0.8), abs=0.02)
+    assert [track.place for track in tracked(boxes)[-1]] == [None]
+
+
 def test_what_looks_rather_unlike_a_person_is_not_told() -> None:
     assert not any(tracked([[walker(100.0)]] * 90, score=-0.6))
     assert tracked([[walker(100.0)]] * 90, score=1.6)[-1]

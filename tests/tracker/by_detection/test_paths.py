@@ -10,7 +10,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.tracker.by_detection.config import PathConfig
-from peopleboy.tracker.by_detection.paths import Paths, advanced, begun, boxes_of, corrected, distances
+from peopleboy.tracker.by_detection.paths import (
+    Paths,
+    advanced,
+    begun,
+    boxes_of,
+    corrected,
+    distances,
+    places_of,
+)
 from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import Odometry
 from tests.tracker.by_detection.test_viewpoint import SHAPE, calibration
@@ -48,6 +56,21 @@ def test_the_robots_own_motion_moves_nobody_in_the_world(turn: float, ahead: flo
     forward = np.cos(turn) * x + np.sin(turn) * y
     left = -np.sin(turn) * x + np.cos(turn) * y
     assert moved.mean[0, :3] == pytest.approx([-left, 1.2, forward], abs=1e-4)
+
+
+@given(st.floats(1.5, 9.0), st.floats(-0.5, 0.5), st.floats(-0.3, 0.3), st.floats(-0.2, 0.2))
+def test_places_on_the_floor_are_told_in_the_frame_of_the_robot(
+    away: float, bearing: float, ahead: float, aside: float
+) -> None:
+    left = away * bearing
+    paths = begun(box_at(np.array([-left, 1.2, away])), VIEW, CONFIG)
+    (place,) = places_of(paths, (ahead, aside, 1.2))
+    assert place.position_m == pytest.approx((away + ahead, left + aside), abs=1e-3)
+    robot_from_level = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]])
+    xx, xy, yy = place.covariance_m2
+    told = robot_from_level @ paths.covariance[0, :3, :3] @ robot_from_level.T
+    assert np.array([[xx, xy], [xy, yy]]) == pytest.approx(told)
+    assert xx > 0.0 < xx * yy - xy**2
 
 
 def test_covariances_stay_symmetric_and_positive() -> None:
