@@ -229,7 +229,7 @@ def scores_of(runs: dict[str, list[Recorded]], names: Sequence[str], config: Tra
 @click.command()
 @click.option("--seeds", default=2, show_default=True, help="Runs of each scenario.")
 def main(seeds: int) -> None:
-    """Print what each step from the literal tracker to the best by contours gives, as a Markdown table [%]."""
+    """Print what each step from the literal tracker to the best by contours gives, in Markdown [%]."""
     runs = {name: [record(name, seed) for seed in range(seeds)] for name in (*ONE, *SEVERAL, EMPTY)}
     print_row("", COLUMNS)
     print_row("---", ["---:"] * len(COLUMNS))

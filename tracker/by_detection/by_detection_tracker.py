@@ -108,7 +108,7 @@ class ByDetectionTracker:
         now = _Instant(frame.time_s, self._time_step(frame.time_s), view, whole, *self._beliefs(view))
         self._carry_on(now.dt_s, frame.odometry or _STANDING)
         expected = self._boxes(view)
-        aim = self._gaze.aim(frame.grey(THERMAL), self._targets, expected, now.time_s, now.gaze)
+        aim = self._gaze.aim(frame.grey(THERMAL), self._targets, expected, now.time_s, view.breadth, now.gaze)
         seen = self._find(frame, aim.proposed(self._targets), everywhere=aim.everywhere)
         seen = seen._replace(score=now.existence.trust * seen.score + now.existence.lasting)
         proposed = Proposed.of(frame, aim.with_followed(seen, self._targets), view, len(aim.followed))

@@ -46,6 +46,8 @@ class GazeConfig:
             everywhere are looked at where people are expected who were seen just before, and nowhere else: of
             15 images a second two of three.
         settled_s: the same while whoever is known is a person, and was just seen: five of six.
+        breadth: tangent of half the angle from side to side of a camera for which that is so; a narrower one,
+            which is crossed sooner by whoever walks past, is searched the more often.
         lost_s: for how long it is open where somebody is who was not found.
         look_s: of who stands apart, images that come so soon after the detector's networks looked there are
             only compared with a portrait of then.
@@ -56,6 +58,7 @@ class GazeConfig:
 
     unsettled_s: float = 0.14
     settled_s: float = 0.34
+    breadth: float = 0.53
     lost_s: float = 1.0
     look_s: float = 0.19
     alike: float = 0.8

@@ -42,6 +42,11 @@ class Viewpoint:
     camera_from_level: Floats
     floor_m: float | None
 
+    @property
+    def breadth(self) -> float:
+        """How wide it looks: the tangent of half the angle from side to side."""
+        return (self.centre_px[0] + 0.5) / self.focal_px[0]
+
     @classmethod
     def of(cls, calibration: Calibration | None, shape: tuple[int, int]) -> Viewpoint:
         """Take a camera's calibration; one of which nothing is known is level.

@@ -58,7 +58,13 @@ class Gaze:
         self._everywhere_s = self._last_s = -math.inf
 
     def aim(
-        self, grey: Grey, targets: Sequence[Target], expected: Floats, time_s: float, config: GazeConfig
+        self,
+        grey: Grey,
+        targets: Sequence[Target],
+        expected: Floats,
+        time_s: float,
+        breadth: float,
+        config: GazeConfig,
     ) -> Aim:
         """Decide it for the next image.
 
@@ -67,6 +73,7 @@ class Gaze:
             targets: whoever is known, K.
             expected: (K, 4) where they should be [px].
             time_s: when the image was taken.
+            breadth: how wide the camera looks, as `Viewpoint` has it.
             config: what it takes.
         """
         last_s, self._last_s = self._last_s, time_s
@@ -76,7 +83,8 @@ class Gaze:
         is_missed = ~was_seen & (share > 0.0) & is_recent
         is_easy = was_seen & (share > _WHOLE) & _are_apart(expected, is_recent) & _are_sure(targets)
         is_settled = bool(targets) and all(target.is_told for target in targets) and not is_missed.any()
-        if time_s - self._everywhere_s > (config.settled_s if is_settled else config.unsettled_s):
+        settled_s = max(config.settled_s * min(breadth / config.breadth, 1.0), config.unsettled_s)
+        if time_s - self._everywhere_s > (settled_s if is_settled else config.unsettled_s):
             self._everywhere_s = time_s
             since_s = time_s - np.array([target.searched_s for target in targets])
             return Aim(True, _shown(is_easy & (since_s < config.anew_s), targets, grey, expected, config), {})

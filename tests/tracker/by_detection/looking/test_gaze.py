@@ -42,13 +42,19 @@ def targets(boxes: Floats = BOXES) -> list[Target]:
     ]
 
 
-def aims(who: list[Target], images: int, boxes: Floats = BOXES, config: GazeConfig = CONFIG) -> list[Aim]:
+def aims(
+    who: list[Target],
+    images: int,
+    boxes: Floats = BOXES,
+    config: GazeConfig = CONFIG,
+    breadth: float = CONFIG.breadth,
+) -> list[Aim]:
     """Look at images that are all the same, in which everybody is found who was found before."""
     gaze, found = Gaze(), []
     for image in range(images):
         time_s = image * DT_S
         last_s = max(image - 1, 0) * DT_S
-        found.append(gaze.aim(GREY, who, boxes, time_s, config))
+        found.append(gaze.aim(GREY, who, boxes, time_s, breadth, config))
         for row, target in enumerate(who):
             if target.seen_s == last_s:
                 target.seen_s = time_s
@@ -64,6 +70,14 @@ def everywhere(told: list[Aim]) -> list[int]:
 
 def test_five_of_six_images_are_not_searched_where_it_is_clear_who_is_there() -> None:
     assert everywhere(aims(targets(), 19)) == [0, 6, 12, 18]
+
+
+@pytest.mark.parametrize(("breadth", "searched"), [(2.0, 6), (1.0, 6), (0.7, 4), (0.5, 3), (0.1, 3)])
+def test_a_narrower_camera_is_searched_more_often_but_no_more_than_where_it_is_open_who_is_there(
+    breadth: float, searched: int
+) -> None:
+    told = aims(targets(), 19, breadth=breadth * CONFIG.breadth)
+    assert everywhere(told) == list(range(0, 19, searched))
 
 
 @pytest.mark.parametrize("open_", ["nobody", "untold", "lost"])
