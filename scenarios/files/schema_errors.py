@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Iterable, Sequence
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_origin
 
 from pydantic import BaseModel, ValidationError
 
@@ -124,24 +124,32 @@ def _follow(loc: Sequence[str | int], model: type[BaseModel]) -> tuple[Key, list
     steps: list[str | int] = []
     known: list[str] = []
     types: list[Any] = [model]
+    is_key = False
     for step in loc:
         models = [candidate for candidate in types if _is_model(candidate)]
         tagged = [candidate for candidate in models if _tag(candidate) == step]
-        if step in _TAGS or (tagged and len(models) > 1):
+        if not is_key and (step in _TAGS or (tagged and len(models) > 1)):
             types = tagged
             continue
         steps.append(step)
-        if isinstance(step, str) and models:
+        if not is_key and isinstance(step, str) and models:
             known = [f.alias or key for candidate in models for key, f in candidate.model_fields.items()]
             fields = [c.model_fields[step].annotation for c in models if step in c.model_fields]
-            # A step that is no field is the key of a mapping, and what follows is inside its value.
             types = [inner for annotation in fields for inner in _inside(annotation)] if fields else types
+            # What follows is a key, however much it looks like a tag, and then inside its value.
+            is_key = any(_is_mapping(annotation) for annotation in fields)
+        else:
+            is_key = False
     kinds = sorted({tag for candidate in types if _is_model(candidate) and (tag := _tag(candidate))})
     return tuple(steps), known, kinds
 
 
 def _is_model(candidate: Any) -> bool:
     return isinstance(candidate, type) and issubclass(candidate, BaseModel)
+
+
+def _is_mapping(annotation: Any) -> bool:
+    return get_origin(annotation) is dict
 
 
 def _tag(model: type[BaseModel]) -> str:

@@ -144,6 +144,14 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
         lambda d: d["robot"].update(cameras={"rear": {"yaw_deg": 180.0}}),
         ("robot.cameras.rear: missing key 'kind'; choose from colour, depth, panorama, thermal",),
     ),
+    "camera without a kind whose name is one": (
+        lambda d: d["robot"].update(cameras={"thermal": {"pitch_deg": -6.0}}),
+        ("robot.cameras.thermal: missing key 'kind'; choose from colour, depth, panorama, thermal",),
+    ),
+    "camera that is called as its kind": (
+        lambda d: d["robot"].update(cameras={"colour": {"kind": "colour", "pich_deg": -6.0}}),
+        ("robot.cameras.colour: unknown key 'pich_deg'; did you mean 'pitch_deg'?",),
+    ),
     "camera of an unknown kind": (
         camera(kind="termal"),
         ("robot.cameras.rear: unknown kind 'termal'", "did you mean 'thermal'?"),
