@@ -102,7 +102,7 @@ class FollowConfig:
     recover_1_s: float = 0.6
     give_up_s: float = 30.0
     give_up_known_s: float = 300.0
-    leaving_rad: float = math.radians(19.0)
+    leaving_rad: float = math.radians(26.0)
     target: TargetConfig = field(default_factory=TargetConfig)
     identity: ReidentificationConfig = field(default_factory=ReidentificationConfig)
     hidden: OccluderConfig = field(default_factory=OccluderConfig)
