@@ -27,7 +27,7 @@ from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.config import TrackerConfig
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import PAPER, PEOPLEBOY, THESIS, THESIS_OCCLUSION
-from peopleboy.tracker.trackers import make_tracker
+from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
 ONE = ("single_stationary", "single_follow")
 SEVERAL = ("crossing_3", "hidden_1s", "hidden_2s", "pass_behind_pillar", "three_depths", "turn_while_hidden")
@@ -183,7 +183,7 @@ def recorded(loaded: Scenario, seed: int) -> Recorded:
     frames, rows, before = [], [], None
     with World(config) as world:
         count = round(loaded.duration_s * config.control_hz)
-        tracker = make_tracker("peopleboy", stream(seed, "tracker"))
+        tracker = make_tracker(CONTOUR_TRACKER, stream(seed, "tracker"))
         for tick in closed_loop(world, tracker, loaded.make_behaviour(), count):
             frames.append(make_frame(tick.observation, calibrations_of(world.cameras), before))
             before = tick.observation.odometry
