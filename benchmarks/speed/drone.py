@@ -3,8 +3,9 @@
 The drone's world is that of gym-pybullet-drones, which no package index has, rebuilt: `HoverAviary` that
 observes images, with 48 commands a second. A drone of 27 g hovers by four propellers over a plane among a
 block, a cube, a duck and a teddy bear; physics takes 240 steps a second, and TinyRenderer draws 64 x 48
-pixels of colour, depth and segmentation with shadows, there for every second command. Its drone has a mesh
-of its own, ours a cylinder of the same size, and nothing is worked out but forces, pose and images.
+pixels of colour, depth and segmentation with shadows, there for every second command. TinyRenderer takes
+longest for the drone's own mesh, so that ours has as many triangles; nothing is worked out but forces, pose
+and images.
 
 Source: Panerati et al., Learning to Fly, a Gym Environment with PyBullet Physics, 2021, and its code, 2.0.
 """
@@ -20,8 +21,10 @@ from typing import Any, Final, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.environments import ACTION, QUICK_HZ, RUN_HZ, SCENARIO, WARM_UP
+from benchmarks.environments import ACTION, MANY, QUICK_HZ, RUN_HZ, SCENARIO, WARM_UP
+from benchmarks.speed.drone_mesh import drone_mesh
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
+from peopleboy.scenarios.environments.vector_environment import PeopleBoyVectorEnv
 from peopleboy.sim.physics.bullet import Bullet
 
 SIZE: Final = (64, 48)
@@ -37,10 +40,15 @@ _LANDMARKS: Final = {
     "duck_vhacd.urdf": (-1.0, 0.0, 0.1),
     "teddy_vhacd.urdf": (0.0, -1.0, 0.1),
 }
-CASES: Final = (("bullet", RUN_HZ), ("bullet", QUICK_HZ), ("kinematic", QUICK_HZ))
+CASES: Final = (
+    ("bullet", RUN_HZ, 1),
+    ("bullet", QUICK_HZ, 1),
+    ("kinematic", QUICK_HZ, 1),
+    ("kinematic", QUICK_HZ, MANY),
+)
 _ROUNDS: Final = 3
 _LINK_FRAME, _BASE = 1, -1  # as PyBullet numbers them
-_CYLINDER: Final = 4
+_CYLINDER, _MESH = 4, 5
 
 
 class DroneWorld:
@@ -52,7 +60,8 @@ class DroneWorld:
         for name, position in {"plane.urdf": (0.0, 0.0, 0.0), **_LANDMARKS}.items():
             self._physics.add_urdf(name, name, position=position, fixed=name == "plane.urdf")
         solid = client.createCollisionShape(_CYLINDER, radius=_RADIUS_M, height=_HEIGHT_M)
-        shape = client.createVisualShape(_CYLINDER, radius=_RADIUS_M, length=_HEIGHT_M)
+        corners, triangles = drone_mesh()
+        shape = client.createVisualShape(_MESH, vertices=corners.tolist(), indices=triangles.ravel().tolist())
         self._drone = client.createMultiBody(_MASS_KG, solid, shape, _START_M)
         self._lift_n = (0.0, 0.0, _MASS_KG * 9.81 / len(_PROPELLERS_M))
 
@@ -93,20 +102,21 @@ class DroneRates:
     Attributes:
         drone_s: of the drone's world, with an image for every second step, as its environment has them.
         drone_images_s: of the drone's world, with an image for every step.
-        ours_s: ours, with an image of one camera for every step, by physics and its rate [Hz].
+        ours_s: ours, with an image of one camera for every step, by physics, its rate [Hz], and the number of
+            worlds in the process, whose steps are added up.
         ratios: ours against `drone_s`, likewise.
     """
 
     drone_s: float
     drone_images_s: float
-    ours_s: dict[tuple[str, int], float]
-    ratios: dict[tuple[str, int], float]
+    ours_s: dict[tuple[str, int, int], float]
+    ratios: dict[tuple[str, int, int], float]
 
 
 def drone_rates() -> DroneRates:
     """Measure all in turn, some times, and give the medians."""
     drones, watchers = [], []
-    ours: dict[tuple[str, int], list[float]] = {case: [] for case in CASES}
+    ours: dict[tuple[str, int, int], list[float]] = {case: [] for case in CASES}
     for _ in range(_ROUNDS):
         drones.append(drone_rate(COMMANDS_AN_IMAGE))
         watchers.append(drone_rate(1))
@@ -135,20 +145,22 @@ def drone_rate(commands_an_image: int, steps: int = 120) -> float:
         return _rate(step, steps)
 
 
-def pixels_rate(physics: str, physics_hz: int, steps: int = 200) -> float:
-    """Return the same of an environment that gives images of one camera, as small."""
-    env = PeopleBoyEnv(
-        SCENARIO,
-        observation="pixels",
-        image_size=SIZE,
-        cameras=("thermal",),
-        physics=physics,
-        physics_hz=physics_hz,
-    )
+def pixels_rate(physics: str, physics_hz: int, worlds: int, rounds: int = 200) -> float:
+    """Return the same of environments that give images of one camera, as small."""
+    told: dict[str, Any] = {
+        "scenario": SCENARIO,
+        "observation": "pixels",
+        "image_size": SIZE,
+        "cameras": ("thermal",),
+        "physics": physics,
+        "physics_hz": physics_hz,
+    }
+    env = PeopleBoyEnv(**told) if worlds == 1 else PeopleBoyVectorEnv(worlds, **told)
+    action = np.tile(np.array(ACTION, np.float32), (worlds, 1) if worlds > 1 else 1)
     env.reset(seed=0)
-    rate = _rate(lambda _number: env.step(ACTION), steps)
+    rate = _rate(lambda _number: env.step(action), rounds)
     env.close()
-    return rate
+    return worlds * rate
 
 
 def _rate(step: Callable[[int], object], steps: int) -> float:
@@ -165,10 +177,11 @@ def main() -> None:
     found = drone_rates()
     print(f"a drone with vision: {found.drone_s:.0f} steps/s, an image for every second")
     print(f"a drone with vision: {found.drone_images_s:.0f} steps/s, an image for each")
-    for (physics, physics_hz), rate in found.ours_s.items():
-        ratio = found.ratios[physics, physics_hz]
+    for case, rate in found.ours_s.items():
+        physics, physics_hz, worlds = case
         print(
-            f"ours, one camera, {physics} at {physics_hz} Hz: {rate:.0f} steps/s, {ratio:.2f} times as many"
+            f"ours, one camera, {physics} at {physics_hz} Hz, worlds: {worlds}: {rate:.0f} steps/s, "
+            f"{found.ratios[case]:.2f} times as many"
         )
 
 
