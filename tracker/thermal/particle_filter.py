@@ -16,11 +16,11 @@ from peopleboy.tracker.thermal.appearance.colour_view import ColourView
 from peopleboy.tracker.thermal.config import (
     REFERENCE_HEIGHT_PX,
     FilterConfig,
-    LimitsConfig,
     MotionConfig,
     TrackerConfig,
 )
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel, fitness, probability
+from peopleboy.tracker.thermal.contour.likelihood import EXTREME, ContourModel, fitness
+from peopleboy.tracker.thermal.contour.measure_sections import logistic
 from peopleboy.tracker.thermal.mount import Mount, mount_of
 from peopleboy.tracker.thermal.particles import (
     CROWN,
@@ -160,25 +160,56 @@ def weigh(
     likeness.
     """
     differences = view.model.differences(view.image, state, view.covered)
-    fit = fitness(differences, view.model.weights, config.likelihood)
-    chance = probability(fit, config.likelihood)
-    inside = is_within(state, view.image.shape[0], filter_config.limits)
+    law = config.likelihood
+    fit = fitness(differences, view.model.weights, law)
     if likeness is not None and filter_config.sharpness == 0:
         factor = likeness if factor is None else likeness * factor
-    weight = sample_weights(fit, chance, inside, config.likelihood.model, filter_config, factor, likeness)
-    particles = Particles(state, weight)
-    core, estimate, confidence, uncertainty_px2 = estimated(particles, chance, inside, filter_config)
-    return Belief(particles, core, estimate, confidence, uncertainty_px2)
+    weight, own, heavy, estimate, confidence, uncertainty_px2 = _weighed(
+        state,
+        fit,
+        limits_px(view.image.shape[0], filter_config.limits),
+        NOTHING if factor is None else factor,
+        NOTHING if likeness is None else likeness,
+        sharpening_of(filter_config, law.model),
+        (law.slope, law.threshold),
+        (filter_config.estimate_share, filter_config.estimate_reach),
+    )
+    core = Particles(own, heavy)
+    return Belief(Particles(state, weight), core, estimate, confidence, uncertainty_px2)
 
 
+def sharpening_of(config: FilterConfig, model: str) -> tuple[float, float, bool]:
+    """Give a filter's sharpness, the least fitness that counts, and whether the paper's weights are meant."""
+    return config.sharpness, config.floor, model == "paper"
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _weighed(
+    state: Floats,
+    fit: Floats,
+    limits: Floats,
+    factor: Floats,
+    likeness: Floats,
+    sharpening: tuple[float, float, bool],
+    curve: tuple[float, float],
+    estimate: tuple[float, float],
+) -> tuple[Floats, Floats, Floats, NDArray[np.float64], float, float]:
+    """Give the weights of samples whose fitness is known, and `estimated` of them, in one go."""
+    chance = logistic(fit, curve[0], curve[1], EXTREME)
+    inside = is_within(state, limits)
+    weight = sample_weights(fit, chance, inside, factor, likeness, sharpening)
+    core, heavy, mean, confidence, spread = estimated(state, weight, chance, inside, estimate)
+    return weight, core, heavy, mean, confidence, spread
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def sample_weights(
     fit: Floats,
     chance: Floats,
     is_inside: NDArray[np.bool_],
-    model: str,
-    config: FilterConfig,
-    factor: Floats | None = None,
-    likeness: Floats | None = None,
+    factor: Floats,
+    likeness: Floats,
+    sharpening: tuple[float, float, bool],
 ) -> Floats:
     """Weigh the samples (N,), to sum to 1.
 
@@ -186,30 +217,34 @@ def sample_weights(
     sharpness, the weight goes on growing with the fitness, to which the logarithm of the likeness adds. The
     paper weighs with the fitness itself.
 
+    Args:
+        fit: (N,) of the contour.
+        chance: (N,) its probability.
+        is_inside: (N,) whether they are within the limits.
+        factor: (N,) on the weights, or `NOTHING`.
+        likeness: (N,) of the looks, or `NOTHING`; counts with a sharpness only.
+        sharpening: of `sharpening_of`.
+
     Source: thesis, equation 4.5; paper, equation 3.
     """
-    if config.sharpness > 0:
-        weight = sharp_weights(fit, NOTHING if likeness is None else likeness, config.sharpness, config.floor)
-    elif model == "paper":
-        weight = np.maximum(np.maximum(fit, np.float32(config.floor)), np.float32(1e-6))
+    sharpness, floor, is_paper = sharpening
+    if sharpness > 0:
+        weight = sharp_weights(fit, likeness, sharpness, floor)
+    elif is_paper:
+        weight = np.maximum(np.maximum(fit, np.float32(floor)), np.float32(1e-6))
     else:
         weight = chance
-    weighed: Floats = shared_out(weight, is_inside, NOTHING if factor is None else factor, OUTSIDE_WEIGHT)
-    return weighed
-
-
-def is_within(state: Floats, height_px: int, limits: LimitsConfig) -> NDArray[np.bool_]:
-    """Tell which samples (N,) have a person's proportions and place.
-
-    Source: thesis, section 4.2 and the table of section 4.4.
-    """
-    inside: NDArray[np.bool_] = _is_between(state, limits_px(height_px, limits))
-    return inside
+    return shared_out(weight, is_inside, factor, OUTSIDE_WEIGHT)
 
 
 @njit(cache=True, nogil=True)
-def _is_between(state: Floats, limits: Floats) -> NDArray[np.bool_]:
-    """Compare w / h, d / w, y and h of samples (N, 9) with limits of `limits_px`, and y with the floor's."""
+def is_within(state: Floats, limits: Floats) -> NDArray[np.bool_]:
+    """Tell which samples (N, 9) have a person's proportions and place, by limits of `limits_px`.
+
+    Compares w / h, d / w, y and h with them, and y with those of the floor.
+
+    Source: thesis, section 4.2 and the table of section 4.4.
+    """
     inside = np.empty(len(state), dtype=np.bool_)
     is_anywhere = np.isinf(limits[9]) and np.isinf(limits[10])
     for i in range(len(state)):

@@ -302,31 +302,51 @@ def uncertainty_px2(particles: Particles) -> float:
     return float(_spread(particles.state, particles.weight, _mean(particles.state, particles.weight)))
 
 
+@njit(cache=True, nogil=True, error_model="numpy")
 def estimated(
-    particles: Particles, chance: Floats, is_inside: NDArray[np.bool_], config: FilterConfig
-) -> tuple[Particles, NDArray[np.float64], float, float]:
-    """Choose the particles that make the estimate: of the best ones, those near the very best.
+    state: Floats,
+    weight: Floats,
+    chance: Floats,
+    is_inside: NDArray[np.bool_],
+    choice: tuple[float, float],
+) -> tuple[Floats, Floats, NDArray[np.float64], float, float]:
+    """Choose the samples (N, 9) that make the estimate: of the best ones, those near the very best.
 
     With several people in view the mean over all particles lies between them (thesis, figure 4.5); the mean
     over those near the best lies on one of them.
 
     Args:
-        particles: the weighted samples.
+        state: (N, 9) samples.
+        weight: (N,) theirs.
         chance: (N,) that they are a person, by the image.
         is_inside: (N,) whether they are within the limits; others are none.
-        config: its `estimate_share` N heaviest particles are kept, rounded up, and their equals (paper: the
-            best 30 %), if they are no farther than `estimate_reach` from the heaviest, in its semi-axes.
+        choice: the share of N that is kept, rounded up, of the heaviest, and their equals (paper: the best
+            30 %); if they are no farther from the heaviest than this, in its semi-axes.
 
     Returns:
-        Those particles, with `mean_state`, mean chance and `uncertainty_px2` of them.
+        state: (K, 9) of those.
+        weight: (K,) that sum to 1.
+        mean: (9,) state.
+        confidence: their mean chance.
+        spread: as of `uncertainty_px2` [px^2].
     """
-    count = math.ceil(config.estimate_share * len(particles))
-    # The count-th heaviest weight: those equal to it stay, so that no sorting order decides.
-    least = np.partition(particles.weight, len(particles) - count)[len(particles) - count]
-    state, weight, mean, confidence, spread = _core(
-        particles.state, particles.weight, chance, is_inside, least, config.estimate_reach
-    )
-    return Particles(state, weight), mean, confidence, spread
+    share, reach = choice
+    others = len(weight) - np.int64(math.ceil(share * len(weight)))
+    # The weight of the least of the best: those equal to it stay, so that no sorting order decides.
+    least = np.partition(weight, others)[others]
+    rows = _rows_near_best(state, weight, least, np.float32(reach * reach))
+    core, heavy = np.empty((len(rows), STATE_SIZE), np.float32), np.empty(len(rows), np.float32)
+    for i in range(np.uint64(len(rows))):
+        for k in range(np.uint64(STATE_SIZE)):
+            core[i, k] = state[rows[i], k]
+        heavy[i] = weight[rows[i]]
+    scale_to_one(heavy)
+    confidence = 0.0
+    for i in range(np.uint64(len(rows))):
+        sure = chance[rows[i]] if is_inside[rows[i]] else np.float32(0)
+        confidence += heavy[i] * np.float64(sure)
+    mean = _mean(core, heavy)
+    return core, heavy, mean, confidence, _spread(core, heavy, mean)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -355,31 +375,6 @@ def _predicted(
         slope = (result[i, X] - centre) / focal
         result[i, X] = centre + focal * (slope + along) / (np.float32(1) - slope * along)
     return result
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _core(
-    state: Floats,
-    weight: Floats,
-    chance: Floats,
-    is_inside: NDArray[np.bool_],
-    least: np.float32,
-    reach: float,
-) -> tuple[Floats, Floats, NDArray[np.float64], float, float]:
-    """Choose and sum up the samples of `estimated`, from the least weight that is heavy enough."""
-    rows = _rows_near_best(state, weight, least, np.float32(reach * reach))
-    core, heavy = np.empty((len(rows), STATE_SIZE), np.float32), np.empty(len(rows), np.float32)
-    for i in range(np.uint64(len(rows))):
-        for k in range(np.uint64(STATE_SIZE)):
-            core[i, k] = state[rows[i], k]
-        heavy[i] = weight[rows[i]]
-    scale_to_one(heavy)
-    confidence = 0.0
-    for i in range(np.uint64(len(rows))):
-        sure = chance[rows[i]] if is_inside[rows[i]] else np.float32(0)
-        confidence += heavy[i] * np.float64(sure)
-    mean = _mean(core, heavy)
-    return core, heavy, mean, confidence, _spread(core, heavy, mean)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

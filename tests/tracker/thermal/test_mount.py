@@ -11,7 +11,7 @@ from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.thermal.config import LimitsConfig
 from peopleboy.tracker.thermal.mount import Mount, limits_seen_from, mount_of, seen_from
 from peopleboy.tracker.thermal.particle_filter import is_within
-from peopleboy.tracker.thermal.particles import CROWN, FOOT, H, W, X, Y
+from peopleboy.tracker.thermal.particles import CROWN, FOOT, H, W, X, Y, limits_px
 from peopleboy.tracker.thermal.variants import VARIANTS
 from peopleboy.tracker.trackers import make_tracker
 
@@ -57,7 +57,7 @@ def test_people_who_stand_on_the_floor_are_within_the_limits_of_any_camera(
     state[:, H], state[:, W], state[:, X] = h, 0.4 * h, 160.0
     state[:, Y] = foot - FOOT * h + np.array([0.0, -3.0, 3.0]) * h  # one on the floor, one above, one below
     limits = limits_seen_from(FLOOR, mount_of(calibration, geometry.height), geometry.height)
-    assert list(is_within(state, geometry.height, limits)) == [True, False, False]
+    assert list(is_within(state, limits_px(geometry.height, limits))) == [True, False, False]
 
 
 @pytest.mark.parametrize("pitch_deg", [-90.0, 90.0])

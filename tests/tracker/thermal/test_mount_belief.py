@@ -11,7 +11,7 @@ from peopleboy.scenarios.loop.calibrations import calibration_of
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.thermal.mount_belief import MountBelief, believed_from, is_learnable
 from peopleboy.tracker.thermal.particle_filter import is_within
-from peopleboy.tracker.thermal.particles import CROWN, FOOT, H, W, X, Y
+from peopleboy.tracker.thermal.particles import CROWN, FOOT, H, W, X, Y, limits_px
 from peopleboy.tracker.thermal.variants import VARIANTS
 
 PEOPLEBOY = VARIANTS["peopleboy"]
@@ -54,7 +54,7 @@ def test_somebody_who_walks_to_and_fro_tells_horizon_and_height(height_m: float,
 def test_nobody_is_ruled_out_before_anybody_was_seen(height_m: float, pitch_deg: float) -> None:
     limits = believed_from(PEOPLEBOY, MountBelief.usual(LIMITS)).detector.limits
     states = np.array([standing(camera(height_m, pitch_deg), away) for away in (4.0, 6.0, 8.0)], np.float32)
-    assert is_within(states, 240, limits).all()
+    assert is_within(states, limits_px(240, limits)).all()
 
 
 def test_who_is_known_to_stand_higher_is_ruled_out() -> None:
@@ -62,7 +62,7 @@ def test_who_is_known_to_stand_higher_is_ruled_out() -> None:
     state = standing(camera(1.2, 0.0), 5.0).astype(np.float32)
     raised = state.copy()
     raised[Y] -= 1.5 * state[H]
-    assert list(is_within(np.array([state, raised]), 240, limits)) == [True, False]
+    assert list(is_within(np.array([state, raised]), limits_px(240, limits))) == [True, False]
 
 
 def test_the_surer_the_mount_the_fewer_samples_look() -> None:

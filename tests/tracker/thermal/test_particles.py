@@ -4,7 +4,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from peopleboy.tracker.thermal.config import FilterConfig
 from peopleboy.tracker.thermal.particles import (
     Particles,
     equally_weighted,
@@ -71,7 +70,10 @@ def test_weights_that_are_all_zero_become_equal():
 def test_the_core_is_the_best_share_of_the_particles_and_the_estimate_its_mean():
     particles, chance = cloud(100), np.random.default_rng(1).random(100, dtype=np.float32)
     is_inside = np.random.default_rng(2).random(100) < 0.7
-    core, mean, confidence, spread = estimated(particles, chance, is_inside, FilterConfig(estimate_share=0.3))
+    state, weight, mean, confidence, spread = estimated(
+        particles.state, particles.weight, chance, is_inside, (0.3, np.inf)
+    )
+    core = Particles(state, weight)
     best = np.sort(np.argsort(particles.weight)[-30:])
     assert np.array_equal(core.state, particles.state[best])
     assert np.allclose(core.weight, normalised(particles.weight[best]))
@@ -85,7 +87,6 @@ def test_the_core_leaves_out_particles_on_another_person():
     state[10:, 0] = 200
     weight = np.full(20, 0.05, dtype=np.float32)
     weight[3] = 0.1
-    config = FilterConfig(estimate_share=1.0, estimate_reach=0.7)
-    core, mean, *_ = estimated(Particles(state, normalised(weight)), weight, np.ones(20, bool), config)
+    core, _, mean, *_ = estimated(state, normalised(weight), weight, np.ones(20, bool), (1.0, 0.7))
     assert len(core) == 10
     assert mean[0] == pytest.approx(100)

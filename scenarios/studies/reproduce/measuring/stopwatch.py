@@ -31,10 +31,19 @@ from peopleboy.tracker.thermal.particle_filter import (
     begin,
     is_within,
     sample_weights,
+    sharpening_of,
     step,
     view_frame,
 )
-from peopleboy.tracker.thermal.particles import Particles, mean_state, predict, resample, uncertainty_px2
+from peopleboy.tracker.thermal.particles import (
+    Particles,
+    limits_px,
+    mean_state,
+    predict,
+    resample,
+    uncertainty_px2,
+)
+from peopleboy.tracker.thermal.weights import NOTHING
 
 SHAPE = (240, 320)
 COUNT = 1000
@@ -86,8 +95,9 @@ def time_steps(setting: Setting, steps: int) -> Milliseconds:
     def weigh() -> Particles:
         fit = fitness(differences, view.model.weights, config.likelihood)
         chance = probability(fit, config.likelihood)
-        inside = is_within(state, SHAPE[0], person.limits)
-        weight = sample_weights(fit, chance, inside, config.likelihood.model, person)
+        inside = is_within(state, limits_px(SHAPE[0], person.limits))
+        sharpening = sharpening_of(person, config.likelihood.model)
+        weight = sample_weights(fit, chance, inside, NOTHING, NOTHING, sharpening)
         return Particles(state, weight)
 
     particles = weigh()

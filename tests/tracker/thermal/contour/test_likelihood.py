@@ -15,8 +15,9 @@ from peopleboy.tracker.thermal.config import (
     StayBehindConfig,
 )
 from peopleboy.tracker.thermal.contour.likelihood import fitness, probability
-from peopleboy.tracker.thermal.particle_filter import is_within, sample_weights
-from peopleboy.tracker.thermal.particles import draw_prior
+from peopleboy.tracker.thermal.particle_filter import is_within, sample_weights, sharpening_of
+from peopleboy.tracker.thermal.particles import draw_prior, limits_px
+from peopleboy.tracker.thermal.weights import NOTHING
 
 THESIS = LikelihoodConfig()
 ALPHA = np.array([0.18, 0.18, 0.18, 0.07, 0.07, 0.16, 0.16, 0.0])
@@ -62,8 +63,8 @@ def test_the_weakest_section_pulls_the_fitness_down():
 @pytest.mark.parametrize(("model", "sharpness"), [("thesis", 0.0), ("thesis", 3.0), ("paper", 0.0)])
 def test_weights_sum_to_one_and_grow_with_the_fitness(model, sharpness):
     fit = np.linspace(1, 40, 50).astype(np.float32)
-    config = FilterConfig(sharpness=sharpness)
-    weight = sample_weights(fit, probability(fit, THESIS), np.ones(50, bool), model, config)
+    inside, law = np.ones(50, bool), sharpening_of(FilterConfig(sharpness=sharpness), model)
+    weight = sample_weights(fit, probability(fit, THESIS), inside, NOTHING, NOTHING, law)
     assert weight.sum() == pytest.approx(1, abs=1e-5)
     assert np.all(np.diff(weight) >= 0)
 
@@ -71,7 +72,8 @@ def test_weights_sum_to_one_and_grow_with_the_fitness(model, sharpness):
 def test_a_sample_outside_the_limits_is_hardly_ever_chosen():
     fit = np.full(10, 30, np.float32)
     inside = np.arange(10) != 4
-    weight = sample_weights(fit, probability(fit, THESIS), inside, "thesis", FilterConfig())
+    law = sharpening_of(FilterConfig(), "thesis")
+    weight = sample_weights(fit, probability(fit, THESIS), inside, NOTHING, NOTHING, law)
     assert weight[4] == pytest.approx(1e-6 / 9, rel=0.01)
 
 
@@ -93,7 +95,7 @@ def test_the_limits_are_those_of_the_thesis(change, is_right):
     state = np.array([[160, 120, 16, 40, 0, 0, 0, 0, 0]], dtype=np.float32)
     for column, value in change.items():
         state[0, column] = value
-    assert is_within(state, 240, LimitsConfig())[0] == is_right
+    assert is_within(state, limits_px(240, LimitsConfig()))[0] == is_right
 
 
 def test_people_on_the_floor_have_their_middle_just_below_the_horizon():
@@ -101,7 +103,7 @@ def test_people_on_the_floor_have_their_middle_just_below_the_horizon():
     state = np.zeros((3, 9), dtype=np.float32)
     state[:, 2], state[:, 3] = 8, 20
     state[:, 1] = [117, 130, 139]
-    assert list(is_within(state, 240, limits)) == [False, True, False]
+    assert list(is_within(state, limits_px(240, limits))) == [False, True, False]
 
 
 @pytest.mark.parametrize(
@@ -111,7 +113,7 @@ def test_people_on_the_floor_have_their_middle_just_below_the_horizon():
 def test_samples_from_the_prior_lie_within_the_limits(limits, log_uniform_h):
     config = FilterConfig(limits=limits, log_uniform_h=log_uniform_h)
     state = draw_prior(5000, (240, 320), MotionConfig(), config, np.random.default_rng(0))
-    assert is_within(state, 240, limits).mean() > 0.999
+    assert is_within(state, limits_px(240, limits)).mean() > 0.999
     assert state[:, 0].min() >= 0
     assert state[:, 0].max() <= 320
 
