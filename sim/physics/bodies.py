@@ -41,7 +41,7 @@ class Body:
         moves_by_itself: whether physics moves it.
         visible_links: id and link of all that is to be seen.
         group: collision group of its own, if it needed one.
-        is_solid: whether rays and bodies meet it.
+        solid_links: id and link of all that rays and bodies meet.
         put_at: where it was put, unless physics moves it.
         hidden_at: where it will reappear if it is hidden.
     """
@@ -53,7 +53,7 @@ class Body:
     base_from_inertia: Place
     moves_by_itself: bool
     visible_links: Sequence[tuple[int, int]]
-    is_solid: bool
+    solid_links: Sequence[tuple[int, int]]
     group: int | None = None
     put_at: Place | None = None
     hidden_at: Place | None = None

@@ -38,6 +38,7 @@ def shape_arguments(shapes: Sequence[Shape], prefix: str) -> dict[str, list[Any]
     }
     if prefix == "collision":
         # Without this a mesh would be solid in all its hollows, such as a table's between the legs.
+        arguments["planeNormals"] = [(0.0, 0.0, 1.0)] * len(shapes)  # or planes are met by nothing
         arguments["flags"] = [_CONCAVE if shape.kind == ShapeKind.MESH else 0 for shape in shapes]
     return arguments
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.physics.kinematic.footprints import MOST_POINTS, footprint, triangle_footprint
 from peopleboy.sim.physics.kinematic.overlap import APART, overlap
-from peopleboy.sim.physics.kinematic.solids import Array, Placements, Solids
 from peopleboy.sim.physics.kinematic.vehicle import Vehicle
+from peopleboy.sim.physics.solids.solids import Array, Placements, Solids
 from peopleboy.sim.shapes.shapes import ShapeKind
 
 TOUCH_M = 5e-4  # what is nearer is touched

@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.vectors import map_point
-from peopleboy.sim.physics.kinematic.solids import Array
+from peopleboy.sim.physics.solids.solids import Array
 from peopleboy.sim.shapes.shapes import ShapeKind
 
 _SPHERE = int(ShapeKind.SPHERE)

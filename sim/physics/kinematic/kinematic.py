@@ -16,12 +16,12 @@ from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.geometry.products import multiply
 from peopleboy.sim.physics.bodies import PartKey
-from peopleboy.sim.physics.kinematic.cast import cast
 from peopleboy.sim.physics.kinematic.drive import push_out, roll
-from peopleboy.sim.physics.kinematic.solids import Placements, Solids, refresh
 from peopleboy.sim.physics.kinematic.state import Motion, State
 from peopleboy.sim.physics.kinematic.vehicle import Vehicle, make_vehicle, wheels_of
 from peopleboy.sim.physics.model_files import find_model
+from peopleboy.sim.physics.solids.cast import cast
+from peopleboy.sim.physics.solids.solids import Placements, Solids, refresh
 from peopleboy.sim.physics.urdf_links import read_links
 from peopleboy.sim.shapes.shape_table import VisualShape, make_shape_table
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector

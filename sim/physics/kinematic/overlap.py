@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
-from peopleboy.sim.physics.kinematic.solids import Array
+from peopleboy.sim.physics.solids.solids import Array
 
 _FLUSH_M = 1e-3  # corners no farther back than that bear, too
 APART = (-math.inf, 0.0, 0.0, 0.0)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from peopleboy.sim.physics.kinematic.solids import Array, Placements, Solids
 from peopleboy.sim.physics.kinematic.vehicle import Vehicle
+from peopleboy.sim.physics.solids.solids import Array, Placements, Solids
 
 
 class Motion(NamedTuple):

@@ -142,7 +142,7 @@ def test_rays_pass_what_is_ignored_hidden_or_not_solid_and_stop_at_the_invisible
         assert bullet.cast_rays(*ray, ignore="own")[0][0] == pytest.approx(0.25)
 
 
-def test_rays_that_pass_far_from_everything_are_told_as_if_pybullet_had_been_asked() -> None:
+def test_rays_meet_given_and_loaded_bodies_where_pybullet_s_own_do() -> None:
     rng = np.random.default_rng(5)
     capsule = Shape(kind=ShapeKind.CAPSULE, size=(1.0, 0.2, 0.0))
     plane = Shape(kind=ShapeKind.PLANE, size=(0.0, 0.0, 0.0))
@@ -157,13 +157,25 @@ def test_rays_that_pass_far_from_everything_are_told_as_if_pybullet_had_been_ask
                 bullet.set_pose(name, tuple(rng.uniform(-2.0, 2.0, 3)), TILTED)
             bullet.step()
             starts, ends = rng.uniform(-3.0, 3.0, (2, 300, 3))
+            starts[:, 2] = np.maximum(
+                starts[:, 2], -1.9
+            )  # above the ground, which PyBullet's meet from below
+            ends[:40] = bullet.pose("car")[:3, 3] + rng.normal(scale=0.05, size=(40, 3))
             ends[::4, 2] = starts[::4, 2]  # level, as most rays are
             fraction, part = bullet.cast_rays(starts, ends, ignore)
             mask = -1 if ignore is None else ~bullet._group_of(bullet._bodies[ignore])
             hits = bullet._client.rayTestBatch(starts.tolist(), ends.tolist(), collisionFilterMask=mask)
-            np.testing.assert_array_equal(fraction, [hit[2] for hit in hits])
-            np.testing.assert_array_equal(part, [bullet._bodies.part_of(*hit[:2]) for hit in hits])
+            theirs = np.array([bullet._bodies.part_of(*hit[:2]) for hit in hits])
+            # PyBullet finds round shapes by steps, and may miss them where a ray grazes them.
+            same = part == theirs
+            assert same.mean() > 0.98
+            differences = np.abs(fraction - [hit[2] for hit in hits])[same]
+            assert np.quantile(differences, 0.98) < 1e-3
+            assert differences.max() < 0.02
+            is_of_car = np.array([number >= 0 and bullet.parts()[number].name == "car" for number in theirs])
+            assert (differences[is_of_car[same]] == 0.0).all()
             assert 20 < np.sum(part >= 0) < 200
+            assert is_of_car.any() == (ignore != "car")
 
 
 def test_a_hidden_body_keeps_its_place_and_may_be_moved_meanwhile() -> None:

@@ -9,8 +9,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.vectors import Point, cross, dot, minus
-from peopleboy.sim.physics.kinematic.solids import Array, Placements, Solids
-from peopleboy.sim.physics.solid_boxes import MARGIN_M, entered_at
+from peopleboy.sim.physics.solids.solid_boxes import MARGIN_M, entered_at
+from peopleboy.sim.physics.solids.solids import Array, Placements, Solids
 from peopleboy.sim.shapes.rays import hit_shape
 from peopleboy.sim.shapes.shapes import ShapeKind
 

@@ -1,4 +1,4 @@
-"""Which rays come near anything solid, told from boxes: PyBullet need not be asked about the others."""
+"""Which rays come near bodies of files, told from boxes: PyBullet need not be asked about the others."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MARGIN_M = 1e-3  # far more than PyBullet's rays are off
 
 
 class SolidBoxes:
-    """Upright boxes around the solid links of all bodies, brought up to date when rays are cast.
+    """Upright boxes around the solid links of bodies, brought up to date when rays are cast.
 
     Args:
         box_of: gives the least and the greatest corner [m] of the box around a body's link, world frame.
@@ -43,7 +43,7 @@ class SolidBoxes:
         self._stale.add(name)
 
     def find_near(self, starts: Array, ends: Array, ignore: str | None) -> NDArray[np.int64]:
-        """Numbers of all rays that come within 1 mm of the box of a body other than `ignore`.
+        """Numbers of all rays that come within 1 mm of the box of one of these bodies other than `ignore`.
 
         Args:
             starts: (R, 3) [m] world frame.
@@ -55,7 +55,7 @@ class SolidBoxes:
             for row, link in enumerate(self._links[name], first):
                 self._boxes[row] = self._box_of(*link)
         self._stale &= {ignore}
-        passed = (0, 0) if ignore is None else self._rows[ignore]
+        passed = (0, 0) if ignore is None else self._rows.get(ignore, (0, 0))
         return np.flatnonzero(_reach(starts, ends, self._boxes, passed))
 
 

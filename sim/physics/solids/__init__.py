@@ -1,0 +1,1 @@
+"""What is solid: where it is, and where rays meet it."""
