@@ -153,12 +153,17 @@ class Crowd:
         Args:
             gap_to_robot: distance [m] between the robot's outline and a point x, y [m] on the floor.
         """
+        present = [person for person in self.people if person.present]
         for person in self.people:
             if person.present != self._is_shown[person.name]:
                 self._set_shown(person, person.present)
-            if person.present:
-                self._pose(person)
-                self._make_solid(person, gap_to_robot)
+        for person in present:
+            self._place_solid(person, person.position)
+            self._make_solid(person, gap_to_robot)
+        if self._is_visible and present:
+            names = [name for person in present for name in self._part_names[person.name]]
+            poses = np.concatenate([person.poses() for person in present])
+            self._physics.set_poses(names, poses[:, :3, 3], quaternions(poses))
 
     def _make(self, config: PersonConfig, seed: int) -> Person:
         name = f"person.{config.name}"
@@ -196,13 +201,6 @@ class Crowd:
 
     def _visible_parts(self, person: Person) -> tuple[Part, ...]:
         return person.parts if self._is_visible else ()
-
-    def _pose(self, person: Person) -> None:
-        self._place_solid(person, person.position)
-        if not self._is_visible:
-            return
-        poses = person.poses()
-        self._physics.set_poses(self._part_names[person.name], poses[:, :3, 3], quaternions(poses))
 
     def _place_solid(self, person: Person, position: NDArray[np.float64]) -> None:
         at = (float(position[0]), float(position[1]), person.config.height_m / 2.0)

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.shapes.shapes import Quaternion, Vector
+from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Vector
 
 Place = tuple[Vector, Quaternion]
+
+AT_ORIGIN: Final[Place] = ((0.0, 0.0, 0.0), UPRIGHT)
 
 # Bullet takes the bits below these for groups of its own.
 _FIRST_FREE_BIT = 6
@@ -34,29 +36,32 @@ class Body:
 
     Attributes:
         name: unique.
-        ids: PyBullet's numbers, several for one part of more shapes than a PyBullet body holds.
         parts: the numbers of its base and of its links.
+        ids: PyBullet's numbers, several for one part of more shapes than a PyBullet body holds; none as long
+            as PyBullet need not know of it.
         joints: link that each joint moves, by the joint's name.
         base_from_inertia: the frame that PyBullet places, in the base's own frame.
         moves_by_itself: whether physics moves it.
         visible_links: id and link of all that is to be seen.
         group: collision group of its own, if it needed one.
         solid_links: id and link of all that rays and bodies meet.
-        put_at: where it was put, unless physics moves it.
+        put_at: where a body of a file was put, unless physics moves it.
         hidden_at: where it will reappear if it is hidden.
+        is_given: whether its shapes were given, not read from a file; then it is of one part.
     """
 
     name: str
-    ids: tuple[int, ...]
     parts: range
-    joints: Mapping[str, int]
-    base_from_inertia: Place
-    moves_by_itself: bool
-    visible_links: Sequence[tuple[int, int]]
-    solid_links: Sequence[tuple[int, int]]
+    ids: tuple[int, ...] = ()
+    joints: Mapping[str, int] = field(default_factory=dict)
+    base_from_inertia: Place = AT_ORIGIN
+    moves_by_itself: bool = False
+    visible_links: Sequence[tuple[int, int]] = ()
+    solid_links: Sequence[tuple[int, int]] = ()
     group: int | None = None
     put_at: Place | None = None
     hidden_at: Place | None = None
+    is_given: bool = False
 
     def links_of(self, joints: Sequence[str]) -> list[int]:
         """The links that the named joints move.
@@ -112,6 +117,10 @@ class Bodies:
         if body.moves_by_itself:
             self.moving.append(body)
         self.parts.extend(PartKey(body.name, link - 1, name) for link, name in enumerate(link_names))
+        self.know_ids(body)
+
+    def know_ids(self, body: Body) -> None:
+        """Take in PyBullet's numbers of a body."""
         for number in body.ids:
             self._body_of_id[number] = body
             self._part_of_link.update({(number, link - 1): part for link, part in enumerate(body.parts)})
@@ -131,14 +140,6 @@ class Bodies:
         parts[numbers, links + 1] = list(self._part_of_link.values())
         found = mask >= 0
         return np.where(found, parts[np.where(found, mask & 0xFFFFFF, 0), np.where(found, mask >> 24, 0)], -1)
-
-    def hidden_parts(self) -> NDArray[np.bool_]:
-        """(P,) which parts are hidden now."""
-        hidden = np.zeros(len(self.parts), np.bool_)
-        for body in self:
-            if body.hidden_at is not None:
-                hidden[body.parts.start : body.parts.stop] = True
-        return hidden
 
     def new_group(self) -> int:
         """A collision group that no body has.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -16,15 +15,16 @@ from numpy.typing import ArrayLike, NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.physics.bodies import Bodies, Body, PartKey, Place
+from peopleboy.sim.physics.bodies import AT_ORIGIN, Bodies, Body, PartKey, Place
 from peopleboy.sim.physics.bullet_shapes import shape_arguments, visual_shape
 from peopleboy.sim.physics.model_files import MISSING_PHYSICS, find_model
 from peopleboy.sim.physics.opengl import metric_depth, projection_matrix, view_matrix
 from peopleboy.sim.physics.quiet import quiet
-from peopleboy.sim.physics.solids.given_solids import GivenSolids
+from peopleboy.sim.physics.solids.given_bodies import GivenBodies
 from peopleboy.sim.physics.solids.solid_boxes import SolidBoxes
 from peopleboy.sim.shapes.bounds import FAR_M, NEAR_M
-from peopleboy.sim.shapes.shape_table import VisualShape
+from peopleboy.sim.shapes.meshes import load_triangles
+from peopleboy.sim.shapes.shape_table import VisualShape, as_given
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
 
 try:
@@ -35,11 +35,11 @@ except ImportError as error:
 
 GRAVITY_M_S2 = 9.81
 _SHAPES_A_BODY = 16  # PyBullet silently drops the rest
-_HERE: Place = ((0.0, 0.0, 0.0), UPRIGHT)
+_LINK = "link0"  # as PyBullet calls what has no name
+_BASE = -1
 _PARKED: Place = ((0.0, 0.0, -500.0), UPRIGHT)
 _ALL = -1
 _ALL_BUT_STATIC = -3
-_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,11 +90,13 @@ class Bullet:
         self._client = _Client()
         self._bodies = Bodies()
         self._poses = np.zeros((0, 4, 4))
+        self._hidden = np.zeros(0, np.bool_)
         self._moved: dict[str, Body] = {}
-        self._known: dict[str, Matrix] = {}  # poses of bodies since they last moved
-        # Bodies that PyBullet still has elsewhere, which only TinyRenderer would see.
-        self._untold: dict[str, Body] = {}
-        self._given = GivenSolids()
+        self._known: dict[str, Matrix] = {}  # poses of bodies of files since they last moved
+        self._given = GivenBodies()
+        self._visible: dict[str, list[VisualShape]] = {}  # of those that PyBullet is not asked about
+        self._only_seen: set[str] = set()  # bodies that nothing can touch, while they are not hidden
+        self._unmade: list[tuple[Body, Sequence[Shape]]] = []  # bodies that only TinyRenderer would see
         self._loaded = SolidBoxes(self._client.getAABB)
         self._client.setPhysicsEngineParameter(
             fixedTimeStep=1.0 / physics_hz, deterministicOverlappingPairs=1
@@ -137,15 +139,19 @@ class Bullet:
         for shape in shapes:
             if shape.kind == ShapeKind.MESH and not (shape.mesh and shape.mesh.is_file()):
                 raise BadInput(f"body {name!r}: there is no mesh {shape.mesh}; give an OBJ, STL or DAE file")
-        starts = range(0, len(shapes), _SHAPES_A_BODY)
-        try:
-            with quiet():
-                ids = [self._create(shapes[at : at + _SHAPES_A_BODY], visible, solid) for at in starts]
-        except pybullet.error as error:
-            raise BadInput(f"body {name!r}: PyBullet refuses its shapes ({error})") from error
-        body = self._register(name, ids, moves_by_itself=False)
+            if shape.mesh is not None:
+                load_triangles(shape.mesh)
+        part = len(self._bodies.parts)
+        body = Body(name=name, parts=range(part, part + 1), is_given=True)
         if solid:
-            self._given.add(name, body.parts.start, shapes)
+            self._make(body, shapes, visible=visible, solid=True)
+        else:
+            self._only_seen.add(name)
+        if visible and not solid:
+            self._unmade.append((body, shapes))
+        self._add(body, [_LINK])
+        self._given.add(name, part, shapes if solid else ())
+        self._visible[name] = [as_given(shape, part) for shape in shapes] if visible else []
         self.set_pose(name, position, orientation)
 
     def add_urdf(
@@ -179,8 +185,7 @@ class Bullet:
                 number = load(str(file), fixed, scale)
         except pybullet.error as error:
             raise BadInput(f"body {name!r}: PyBullet cannot load {file} ({error})") from error
-        body = self._register(name, [number], moves_by_itself=not fixed)
-        self._loaded.add(name, body.solid_links)
+        self._register(name, number, moves_by_itself=not fixed)
         self.set_pose(name, position, orientation)
 
     def set_pose(self, name: str, position: Vector, orientation: Quaternion) -> None:
@@ -194,6 +199,9 @@ class Bullet:
 
     def set_poses(self, names: Sequence[str], positions: ArrayLike, orientations: ArrayLike) -> None:
         """Put base frames of N bodies at positions (N, 3) [m] and orientations (N, 4), as `set_pose` does."""
+        if self._only_seen.issuperset(names):
+            self._given.put_all(names, positions, orientations)
+            return
         rows = np.asarray(positions, np.float64).tolist(), np.asarray(orientations, np.float64).tolist()
         for name, position, orientation in zip(names, *rows, strict=True):
             self.set_pose(name, position, orientation)
@@ -214,10 +222,13 @@ class Bullet:
         elif not hidden and body.hidden_at is not None:
             self._put(body, body.hidden_at)
             body.hidden_at = None
+        self._hidden[body.parts.start : body.parts.stop] = hidden
+        if body.is_given and not body.solid_links:
+            (self._only_seen.discard if hidden else self._only_seen.add)(name)
 
     def hidden_parts(self) -> NDArray[np.bool_]:
         """(P,) which parts are hidden now."""
-        return self._bodies.hidden_parts()
+        return self._hidden.copy()
 
     def step(self) -> None:
         """Advance the world by one physics step."""
@@ -263,8 +274,10 @@ class Bullet:
 
     def pose(self, name: str) -> Matrix:
         """(4, 4) world from the frame of the body's base, a copy; where it will reappear if it is hidden."""
+        body = self._bodies[name]
+        if body.is_given:
+            return pose_matrices(*(body.hidden_at or self._base_place(body)))
         if name not in self._known:
-            body = self._bodies[name]
             self._known[name] = pose_matrices(*(body.hidden_at or self._base_place(body)))
         return self._known[name].copy()
 
@@ -280,12 +293,13 @@ class Bullet:
             numbers = [part for body in moved for part in body.parts]
             self._poses[numbers] = pose_matrices(*zip(*places, strict=True))
             self._moved.clear()
+        parts, poses = self._given.moved_poses()
+        self._poses[parts] = poses
         return self._poses.copy()
 
     def visual_shapes(self) -> list[VisualShape]:
-        """Every shape that a renderer should draw, read back from PyBullet, in the order of the parts."""
-        rows = [row for body in self._bodies for row in self._visual_rows(body.ids)]
-        return [visual_shape(row, self._bodies.part_of(row[0], row[1])) for row in rows]
+        """Every shape that a renderer should draw, those of files read back from PyBullet, by their parts."""
+        return [shape for body in self._bodies for shape in self._visible_shapes(body)]
 
     def cast_rays(
         self, from_m: ArrayLike, to_m: ArrayLike, ignore: str | None = None
@@ -340,9 +354,7 @@ class Bullet:
             part: (H, W) number of the part seen at each pixel centre, -1 where none.
             depth: (H, W) [m] along the optical axis, inf where none.
         """
-        for body in self._untold.values():
-            self._tell(body)
-        self._untold.clear()
+        self._show_all()
         absent = [body for body in self._bodies if only is not None and body.name not in only]
         self._set_opacity(absent, 0.0)
         image = self._client.getCameraImage(
@@ -359,6 +371,29 @@ class Bullet:
         part = self._bodies.parts_of(np.reshape(image[4], shape))
         depth = metric_depth(np.reshape(image[3], shape), NEAR_M, FAR_M)
         return part, np.where(part >= 0, depth, np.inf).astype(np.float32)
+
+    def _show_all(self) -> None:
+        """Let PyBullet have all that is to be seen where it is, even what nothing can touch."""
+        for body, shapes in self._unmade:
+            self._make(body, shapes, visible=True, solid=False)
+            self._bodies.know_ids(body)
+        self._unmade.clear()
+        for body in self._bodies:
+            if body.ids and not body.moves_by_itself and not body.solid_links:
+                self._tell(body, self._base_place(body))
+
+    def _make(self, body: Body, shapes: Sequence[Shape], *, visible: bool, solid: bool) -> None:
+        """Let PyBullet have a body of given shapes."""
+        starts = range(0, len(shapes), _SHAPES_A_BODY)
+        try:
+            with quiet():
+                body.ids = tuple(
+                    self._create(shapes[at : at + _SHAPES_A_BODY], visible, solid) for at in starts
+                )
+        except pybullet.error as error:
+            raise BadInput(f"body {body.name!r}: PyBullet refuses its shapes ({error})") from error
+        links = [(number, _BASE) for number in body.ids]
+        body.visible_links, body.solid_links = links if visible else [], links if solid else []
 
     def _create(self, shapes: Sequence[Shape], visible: bool, solid: bool) -> int:
         """Make one PyBullet body."""
@@ -386,60 +421,61 @@ class Bullet:
             self._client.changeDynamics(number, -1, mass=0.0)
         return number
 
-    def _register(self, name: str, ids: Sequence[int], *, moves_by_itself: bool) -> Body:
+    def _register(self, name: str, number: int, *, moves_by_itself: bool) -> None:
+        """Take in a body that PyBullet has read from a file."""
         joints = [
-            self._client.getJointInfo(ids[0], link) for link in range(self._client.getNumJoints(ids[0]))
+            self._client.getJointInfo(number, link) for link in range(self._client.getNumJoints(number))
         ]
-        links = [(number, link) for number in ids for link in range(-1, len(joints))]
-        solid = [link for link in links if self._client.getCollisionShapeData(*link)]
-        names = [self._client.getBodyInfo(ids[0])[0].decode(), *(joint[12].decode() for joint in joints)]
+        links = [(number, link) for link in range(_BASE, len(joints))]
+        names = [self._client.getBodyInfo(number)[0].decode(), *(joint[12].decode() for joint in joints)]
         first = len(self._bodies.parts)
         body = Body(
             name=name,
-            ids=tuple(ids),
+            ids=(number,),
             parts=range(first, first + len(names)),
             joints={joint[1].decode(): joint[0] for joint in joints},
-            base_from_inertia=self._client.getDynamicsInfo(ids[0], -1)[3:5],
+            base_from_inertia=self._client.getDynamicsInfo(number, _BASE)[3:5],
             moves_by_itself=moves_by_itself,
-            visible_links=[(row[0], row[1]) for row in self._visual_rows(ids)],
-            solid_links=solid,
+            visible_links=[(row[0], row[1]) for row in self._visual_rows(number)],
+            solid_links=[link for link in links if self._client.getCollisionShapeData(*link)],
         )
-        self._bodies.add(body, names)
-        self._poses = np.concatenate([self._poses, np.zeros((len(names), 4, 4))])
-        return body
+        self._add(body, names)
+        self._loaded.add(name, body.solid_links)
+
+    def _add(self, body: Body, link_names: Sequence[str]) -> None:
+        self._bodies.add(body, link_names)
+        self._poses = np.concatenate([self._poses, np.zeros((len(link_names), 4, 4))])
+        self._hidden = np.append(self._hidden, np.zeros(len(link_names), np.bool_))
 
     def _put(self, body: Body, base: Place) -> None:
-        body.put_at = (base[0], _unit(base[1]))
-        if body.name in self._given:
-            self._given.put(body.name, *body.put_at)
-        if body.solid_links or len(body.parts) > 1:
-            self._tell(body)
+        if body.is_given:
+            self._given.put(body.name, *base)
         else:
-            self._untold[body.name] = body
-        if body.moves_by_itself:
-            body.put_at = None
-        self._note_move(body)
+            body.put_at = None if body.moves_by_itself else base
+            self._note_move(body)
+        if body.solid_links or not body.is_given:
+            self._tell(body, base)
 
-    def _tell(self, body: Body) -> None:
-        """Let PyBullet put a body where it was put."""
-        assert body.put_at is not None
-        place = body.put_at
-        if body.base_from_inertia != _HERE:
+    def _tell(self, body: Body, place: Place) -> None:
+        """Let PyBullet put a body's base somewhere."""
+        if body.base_from_inertia != AT_ORIGIN:
             place = pybullet.multiplyTransforms(*place, *body.base_from_inertia)
         for number in body.ids:
             self._client.resetBasePositionAndOrientation(number, *place)
 
     def _note_move(self, body: Body) -> None:
+        """Look anew at a body of a file."""
         self._moved[body.name] = body
         self._known.pop(body.name, None)
-        if body.solid_links and body.name not in self._given:
-            self._loaded.forget(body.name)
+        self._loaded.forget(body.name)
 
     def _base_place(self, body: Body) -> Place:
+        if body.is_given:
+            return self._given.place(body.name)
         if body.put_at is not None:
             return body.put_at
         place: Place = self._client.getBasePositionAndOrientation(body.ids[0])
-        if body.base_from_inertia != _HERE:
+        if body.base_from_inertia != AT_ORIGIN:
             place = pybullet.multiplyTransforms(*place, *pybullet.invertTransform(*body.base_from_inertia))
         return place
 
@@ -448,10 +484,15 @@ class Bullet:
         states = self._client.getLinkStates(body.ids[0], links, computeForwardKinematics=1)
         return [state[4:6] for state in states]
 
-    def _visual_rows(self, ids: Sequence[int]) -> list[Sequence[Any]]:
-        """What PyBullet tells of all shapes that are not transparent."""
-        rows = [row for number in ids for row in self._client.getVisualShapeData(number)]
-        return [row for row in rows if row[7][3] > 0.0]
+    def _visible_shapes(self, body: Body) -> list[VisualShape]:
+        if body.is_given:
+            return self._visible[body.name]
+        rows = self._visual_rows(body.ids[0])
+        return [visual_shape(row, self._bodies.part_of(row[0], row[1])) for row in rows]
+
+    def _visual_rows(self, number: int) -> list[Sequence[Any]]:
+        """What PyBullet tells of all shapes of one of its bodies that are not transparent."""
+        return [row for row in self._client.getVisualShapeData(number) if row[7][3] > 0.0]
 
     def _set_opacity(self, bodies: Sequence[Body], alpha: float) -> None:
         for body in bodies:
@@ -467,10 +508,3 @@ class Bullet:
             for number, link in [(number, link) for number in body.ids for link in links]:
                 self._client.setCollisionFilterGroupMask(number, link, body.group, mask)
         return body.group
-
-
-def _unit(orientation: Quaternion) -> Quaternion:
-    """Give a quaternion its length of 1, as PyBullet does."""
-    x, y, z, w = orientation
-    length = math.sqrt(x * x + y * y + z * z + w * w)
-    return orientation if abs(length - 1.0) < _ROUNDING else (x / length, y / length, z / length, w / length)

@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix, transform
+from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.shapes.meshes import load_triangles
-from peopleboy.sim.shapes.shapes import ShapeKind, Vector
+from peopleboy.sim.shapes.shapes import Shape, ShapeKind, Vector
 
 # How many surfaces a shape has, each a piece of a plane or of a quadric: a mesh has one a triangle.
 _SURFACES = {
@@ -27,7 +28,7 @@ _SURFACES = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class VisualShape:
-    """One visible shape as PyBullet reports it.
+    """One shape of a part.
 
     Attributes:
         part: index into `Bullet.parts()`.
@@ -40,6 +41,12 @@ class VisualShape:
     size: Vector
     part_from_shape: Matrix
     mesh: Path | None
+
+
+def as_given(shape: Shape, part: int) -> VisualShape:
+    """Take a shape for one of a part of this number."""
+    pose = pose_matrices(shape.position, shape.orientation)
+    return VisualShape(part, shape.kind, shape.size, pose, shape.mesh)
 
 
 class ShapeTable(NamedTuple):

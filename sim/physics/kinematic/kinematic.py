@@ -23,7 +23,7 @@ from peopleboy.sim.physics.model_files import find_model
 from peopleboy.sim.physics.solids.cast import cast
 from peopleboy.sim.physics.solids.solids import Placements, Solids, refresh
 from peopleboy.sim.physics.urdf_links import read_links
-from peopleboy.sim.shapes.shape_table import VisualShape, make_shape_table
+from peopleboy.sim.shapes.shape_table import VisualShape, as_given, make_shape_table
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
 
 _LINK = "link0"  # as PyBullet calls it
@@ -298,8 +298,8 @@ class Kinematic:
         self._parts.append(PartKey(name, before - 1, link))
         self._of_part.append(number)
         self._base_from_part.append(pose)
-        self._visible += [_as_given(shape, part) for shape in visible]
-        self._solid += [_as_given(shape, part) for shape in solid]
+        self._visible += [as_given(shape, part) for shape in visible]
+        self._solid += [as_given(shape, part) for shape in solid]
 
     def _up_to_date(self) -> tuple[Placements, Solids]:
         """All bodies and solids as they are now."""
@@ -354,8 +354,3 @@ def turn_wheels(poses: Matrix, wheels: NDArray[np.int64], angles: Matrix) -> Non
             for j in range(3):
                 before[i, j] = poses[wheels[k], i, j]
         multiply(before, turn, poses[wheels[k], :3, :3])
-
-
-def _as_given(shape: Shape, part: int) -> VisualShape:
-    pose = pose_matrices(shape.position, shape.orientation)
-    return VisualShape(part, shape.kind, shape.size, pose, shape.mesh)
