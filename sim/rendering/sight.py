@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose
 from peopleboy.sim.rendering.cover import Cover, count_cover
-from peopleboy.sim.rendering.silhouette import bounds_before, silhouette_area
+from peopleboy.sim.rendering.silhouette import silhouette_area, silhouette_bounds
 from peopleboy.sim.rendering.view import NOBODY, View
 from peopleboy.sim.shapes.shape_table import ShapeTable
 
@@ -100,14 +100,18 @@ class Flat(Sight):
 
     def bounds(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix, parts: Mask) -> Matrix:
         """See `silhouette_bounds`."""
-        known, key = self._poses.setdefault(scene, {}), world_from_camera.tobytes()
-        if key not in known:
-            known[key] = invert_pose(world_from_camera) @ scene.world_from_part
-        return bounds_before(camera, scene.table, known[key], parts)
+        return silhouette_bounds(camera, scene.table, self._before(scene, world_from_camera), parts)
 
     def area(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix, parts: Mask) -> int:
         """See `silhouette_area`."""
-        return silhouette_area(scene.table, scene.world_from_part, camera, world_from_camera, parts)
+        return silhouette_area(camera, scene.table, self._before(scene, world_from_camera), parts)
+
+    def _before(self, scene: Scene, world_from_camera: Matrix) -> Matrix:
+        """Give the poses (P, 4, 4) of a scene's parts in a camera's frame."""
+        known, key = self._poses.setdefault(scene, {}), world_from_camera.tobytes()
+        if key not in known:
+            known[key] = invert_pose(world_from_camera) @ scene.world_from_part
+        return known[key]
 
 
 FLAT = Flat()

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.vectors import compose
 from peopleboy.sim.rendering.canvas import Lens, make_canvas
 from peopleboy.sim.rendering.raycast import draw
@@ -19,34 +19,10 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
-def silhouette_bounds(
-    table: ShapeTable,
-    world_from_part: Matrix,
-    camera: Pinhole,
-    world_from_camera: Matrix,
-    parts: NDArray[np.bool_],
-) -> tuple[float, float, float, float]:
-    """Find the rectangle around all that the camera would see of some parts if nothing hid them.
+def silhouette_bounds(camera: Pinhole, table: ShapeTable, camera_from_part: Matrix, parts: Mask) -> Array:
+    """Find the rectangles around all that the camera would see of sets of parts if nothing hid them.
 
-    It may lie outside the image. What is nearer than 0.05 m along the optical axis does not count.
-
-    Args:
-        table: the world's shapes.
-        world_from_part: (P, 4, 4).
-        camera: the pinhole camera.
-        world_from_camera: (4, 4) optical frame to world.
-        parts: (P,) which parts.
-
-    Returns:
-        left, top, right, bottom [px]; all NaN if nothing of them lies before the camera.
-    """
-    camera_from_part = invert_pose(world_from_camera) @ world_from_part
-    left, top, right, bottom = bounds_before(camera, table, camera_from_part, parts[None])[0].tolist()
-    return left, top, right, bottom
-
-
-def bounds_before(camera: Pinhole, table: ShapeTable, camera_from_part: Matrix, parts: Mask) -> Array:
-    """Find what `silhouette_bounds` does, of several at once.
+    They may lie outside the image. What is nearer than 0.05 m along the optical axis does not count.
 
     Args:
         camera: the pinhole camera.
@@ -65,19 +41,13 @@ def bounds_before(camera: Pinhole, table: ShapeTable, camera_from_part: Matrix, 
     return bounds
 
 
-def silhouette_area(
-    table: ShapeTable,
-    world_from_part: Matrix,
-    camera: Pinhole,
-    world_from_camera: Matrix,
-    parts: NDArray[np.bool_],
-) -> int:
-    """Count the pixels that some parts would fill if nothing hid them, the image's border neither.
+def silhouette_area(camera: Pinhole, table: ShapeTable, camera_from_part: Matrix, parts: Mask) -> int:
+    """Count the pixels that some parts (P,) would fill if nothing hid them, the image's border neither.
 
     The image is continued by its own width and height beyond each border; arguments are as in
     `silhouette_bounds`.
     """
-    box = silhouette_bounds(table, world_from_part, camera, world_from_camera, parts)
+    box = silhouette_bounds(camera, table, camera_from_part, parts[None])[0].tolist()
     if math.isnan(box[0]):
         return 0
     left, right = _within(box[0], box[2], camera.width)
@@ -88,7 +58,7 @@ def silhouette_area(
     lens = Lens(camera.focal_px, u - left, v - top, right - left + 1, bottom - top + 1)
     canvas = make_canvas(lens, len(table.surface_part))
     bits = np.ones(len(parts), np.uint64)
-    draw(table, invert_pose(world_from_camera) @ world_from_part, ~parts, bits, lens, canvas)
+    draw(table, camera_from_part, ~parts, bits, lens, canvas)
     return int(np.count_nonzero(canvas.cover))
 
 
@@ -105,7 +75,10 @@ def _bounds(table: ShapeTable, camera_from_part: Array, parts: Mask, found: Arra
         found[n, 0], found[n, 1], found[n, 2], found[n, 3] = EMPTY
     for shape in range(len(table.kind)):
         part = table.part[shape]
-        if not parts[:, part].any():
+        wanted = False
+        for n in range(len(parts)):
+            wanted |= parts[n, part]
+        if not wanted:
             continue
         compose(camera_from_part[part], table.part_from_shape[shape], pose)
         first, end = table.triangle_range[shape]
