@@ -11,6 +11,7 @@ from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind
 from tests.helpers.calls.refused import refused
+from tests.helpers.pybullet_rays import PyBulletRays
 
 CUBE = Shape(kind=ShapeKind.BOX, size=(1.0, 1.0, 1.0))
 TILTED: Quaternion = (0.1, 0.5, -0.1, math.sqrt(1.0 - 0.27))
@@ -163,13 +164,11 @@ def test_rays_meet_given_and_loaded_bodies_where_pybullet_s_own_do() -> None:
             ends[:40] = bullet.pose("car")[:3, 3] + rng.normal(scale=0.05, size=(40, 3))
             ends[::4, 2] = starts[::4, 2]  # level, as most rays are
             fraction, part = bullet.cast_rays(starts, ends, ignore)
-            mask = -1 if ignore is None else ~bullet._group_of(bullet._bodies[ignore])
-            hits = bullet._client.rayTestBatch(starts.tolist(), ends.tolist(), collisionFilterMask=mask)
-            theirs = np.array([bullet._bodies.part_of(*hit[:2]) for hit in hits])
+            their_fraction, theirs = PyBulletRays(bullet).cast_rays(starts, ends, ignore)
             # PyBullet finds round shapes by steps, and may miss them where a ray grazes them.
             same = part == theirs
             assert same.mean() > 0.98
-            differences = np.abs(fraction - [hit[2] for hit in hits])[same]
+            differences = np.abs(fraction - their_fraction)[same]
             assert np.quantile(differences, 0.98) < 1e-3
             assert differences.max() < 0.02
             is_of_car = np.array([number >= 0 and bullet.parts()[number].name == "car" for number in theirs])

@@ -11,6 +11,7 @@ from peopleboy.sim.robot.robot_body import NAME
 from peopleboy.sim.robot.sonar import SonarRing
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 from peopleboy.sim.world import World
+from tests.helpers.pybullet_rays import PyBulletRays
 
 TILTED = (0.18257419, 0.36514837, 0.54772256, 0.73029674)
 SHAPES = {
@@ -31,13 +32,16 @@ def test_rays_meet_a_shape_where_pybullet_s_do(kind: str, tmp_path: Path) -> Non
     starts *= 2.0 / np.linalg.norm(starts, axis=1, keepdims=True)
     ends = rng.uniform(-0.5, 0.5, (400, 3))
     ends += ends - starts
-    found = []
     with Bullet() as bullet:
-        for physics in (bullet, Kinematic()):
+        kinematic = Kinematic()
+        for physics in (bullet, kinematic):
             shape = SHAPES.get(kind, mesh)
             physics.add_part("shape", [shape], position=(0.1, 0.2, 0.0), orientation=TILTED)
-            found.append(physics.cast_rays(starts, ends))
-    (theirs, hit), (ours, also_hit) = found
+        theirs, hit = PyBulletRays(bullet).cast_rays(starts, ends)
+        ours, also_hit = kinematic.cast_rays(starts, ends)
+        fraction, part = bullet.cast_rays(starts, ends)
+        np.testing.assert_allclose(fraction, ours, atol=1e-9)
+        np.testing.assert_array_equal(part, also_hit)
     assert 60 < (hit >= 0).sum() < 399
     # PyBullet finds round shapes by steps, the fewer the more a ray grazes them, and may miss them then.
     same = hit == also_hit
@@ -53,15 +57,14 @@ def test_sonars_hear_in_the_library_what_they_hear_through_pybullet(name: str) -
     config = replace(
         config, robot=replace(config.robot, sonar=replace(config.robot.sonar, noise_m=0.0, drop_out=0.0))
     )
-    with World(config) as world, World(replace(config, physics="kinematic")) as ours:
+    with World(config) as world:
         differences = []
         for _ in range(30):
             world.step(0.1, 0.8)
-            ours.step(0.1, 0.8)
-            pose = world._robot.world_from_robot()
+            pose = world.robot.world_from_robot()
             rings = [
-                SonarRing(each._physics, config.robot.sonar, np.random.default_rng(0), NAME)
-                for each in (world, ours)
+                SonarRing(physics, config.robot.sonar, np.random.default_rng(0), NAME)
+                for physics in (PyBulletRays(world.physics), world.physics)
             ]
             heard = [ring.read(pose) for ring in rings]
             differences.append(np.abs(heard[0] - heard[1]))
