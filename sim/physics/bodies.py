@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Vector
@@ -15,6 +16,8 @@ from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Vector
 Place = tuple[Vector, Quaternion]
 
 AT_ORIGIN: Final[Place] = ((0.0, 0.0, 0.0), UPRIGHT)
+
+_ROUNDING: Final = 1e-12
 
 # Bullet takes the bits below these for groups of its own.
 _FIRST_FREE_BIT = 6
@@ -152,3 +155,18 @@ class Bodies:
             raise BadInput(f"rays can ignore at most {self._groups} different bodies in one world")
         self._groups += 1
         return 1 << bit
+
+
+def as_unit(orientation: Quaternion) -> Quaternion:
+    """Give a quaternion its length of 1, as PyBullet does."""
+    x, y, z, w = orientation
+    length = math.sqrt(x * x + y * y + z * z + w * w)
+    return orientation if abs(length - 1.0) < _ROUNDING else (x / length, y / length, z / length, w / length)
+
+
+def as_units(orientations: ArrayLike) -> NDArray[np.float64]:
+    """Do that with N quaternions (N, 4)."""
+    given = np.asarray(orientations, np.float64)
+    x, y, z, w = given.T
+    lengths = np.sqrt(x * x + y * y + z * z + w * w)[:, None]
+    return np.where(abs(lengths - 1.0) < _ROUNDING, given, given / lengths)

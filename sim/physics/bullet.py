@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.physics.bodies import AT_ORIGIN, Bodies, Body, PartKey, Place
+from peopleboy.sim.physics.bodies import AT_ORIGIN, Bodies, Body, PartKey, Place, as_unit
 from peopleboy.sim.physics.bullet_shapes import shape_arguments, visual_shape
 from peopleboy.sim.physics.model_files import MISSING_PHYSICS, find_model
 from peopleboy.sim.physics.opengl import metric_depth, projection_matrix, view_matrix
@@ -451,7 +451,7 @@ class Bullet:
         if body.is_given:
             self._given.put(body.name, *base)
         else:
-            body.put_at = None if body.moves_by_itself else base
+            body.put_at = None if body.moves_by_itself else (base[0], as_unit(base[1]))
             self._note_move(body)
         if body.solid_links or not body.is_given:
             self._tell(body, base)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Final
 
@@ -10,14 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.physics.bodies import Place
+from peopleboy.sim.physics.bodies import Place, as_unit, as_units
 from peopleboy.sim.physics.solids.cast import cast
 from peopleboy.sim.physics.solids.solids import Array, Placements, Solids, refresh
 from peopleboy.sim.shapes.shape_table import VisualShape, as_given, make_shape_table
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, Vector
 
 _NONE: Final = -1
-_ROUNDING: Final = 1e-12
 
 
 class GivenBodies:
@@ -47,21 +45,13 @@ class GivenBodies:
     def put(self, name: str, position: Vector, orientation: Quaternion) -> None:
         """Put a body's frame at a position [m] and a quaternion, of any length, in the world."""
         row = self._rows[name]
-        x, y, z, w = orientation
-        length = math.sqrt(x * x + y * y + z * z + w * w)
-        if abs(length - 1.0) >= _ROUNDING:  # as PyBullet does
-            orientation = x / length, y / length, z / length, w / length
-        self._places[row] = (*position, *orientation)
+        self._places[row] = (*position, *as_unit(orientation))
         self._has_moved[row] = self._stale[row] = True
 
     def put_all(self, names: Sequence[str], positions: ArrayLike, orientations: ArrayLike) -> None:
         """Do that with N bodies, at (N, 3) and (N, 4)."""
         rows = list(map(self._rows.__getitem__, names))
-        given = np.asarray(orientations, np.float64)
-        x, y, z, w = given.T
-        lengths = np.sqrt(x * x + y * y + z * z + w * w)[:, None]
-        self._places[rows, :3] = positions
-        self._places[rows, 3:] = np.where(abs(lengths - 1.0) < _ROUNDING, given, given / lengths)
+        self._places[rows, :3], self._places[rows, 3:] = positions, as_units(orientations)
         self._has_moved[rows] = self._stale[rows] = True
 
     def place(self, name: str) -> Place:

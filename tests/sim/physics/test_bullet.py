@@ -239,3 +239,42 @@ def test_all_kinds_of_shapes_are_read_back_as_they_were_given(tmp_path: Path) ->
         assert seen.size == pytest.approx(shape.size)
         expected = pose_matrices(shape.position, shape.orientation)
         np.testing.assert_allclose(seen.part_from_shape, expected, atol=1e-9)
+
+
+@pytest.mark.parametrize("solid", [True, False])
+def test_many_bodies_are_put_as_each_by_itself_and_as_pybullet_has_them(solid: bool) -> None:
+    rng, names = np.random.default_rng(2), ("a", "b", "c")
+    positions, orientations = rng.normal(size=(3, 3)), rng.normal(size=(3, 4))
+    camera = Pinhole(position_m=(0.0, 0.0, 0.0))
+    seen = []
+    for at_once in (True, False):
+        with Bullet() as bullet:
+            for name in names:
+                bullet.add_part(name, [CUBE], solid=solid)
+            bullet.camera_image(camera, camera.robot_from_camera)
+            if at_once:
+                bullet.set_poses(names, positions, orientations)
+            else:
+                for row in zip(names, positions.tolist(), orientations.tolist(), strict=True):
+                    bullet.set_pose(*row)
+            drawn = bullet.camera_image(camera, camera.robot_from_camera)
+            theirs = [bullet._client.getBasePositionAndOrientation(body.ids[0]) for body in bullet._bodies]
+            seen.append((bullet.part_poses(), *drawn))
+            np.testing.assert_allclose(
+                bullet.part_poses(), pose_matrices(*zip(*theirs, strict=True)), atol=1e-7
+            )
+            np.testing.assert_array_equal(bullet.pose("b"), bullet.part_poses()[1])
+    for one, other in zip(*seen, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_what_nothing_can_touch_is_no_body_of_pybullet_s_until_it_draws() -> None:
+    camera = Pinhole(position_m=(-3.0, 0.0, 0.0))
+    with Bullet() as bullet:
+        bullet.add_part("wall", [CUBE], position=(0.0, 2.0, 0.0))
+        bullet.add_part("ghost", [CUBE], solid=False)
+        bullet.add_part("nothing", [CUBE], solid=False, visible=False)
+        assert bullet._client.getNumBodies() == 1
+        parts, _ = bullet.camera_image(camera, camera.robot_from_camera)
+        assert set(np.unique(parts).tolist()) == {-1, 0, 1}
+        assert bullet._client.getNumBodies() == 2
