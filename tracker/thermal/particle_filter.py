@@ -8,9 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.elementary import exponential
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
-from peopleboy.tracker.normal_draws import source_of, standard_normals
 from peopleboy.tracker.thermal.appearance.appearance_model import AppearanceView, visible
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView
 from peopleboy.tracker.thermal.config import (
@@ -23,8 +21,6 @@ from peopleboy.tracker.thermal.contour.likelihood import EXTREME, ContourModel, 
 from peopleboy.tracker.thermal.contour.measure_sections import logistic
 from peopleboy.tracker.thermal.mount import Mount, mount_of
 from peopleboy.tracker.thermal.particles import (
-    CROWN,
-    FOOT,
     CameraTurn,
     D,
     Floats,
@@ -45,7 +41,6 @@ from peopleboy.tracker.thermal.weights import NOTHING, shared_out, sharp_weights
 from peopleboy.tracker.thermal.whereabouts import Regions
 
 STANDING = Odometry()
-RESIZING = 0.3  # spread of the logarithm of the size of samples that are made larger or smaller
 OUTSIDE_WEIGHT = 1e-6  # factor on the weight of a sample outside the limits: "a very low chance"
 
 
@@ -305,33 +300,11 @@ def advance(
     fresh = round(filter_config.fresh_share * filter_config.count)
     kept = resample(particles, filter_config.count - fresh, rng)
     motion = config.motion if motion is None else motion
-    moved = predict(particles.state, kept, view.dt_s, view.turn, view.size, motion, rng)
-    if resizes and filter_config.resized_share > 0:
-        _resize(moved, filter_config.resized_share, rng)
+    share = filter_config.resized_share if resizes else 0.0
+    moved = predict(particles.state, kept, view.dt_s, view.turn, view.size, motion, rng, share)
     if fresh == 0:
         return moved
     return np.concatenate([moved, draw_fresh(fresh, view, filter_config, config, rng)])
-
-
-def _resize(state: Floats, share: float, rng: np.random.Generator) -> None:
-    """Make a share of the samples (N, 9) larger or smaller, in place.
-
-    Every other one keeps the top of its head where it is, the others keep their feet: a torso that was taken
-    for a whole person is found out that way.
-    """
-    apart = round(1 / share)
-    _scale(state, apart, standard_normals(*source_of(rng), -(-len(state) // apart)))
-
-
-@njit(cache=True, nogil=True)
-def _scale(state: Floats, apart: int, chance: Floats) -> None:
-    """Scale every so many samples (N, 9) by chance (M,), normal, in place, as `_resize` says."""
-    for k in range(np.uint64(len(chance))):
-        i, factor = k * np.uint64(apart), exponential(np.float32(RESIZING) * chance[k])
-        kept = np.float32(-CROWN) if k % 2 == 0 else np.float32(FOOT)
-        state[i, Y] -= kept * (factor - np.float32(1)) * state[i, H]
-        state[i, W] *= factor
-        state[i, H] *= factor
 
 
 def begin(

@@ -38,6 +38,7 @@ HEAD_DIVISOR: Final = 4.4  # body semi-height / head semi-height
 CROWN: Final = 1 + 2 / HEAD_DIVISOR  # top of the head above the body's centre
 FOOT: Final = 2.05  # feet below it
 
+RESIZING = 0.3  # spread of the logarithm of the size of samples that are made larger or smaller
 BOX_SPREAD = 0.05  # of a person within a box that is known, as a share of its sides
 
 Floats = NDArray[np.float32]
@@ -218,10 +219,13 @@ def predict(
     size: float,
     config: MotionConfig,
     rng: np.random.Generator,
+    resized_share: float = 0.0,
 ) -> Floats:
     """Draw where some of the samples are one time step later, (N, 9).
 
-    Constant velocity in (x, y, w, h), a random walk in d and in the velocities; then the camera turns.
+    Constant velocity in (x, y, w, h), a random walk in d and in the velocities; then the camera turns. A
+    share is made larger or smaller: every other one keeps the top of its head where it is, the others keep
+    their feet, so that a torso that was taken for a whole person is found out.
 
     Args:
         state: (M, 9) samples now.
@@ -231,14 +235,15 @@ def predict(
         size: image height / 240; the amplitudes are given for an image of 240 rows.
         config: amplitudes of the random walk.
         rng: source of chance.
+        resized_share: of the samples that are made larger or smaller.
 
     Source: thesis, equations 4.7 and 4.8.
     """
-    noise = standard_normals(*source_of(rng), 5 * len(rows)).reshape(-1, 5)
     amplitude = noise_per_step(dt_s, size, config)
     memory = _scaled(1.0, (config.place_memory, config.place_memory, config.size_memory, config.size_memory))
-    moved: Floats = _predicted(
-        state, rows, noise, amplitude, memory, dt_s, size * config.noise_by_height, turn
+    apart = round(1 / resized_share) if resized_share > 0 else 0
+    moved: Floats = _moved(
+        state, rows, *source_of(rng), amplitude, memory, dt_s, size * config.noise_by_height, turn, apart
     )
     return moved
 
@@ -347,6 +352,38 @@ def estimated(
         confidence += heavy[i] * np.float64(sure)
     mean = _mean(core, heavy)
     return core, heavy, mean, confidence, _spread(core, heavy, mean)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _moved(
+    state: Floats,
+    rows: NDArray[np.int64],
+    function: int,
+    source: int,
+    amplitude: Floats,
+    memory: Floats,
+    dt_s: float,
+    by_height: float,
+    turn: CameraTurn,
+    apart: int,
+) -> Floats:
+    """Predict samples in some rows, and resize every so many of them, 0 for none; see `source_of`."""
+    noise = standard_normals(function, source, 5 * len(rows)).reshape(-1, 5)
+    moved = _predicted(state, rows, noise, amplitude, memory, dt_s, by_height, turn)
+    if apart > 0:
+        _resize(moved, apart, standard_normals(function, source, -(-len(moved) // apart)))
+    return moved
+
+
+@njit(cache=True, nogil=True)
+def _resize(state: Floats, apart: int, chance: Floats) -> None:
+    """Scale every so many samples (N, 9) by chance (M,), normal, in place, as `predict` says."""
+    for k in range(np.uint64(len(chance))):
+        i, factor = k * np.uint64(apart), exponential(np.float32(RESIZING) * chance[k])
+        kept = np.float32(-CROWN) if k % 2 == 0 else np.float32(FOOT)
+        state[i, Y] -= kept * (factor - np.float32(1)) * state[i, H]
+        state[i, W] *= factor
+        state[i, H] *= factor
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -262,17 +262,17 @@ class PeopleTracker:
 
     def _detected(self, view: FrameView) -> Belief:
         """Move and weigh the detector's samples, once in each look, kept off those who are tracked."""
-        config, rng, belief, moved = self._config, self._rng, self._detector, view
+        config, rng, belief = self._config, self._rng, self._detector
         seen = [person.belief.estimate for person in self._persons if not person.is_hidden]
         regions = regions_of(seen, config)
-        for _ in range(config.search.looks):
+        for look in range(config.search.looks):
             if belief is None:
                 state = draw_fresh(config.detector.count, view, config.detector, config, rng)
             else:
+                moved = view if look == 0 else replace(view, turn_rad=0.0)  # the camera turns once
                 state = advance(belief.particles, moved, config.detector, config, rng)
             factor = detector_factor(state, regions, config)
             belief = weigh(state, view, config.detector, config, factor)
-            moved = replace(view, turn_rad=0.0)  # the camera has turned once
         assert belief is not None
         return belief
 
