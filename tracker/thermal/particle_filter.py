@@ -17,8 +17,7 @@ from peopleboy.tracker.thermal.config import (
     MotionConfig,
     TrackerConfig,
 )
-from peopleboy.tracker.thermal.contour.likelihood import EXTREME, ContourModel, fitness
-from peopleboy.tracker.thermal.contour.measure_sections import logistic
+from peopleboy.tracker.thermal.contour.likelihood import ContourModel, fitness, probability
 from peopleboy.tracker.thermal.mount import Mount, mount_of
 from peopleboy.tracker.thermal.particles import (
     CameraTurn,
@@ -155,56 +154,26 @@ def weigh(
     likeness.
     """
     differences = view.model.differences(view.image, state, view.covered)
-    law = config.likelihood
-    fit = fitness(differences, view.model.weights, law)
+    fit = fitness(differences, view.model.weights, config.likelihood)
+    chance = probability(fit, config.likelihood)
+    inside = is_within(state, limits_px(view.image.shape[0], filter_config.limits))
     if likeness is not None and filter_config.sharpness == 0:
         factor = likeness if factor is None else likeness * factor
-    weight, own, heavy, estimate, confidence, uncertainty_px2 = _weighed(
-        state,
-        fit,
-        limits_px(view.image.shape[0], filter_config.limits),
-        NOTHING if factor is None else factor,
-        NOTHING if likeness is None else likeness,
-        sharpening_of(filter_config, law.model),
-        (law.slope, law.threshold),
-        (filter_config.estimate_share, filter_config.estimate_reach),
-    )
+    weight = sample_weights(fit, chance, inside, config.likelihood.model, filter_config, factor, likeness)
+    choice = filter_config.estimate_share, filter_config.estimate_reach
+    own, heavy, estimate, confidence, uncertainty_px2 = estimated(state, weight, chance, inside, choice)
     core = Particles(own, heavy)
     return Belief(Particles(state, weight), core, estimate, confidence, uncertainty_px2)
 
 
-def sharpening_of(config: FilterConfig, model: str) -> tuple[float, float, bool]:
-    """Give a filter's sharpness, the least fitness that counts, and whether the paper's weights are meant."""
-    return config.sharpness, config.floor, model == "paper"
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _weighed(
-    state: Floats,
-    fit: Floats,
-    limits: Floats,
-    factor: Floats,
-    likeness: Floats,
-    sharpening: tuple[float, float, bool],
-    curve: tuple[float, float],
-    estimate: tuple[float, float],
-) -> tuple[Floats, Floats, Floats, NDArray[np.float64], float, float]:
-    """Give the weights of samples whose fitness is known, and `estimated` of them, in one go."""
-    chance = logistic(fit, curve[0], curve[1], EXTREME)
-    inside = is_within(state, limits)
-    weight = sample_weights(fit, chance, inside, factor, likeness, sharpening)
-    core, heavy, mean, confidence, spread = estimated(state, weight, chance, inside, estimate)
-    return weight, core, heavy, mean, confidence, spread
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
 def sample_weights(
     fit: Floats,
     chance: Floats,
     is_inside: NDArray[np.bool_],
-    factor: Floats,
-    likeness: Floats,
-    sharpening: tuple[float, float, bool],
+    model: str,
+    config: FilterConfig,
+    factor: Floats | None = None,
+    likeness: Floats | None = None,
 ) -> Floats:
     """Weigh the samples (N,), to sum to 1.
 
@@ -212,24 +181,16 @@ def sample_weights(
     sharpness, the weight goes on growing with the fitness, to which the logarithm of the likeness adds. The
     paper weighs with the fitness itself.
 
-    Args:
-        fit: (N,) of the contour.
-        chance: (N,) its probability.
-        is_inside: (N,) whether they are within the limits.
-        factor: (N,) on the weights, or `NOTHING`.
-        likeness: (N,) of the looks, or `NOTHING`; counts with a sharpness only.
-        sharpening: of `sharpening_of`.
-
     Source: thesis, equation 4.5; paper, equation 3.
     """
-    sharpness, floor, is_paper = sharpening
-    if sharpness > 0:
-        weight = sharp_weights(fit, likeness, sharpness, floor)
-    elif is_paper:
-        weight = np.maximum(np.maximum(fit, np.float32(floor)), np.float32(1e-6))
+    if config.sharpness > 0:
+        weight = sharp_weights(fit, NOTHING if likeness is None else likeness, config.sharpness, config.floor)
+    elif model == "paper":
+        weight = np.maximum(np.maximum(fit, np.float32(config.floor)), np.float32(1e-6))
     else:
         weight = chance
-    return shared_out(weight, is_inside, factor, OUTSIDE_WEIGHT)
+    weighed: Floats = shared_out(weight, is_inside, NOTHING if factor is None else factor, OUTSIDE_WEIGHT)
+    return weighed
 
 
 @njit(cache=True, nogil=True)

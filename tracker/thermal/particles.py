@@ -20,7 +20,7 @@ from peopleboy.tracker.thermal.config import (
     MotionConfig,
     TrackerConfig,
 )
-from peopleboy.tracker.thermal.weights import scale_to_one, systematic_rows
+from peopleboy.tracker.thermal.weights import ranked, scale_to_one, systematic_rows
 
 X: Final = 0
 Y: Final = 1
@@ -336,9 +336,9 @@ def estimated(
         spread: as of `uncertainty_px2` [px^2].
     """
     share, reach = choice
-    others = len(weight) - np.int64(math.ceil(share * len(weight)))
+    others = len(weight) - math.ceil(share * len(weight))
     # The weight of the least of the best: those equal to it stay, so that no sorting order decides.
-    least = np.partition(weight, others)[others]
+    least = ranked(weight, others)
     rows = _rows_near_best(state, weight, least, np.float32(reach * reach))
     core, heavy = np.empty((len(rows), STATE_SIZE), np.float32), np.empty(len(rows), np.float32)
     for i in range(np.uint64(len(rows))):

@@ -51,7 +51,7 @@ CLUTTER_SETTLES_S: Final = 0.5  # time constant with which a tracker takes in th
 _APART_PX: Final = 8  # of 240 rows: between the two pixels of a pair
 _SHARE: Final = 0.75  # of the pairs differ by less: people, lamps and windows are among the others
 _STRIDE: Final = 4
-EXTREME: Final = 40.0  # log odds beyond which the probability no longer changes, and exp would overflow
+_EXTREME: Final = 40.0  # log odds beyond which the probability no longer changes, and exp would overflow
 
 
 def _superellipse(power: float, count: int = 32) -> NDArray[np.float64]:
@@ -175,7 +175,7 @@ def probability(fit: Floats, config: LikelihoodConfig) -> Floats:
 
     Source: thesis, equation 4.4, which equals the logistic function of 2 kappa (f - theta).
     """
-    chance: Floats = logistic(fit, config.slope, config.threshold, EXTREME)
+    chance: Floats = logistic(fit, config.slope, config.threshold, _EXTREME)
     return chance
 
 

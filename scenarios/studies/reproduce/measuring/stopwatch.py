@@ -31,7 +31,6 @@ from peopleboy.tracker.thermal.particle_filter import (
     begin,
     is_within,
     sample_weights,
-    sharpening_of,
     step,
     view_frame,
 )
@@ -43,7 +42,6 @@ from peopleboy.tracker.thermal.particles import (
     resample,
     uncertainty_px2,
 )
-from peopleboy.tracker.thermal.weights import NOTHING
 
 SHAPE = (240, 320)
 COUNT = 1000
@@ -96,8 +94,7 @@ def time_steps(setting: Setting, steps: int) -> Milliseconds:
         fit = fitness(differences, view.model.weights, config.likelihood)
         chance = probability(fit, config.likelihood)
         inside = is_within(state, limits_px(SHAPE[0], person.limits))
-        sharpening = sharpening_of(person, config.likelihood.model)
-        weight = sample_weights(fit, chance, inside, NOTHING, NOTHING, sharpening)
+        weight = sample_weights(fit, chance, inside, config.likelihood.model, person)
         return Particles(state, weight)
 
     particles = weigh()

@@ -15,9 +15,8 @@ from peopleboy.tracker.thermal.config import (
     StayBehindConfig,
 )
 from peopleboy.tracker.thermal.contour.likelihood import fitness, probability
-from peopleboy.tracker.thermal.particle_filter import is_within, sample_weights, sharpening_of
+from peopleboy.tracker.thermal.particle_filter import is_within, sample_weights
 from peopleboy.tracker.thermal.particles import draw_prior, limits_px
-from peopleboy.tracker.thermal.weights import NOTHING
 
 THESIS = LikelihoodConfig()
 ALPHA = np.array([0.18, 0.18, 0.18, 0.07, 0.07, 0.16, 0.16, 0.0])
@@ -63,8 +62,8 @@ def test_the_weakest_section_pulls_the_fitness_down():
 @pytest.mark.parametrize(("model", "sharpness"), [("thesis", 0.0), ("thesis", 3.0), ("paper", 0.0)])
 def test_weights_sum_to_one_and_grow_with_the_fitness(model, sharpness):
     fit = np.linspace(1, 40, 50).astype(np.float32)
-    inside, law = np.ones(50, bool), sharpening_of(FilterConfig(sharpness=sharpness), model)
-    weight = sample_weights(fit, probability(fit, THESIS), inside, NOTHING, NOTHING, law)
+    config = FilterConfig(sharpness=sharpness)
+    weight = sample_weights(fit, probability(fit, THESIS), np.ones(50, bool), model, config)
     assert weight.sum() == pytest.approx(1, abs=1e-5)
     assert np.all(np.diff(weight) >= 0)
 
@@ -72,8 +71,7 @@ def test_weights_sum_to_one_and_grow_with_the_fitness(model, sharpness):
 def test_a_sample_outside_the_limits_is_hardly_ever_chosen():
     fit = np.full(10, 30, np.float32)
     inside = np.arange(10) != 4
-    law = sharpening_of(FilterConfig(), "thesis")
-    weight = sample_weights(fit, probability(fit, THESIS), inside, NOTHING, NOTHING, law)
+    weight = sample_weights(fit, probability(fit, THESIS), inside, "thesis", FilterConfig())
     assert weight[4] == pytest.approx(1e-6 / 9, rel=0.01)
 
 
