@@ -1,6 +1,7 @@
 """`python -m benchmarks.speed.against OTHER_CHECKOUT`: how much faster runs are here than in another one.
 
-Both take turns on this machine, each in a process and with caches of its own, so that other work slows both.
+Both track by contours, which older ones know no other way to do, and take turns on this machine, each in a
+process and with caches of its own, so that other work slows both.
 The other one may be older than the package's present layout; its first turn compiles, and is not counted.
 """
 
@@ -18,16 +19,18 @@ from typing import Final
 import click
 
 from benchmarks import call
+from peopleboy.tracker.trackers import CONTOUR_TRACKER
 
 HERE: Final = Path(__file__).parents[2]
 SCENARIO: Final = "crossing_pair"
 _CODE: Final = f"""
-import json
+import inspect, json
 try:
     from benchmarks.speed.closed_loop import loop_speed, run_speed
 except ImportError:
     from benchmarks.closed_loop import loop_speed, run_speed
-print(json.dumps([loop_speed("{SCENARIO}"), run_speed("{SCENARIO}")]))
+told = {{"tracker": "{CONTOUR_TRACKER}"}} if "tracker" in inspect.signature(run_speed).parameters else {{}}
+print(json.dumps([loop_speed("{SCENARIO}", **told), run_speed("{SCENARIO}", **told)]))
 """
 
 

@@ -18,13 +18,13 @@ from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 RATE_HZ = 15
 
 
-def loop_speed(scenario: str, frames: int = 300) -> float:
+def loop_speed(scenario: str, frames: int = 300, *, tracker: str = DEFAULT_TRACKER) -> float:
     """Return how many times faster than real time the loop runs: world, images, truth, tracker, behaviour."""
     loaded = load_scenario(scenario)
     times = []
     with World(loaded.world(0)) as world:
         ticks = closed_loop(
-            world, make_tracker(DEFAULT_TRACKER, stream(0, "tracker")), loaded.make_behaviour(), frames
+            world, make_tracker(tracker, stream(0, "tracker")), loaded.make_behaviour(), frames
         )
         next(ticks)
         last = time.process_time()
@@ -37,7 +37,7 @@ def loop_speed(scenario: str, frames: int = 300) -> float:
     return 1.0 / median(times)
 
 
-def run_speed(scenario: str) -> float:
+def run_speed(scenario: str, *, tracker: str = DEFAULT_TRACKER) -> float:
     """Return the same for a whole `peopleboy run`, with its tables, contact sheet and recording."""
     times = []
     last = time.process_time()
@@ -49,7 +49,7 @@ def run_speed(scenario: str) -> float:
         last = now
 
     with tempfile.TemporaryDirectory() as folder:
-        run(load_scenario(scenario), RunOptions(seed=0, out=Path(folder) / "run"), report)
+        run(load_scenario(scenario), RunOptions(seed=0, out=Path(folder) / "run", tracker=tracker), report)
     # The mean, not the median: the recording writes every 15 frames, and that counts.
     return (len(times) - 1) / RATE_HZ / sum(times[1:])
 
