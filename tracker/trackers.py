@@ -77,6 +77,8 @@ Factory = Callable[[np.random.Generator], Tracker]
 
 DEFAULT_TRACKER: Final = "anywhere"
 CONTOUR_TRACKER: Final = "peopleboy"
+BY_CONTRAST: Final = frozenset({DEFAULT_TRACKER})
+"""Those to which only the contrast of a thermal image matters, not how many degC a grey stands for."""
 
 
 def explanation_of(tracker: Tracker) -> object:

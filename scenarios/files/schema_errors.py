@@ -76,12 +76,13 @@ def _is_echo(fault: Any, faults: Sequence[Any]) -> bool:
 
 
 def _explain_one(fault: Any, model: type[BaseModel]) -> BadInput:
-    steps, owner, kinds = _follow(fault["loc"], model)
+    steps, owner, kinds, words = _follow(fault["loc"], model)
     kind, context = fault["type"], fault.get("ctx", {})
     if kind == "union_tag_not_found":
         return BadInput(f"missing key 'kind'; choose from {', '.join(kinds)}", key=steps)
     if kind == "missing" and isinstance(steps[-1], str):
-        return BadInput(f"missing key {steps[-1]!r}", key=steps[:-1])
+        choice = f"; choose from {', '.join(words)}" if words else ""
+        return BadInput(f"missing key {steps[-1]!r}{choice}", key=steps[:-1])
     if kind == "extra_forbidden":
         return BadInput(f"unknown key {steps[-1]!r}; {hint(str(steps[-1]), owner)}", key=steps[:-1])
     if steps and steps[-1] == "[key]":  # pydantic's, of a key that is wrong itself
@@ -119,8 +120,8 @@ def _shown(value: Any) -> str:
     return text if len(text) <= 40 else f"{text[:37]}..."
 
 
-def _follow(loc: Sequence[str | int], model: type[BaseModel]) -> tuple[Key, list[str], list[str]]:
-    """Drop pydantic's tags of unions from a path, and list the keys and kinds that are known at its end."""
+def _follow(loc: Sequence[str | int], model: type[BaseModel]) -> tuple[Key, list[str], list[str], list[str]]:
+    """Drop pydantic's tags of unions from a path, and list the keys, kinds and words known at its end."""
     steps: list[str | int] = []
     known: list[str] = []
     types: list[Any] = [model]
@@ -141,7 +142,7 @@ def _follow(loc: Sequence[str | int], model: type[BaseModel]) -> tuple[Key, list
         else:
             is_key = False
     kinds = sorted({tag for candidate in types if _is_model(candidate) and (tag := _tag(candidate))})
-    return tuple(steps), known, kinds
+    return tuple(steps), known, kinds, sorted(word for word in types if isinstance(word, str))
 
 
 def _is_model(candidate: Any) -> bool:

@@ -18,7 +18,7 @@ from peopleboy.tracker.footage.pictures import open_footage
 from peopleboy.tracker.footage.plausible import check_plausible
 from peopleboy.tracker.footage.sequence_info import find_info, rate_in
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
-from peopleboy.tracker.trackers import DEFAULT_TRACKER
+from peopleboy.tracker.trackers import BY_CONTRAST
 
 COLOUR_TRACKER: Final = "colour"
 """It differs from `thermal` by what colours add alone."""
@@ -78,7 +78,7 @@ class ThermalViews:
                 to_grey = grey_maker(
                     radiometry,
                     is_grey=thermal.dtype == np.uint8,
-                    is_robots=options.tracker != DEFAULT_TRACKER,
+                    by_contrast=options.tracker in BY_CONTRAST,
                 )
             images: dict[str, NDArray[np.uint8]] = {THERMAL: to_grey(values)}
             if picture is not None:

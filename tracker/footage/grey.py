@@ -156,16 +156,16 @@ def _measure(values: NDArray[np.float32]) -> NDArray[np.float64]:
 
 
 def grey_maker(
-    radiometry: Radiometry, *, is_grey: bool, is_robots: bool
+    radiometry: Radiometry, *, is_grey: bool, by_contrast: bool
 ) -> Callable[[NDArray[np.float32]], Grey]:
     """Choose how values become grey.
 
     Args:
         radiometry: what is known of the pixels.
         is_grey: whether the pictures have 8 bits.
-        is_robots: whether the tracker is one that knows degC, rather than that of footage, to which only
-            contrast matters: it gets 8-bit pictures as they are.
+        by_contrast: whether they are for a tracker to which only contrast matters: it gets 8-bit pictures as
+            they are.
     """
-    if is_robots:
-        return spanned if radiometry.is_known else AutomaticGrey()
-    return partial(spanned, span=radiometry.span_c or (0.0, 255.0)) if is_grey else local_grey
+    if by_contrast:
+        return partial(spanned, span=radiometry.span_c or (0.0, 255.0)) if is_grey else local_grey
+    return spanned if radiometry.is_known else AutomaticGrey()

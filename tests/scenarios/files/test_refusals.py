@@ -136,6 +136,10 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
         lambda d: d["things"][0].update(shine=-0.1),
         ("things[0].shine: must be at least 0, got -0.1",),
     ),
+    "thing without a kind": (
+        lambda d: d["things"][0].pop("kind"),
+        ("things[0]: missing key 'kind'; choose from bear, bench, bicycle,", "vending_machine, window"),
+    ),
     "camera where cameras used to be": (
         lambda d: d["robot"].update(thermal={"netd_k": 0.1}),
         ("robot: 'thermal' is a camera", "write cameras: {thermal: {kind: thermal, ...}}"),

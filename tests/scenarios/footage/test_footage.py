@@ -145,7 +145,7 @@ def test_automatic_grey_does_not_blow_up_noise():
 def test_pictures_of_eight_bits_are_taken_as_they_are_by_the_tracker_of_footage_whatever_greys_mean():
     grey = walker(3)
     for radiometry in (Radiometry(), Radiometry(span_c=(-7.3, 41.1))):
-        to_grey = grey_maker(radiometry, is_grey=True, is_robots=False)
+        to_grey = grey_maker(radiometry, is_grey=True, by_contrast=True)
         np.testing.assert_array_equal(to_grey(radiometry.values(grey, [])), grey)
 
 
