@@ -8,7 +8,7 @@ PIP := $(BIN)/uv pip install --quiet --python $(BIN)/python --constraint constra
 # Bytecode that is kept saves each of the processes that tests start some of its start.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-pages test-heavy test-install lint format bench peers rl pages docs dist docker clean
+.PHONY: demo test test-pages test-heavy test-install lint format bench peers rl pages docs dist docker forget-kernels clean
 
 demo: $(INSTALLED)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
@@ -70,9 +70,11 @@ dist: $(READY)
 docker:
 	docker build --tag peopleboy .
 
-# numba looks only at a kernel's own file: after editing one that others inline, throw its cache away.
-clean:
+# numba looks only at a kernel's own file: after a pull, or after editing one that others inline, throw its cache away.
+forget-kernels:
 	find . -name '*.nb[ic]' -delete
+
+clean: forget-kernels
 	rm -rf $(VENV) runs build/docs dist
 
 $(INSTALLED): pyproject.toml constraints.txt
