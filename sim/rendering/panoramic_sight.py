@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -58,8 +59,17 @@ class PanoramicSight(Sight):
                 one[:] = first - 0.5, top - 0.5, last + 0.5, bottom + 0.5
         return bounds
 
-    def area(self, scene: Scene, camera: Panorama, world_from_camera: Matrix, parts: Mask) -> int:
-        """Count the pixels that some parts (P,) would fill if nothing hid them."""
+    def area(
+        self,
+        scene: Scene,
+        camera: Panorama,
+        world_from_camera: Matrix,
+        parts: Mask,
+        bounds: Sequence[float],
+    ) -> int:
+        """Count the pixels that some parts (P,) would fill if nothing hid them, within `bounds` of theirs."""
+        if math.isnan(bounds[0]):
+            return 0
         filled, wanted = self._outline(scene, camera, world_from_camera, parts)
         return int(np.count_nonzero(filled.pixels & wanted))
 

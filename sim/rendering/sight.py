@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
@@ -73,8 +74,12 @@ class Sight(ABC):
                 one[:] = u.min() - 0.5, v.min() - 0.5, u.max() + 0.5, v.max() + 0.5
         return bounds
 
-    def area(self, scene: Scene, camera: Any, world_from_camera: Matrix, parts: Mask) -> int:
-        """Count the pixels that some parts (P,) would fill if nothing hid them."""
+    def area(
+        self, scene: Scene, camera: Any, world_from_camera: Matrix, parts: Mask, bounds: Sequence[float]
+    ) -> int:
+        """Count the pixels that some parts (P,) would fill if nothing hid them, within `bounds` of theirs."""
+        if math.isnan(bounds[0]):
+            return 0
         return int(np.count_nonzero(self.view(scene.only(parts), camera, world_from_camera).cover))
 
     def cover(self, view: View, owner_of_part: NDArray[np.int64], people: int, owners: int) -> Cover:
@@ -102,9 +107,11 @@ class Flat(Sight):
         """See `silhouette_bounds`."""
         return silhouette_bounds(camera, scene.table, self._before(scene, world_from_camera), parts)
 
-    def area(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix, parts: Mask) -> int:
+    def area(
+        self, scene: Scene, camera: Pinhole, world_from_camera: Matrix, parts: Mask, bounds: Sequence[float]
+    ) -> int:
         """See `silhouette_area`."""
-        return silhouette_area(camera, scene.table, self._before(scene, world_from_camera), parts)
+        return silhouette_area(camera, scene.table, self._before(scene, world_from_camera), parts, bounds)
 
     def _before(self, scene: Scene, world_from_camera: Matrix) -> Matrix:
         """Give the poses (P, 4, 4) of a scene's parts in a camera's frame."""
@@ -139,9 +146,9 @@ class Seen:
         """The rectangles (N, 4) around some parts (N, P), as in `Sight.bounds`."""
         return self.sight.bounds(self.scene, self.camera, self.world_from_camera, parts)
 
-    def area(self, parts: Mask) -> int:
+    def area(self, parts: Mask, bounds: Sequence[float]) -> int:
         """Pixels of some parts (P,), as in `Sight.area`."""
-        return self.sight.area(self.scene, self.camera, self.world_from_camera, parts)
+        return self.sight.area(self.scene, self.camera, self.world_from_camera, parts, bounds)
 
 
 def look(sight: Sight, scene: Scene, camera: CameraGeometry, world_from_camera: Matrix) -> Seen:

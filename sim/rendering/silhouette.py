@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numba import njit
@@ -41,17 +42,18 @@ def silhouette_bounds(camera: Pinhole, table: ShapeTable, camera_from_part: Matr
     return bounds
 
 
-def silhouette_area(camera: Pinhole, table: ShapeTable, camera_from_part: Matrix, parts: Mask) -> int:
+def silhouette_area(
+    camera: Pinhole, table: ShapeTable, camera_from_part: Matrix, parts: Mask, bounds: Sequence[float]
+) -> int:
     """Count the pixels that some parts (P,) would fill if nothing hid them, the image's border neither.
 
     The image is continued by its own width and height beyond each border; arguments are as in
-    `silhouette_bounds`.
+    `silhouette_bounds`, and what that says of the parts.
     """
-    box = silhouette_bounds(camera, table, camera_from_part, parts[None])[0].tolist()
-    if math.isnan(box[0]):
+    if math.isnan(bounds[0]):
         return 0
-    left, right = _within(box[0], box[2], camera.width)
-    top, bottom = _within(box[1], box[3], camera.height)
+    left, right = _within(bounds[0], bounds[2], camera.width)
+    top, bottom = _within(bounds[1], bounds[3], camera.height)
     if left > right or top > bottom:
         return 0
     u, v = camera.centre_px

@@ -152,7 +152,7 @@ class TruthMaker:
         if not is_cut_off(whole, seen.camera):
             return inside
         # TinyRenderer's silhouettes may be a few pixels larger.
-        return max(inside, seen.area(self._outlines[k, _WHOLE]))
+        return max(inside, seen.area(self._outlines[k, _WHOLE], whole))
 
     def _hidden_by(self, k: int, shown: list[int], area: int) -> dict[str, float]:
         """Share of the whole silhouette that each other owner, or the border, hides."""

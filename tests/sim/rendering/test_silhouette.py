@@ -22,7 +22,8 @@ def bounds_of(table: ShapeTable, camera: Pinhole, pose: np.ndarray) -> np.ndarra
 
 
 def area_of(table: ShapeTable, camera: Pinhole, pose: np.ndarray) -> int:
-    return silhouette_area(camera, table, invert_pose(pose) @ HERE, EVERYTHING)
+    bounds = bounds_of(table, camera, pose).tolist()
+    return silhouette_area(camera, table, invert_pose(pose) @ HERE, EVERYTHING, bounds)
 
 
 def random_table(rng: np.random.Generator, spread_m: float, distance_m: float) -> ShapeTable:
