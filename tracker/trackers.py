@@ -75,9 +75,10 @@ Factory = Callable[[np.random.Generator], Tracker]
 """Makes a tracker that draws all that is random from the generator."""
 
 
-DEFAULT_TRACKER: Final = "anywhere"
+DETECTION_TRACKER: Final = "anywhere"
 CONTOUR_TRACKER: Final = "peopleboy"
-BY_CONTRAST: Final = frozenset({DEFAULT_TRACKER})
+DEFAULT_TRACKER: Final = DETECTION_TRACKER
+BY_CONTRAST: Final = frozenset({DETECTION_TRACKER})
 """Those to which only the contrast of a thermal image matters, not how many degC a grey stands for."""
 
 
@@ -141,7 +142,7 @@ def _attentive_fused_tracker(rng: np.random.Generator) -> AttentiveTracker[Colou
 
 
 TRACKERS: Final[dict[str, Factory]] = {
-    DEFAULT_TRACKER: _by_detection_tracker,
+    DETECTION_TRACKER: _by_detection_tracker,
     **{name: partial(_contour_tracker, name) for name in VARIANTS},
     "panoramic-paper": _panoramic_paper_tracker,
     "panoramic": _panoramic_tracker,

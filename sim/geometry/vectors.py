@@ -57,3 +57,13 @@ def map_point(pose: Array, x: float, y: float, z: float) -> Point:
         pose[1, 0] * x + pose[1, 1] * y + pose[1, 2] * z + pose[1, 3],
         pose[2, 0] * x + pose[2, 1] * y + pose[2, 2] * z + pose[2, 3],
     )
+
+
+@njit(cache=True, fastmath=False)
+def turn_back(pose: Array, x: float, y: float, z: float) -> Point:
+    """Turn a vector of the frame that a pose leads to into the frame that it comes from."""
+    return (
+        pose[0, 0] * x + pose[1, 0] * y + pose[2, 0] * z,
+        pose[0, 1] * x + pose[1, 1] * y + pose[2, 1] * z,
+        pose[0, 2] * x + pose[1, 2] * y + pose[2, 2] * z,
+    )

@@ -16,7 +16,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
-from peopleboy.sim.geometry.vectors import Point, compose, dot, map_point, minus, plus, scaled
+from peopleboy.sim.geometry.vectors import Point, compose, dot, map_point, minus, plus, scaled, turn_back
 from peopleboy.sim.rendering.canvas import Canvas, Lens, Rectangle, pixels, set_shading, shade
 from peopleboy.sim.rendering.raycast import draw_shape, quick_bounds
 from peopleboy.sim.rendering.sight import Seen
@@ -319,27 +319,17 @@ def _draw_round(kind: int, size: Array, surface: int, lens: Lens, area: Rectangl
             set_shading(canvas, surface + 1 + i, _NO_AXIS, scaled(end, -1.0), 1.0 / radius)
     else:
         set_shading(canvas, surface, _NO_AXIS, scaled(centre, -1.0), 1.0 / radius)
-    eye = _turned(pose, -centre[0], -centre[1], -centre[2])
+    eye = turn_back(pose, -centre[0], -centre[1], -centre[2])
     step = scaled((pose[0, 0], pose[0, 1], pose[0, 2]), 1.0 / lens.focal)
     extent = (size[0], size[1], size[2])
     for v in range(area[1], area[3] + 1):
-        ray = _turned(pose, -lens.centre_u / lens.focal, (v - lens.centre_v) / lens.focal, 1.0)
+        ray = turn_back(pose, -lens.centre_u / lens.focal, (v - lens.centre_v) / lens.focal, 1.0)
         nearness, surfaces = canvas.nearness[v], canvas.surface[v]
         for u in range(area[0], area[2] + 1):
             z, local = hit_shape(kind, extent, eye, plus(ray, scaled(step, float(u))))
             if z * nearness[u] < 1.0 and NEAR_M <= z <= FAR_M:
                 nearness[u] = 1.0 / z
                 surfaces[u] = surface + local
-
-
-@njit(cache=True)
-def _turned(pose: Array, x: float, y: float, z: float) -> Point:
-    """A direction of the camera's frame in that of a shape."""
-    return (
-        pose[0, 0] * x + pose[1, 0] * y + pose[2, 0] * z,
-        pose[0, 1] * x + pose[1, 1] * y + pose[2, 1] * z,
-        pose[0, 2] * x + pose[1, 2] * y + pose[2, 2] * z,
-    )
 
 
 @njit(cache=True, error_model="numpy")

@@ -21,9 +21,9 @@ from peopleboy.sim.physics.kinematic.state import Motion, State
 from peopleboy.sim.physics.kinematic.vehicle import Vehicle, make_vehicle, wheels_of
 from peopleboy.sim.physics.model_files import find_model
 from peopleboy.sim.physics.solids.cast import cast
-from peopleboy.sim.physics.solids.solids import Placements, Solids, refresh
+from peopleboy.sim.physics.solids.solids import Placements, Solids, make_solids, refresh
 from peopleboy.sim.physics.urdf_links import read_links
-from peopleboy.sim.shapes.shape_table import VisualShape, as_given, make_shape_table
+from peopleboy.sim.shapes.shape_table import VisualShape, as_given
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
 
 _LINK = "link0"  # as PyBullet calls it
@@ -320,8 +320,7 @@ class Kinematic:
             base_from_part=np.array(self._base_from_part).reshape(-1, 4, 4),
             poses=np.zeros((len(self._parts), 4, 4)),
         )
-        table = make_shape_table(self._solid)
-        return bodies, Solids(table, np.zeros((len(table.kind), 4, 4)), np.zeros((len(table.kind), 2, 3)))
+        return bodies, make_solids(self._solid)
 
     def _place_vehicle(self, rolling: _Rolling) -> None:
         x, y, heading = rolling.pose.tolist()

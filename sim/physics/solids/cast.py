@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.vectors import Point, cross, dot, minus
+from peopleboy.sim.geometry.vectors import Point, cross, dot, minus, turn_back
 from peopleboy.sim.physics.solids.solid_boxes import MARGIN_M, entered_at
 from peopleboy.sim.physics.solids.solids import Array, Placements, Solids
 from peopleboy.sim.shapes.rays import hit_shape
@@ -96,24 +96,14 @@ def _share(one: Array, other: Array, margin_m: float) -> bool:
 def _hit(start: Array, end: Array, solids: Solids, k: int) -> float:
     """Where, as a fraction of its way, a ray enters a solid; infinite where it misses."""
     pose, table = solids.poses[k], solids.table
-    o = _to_shape(pose, start[0] - pose[0, 3], start[1] - pose[1, 3], start[2] - pose[2, 3])
-    d = _to_shape(pose, end[0] - start[0], end[1] - start[1], end[2] - start[2])
+    o = turn_back(pose, start[0] - pose[0, 3], start[1] - pose[1, 3], start[2] - pose[2, 3])
+    d = turn_back(pose, end[0] - start[0], end[1] - start[1], end[2] - start[2])
     if table.kind[k] != _MESH:
         return hit_shape(table.kind[k], (table.size[k, 0], table.size[k, 1], table.size[k, 2]), o, d)[0]
     nearest = math.inf
     for number in range(table.triangle_range[k, 0], table.triangle_range[k, 1]):
         nearest = min(nearest, _hit_triangle(table.triangles[number], o, d))
     return nearest
-
-
-@njit(cache=True)
-def _to_shape(pose: Array, x: float, y: float, z: float) -> Point:
-    """Turn a vector of the world into the frame of a pose."""
-    return (
-        pose[0, 0] * x + pose[1, 0] * y + pose[2, 0] * z,
-        pose[0, 1] * x + pose[1, 1] * y + pose[2, 1] * z,
-        pose[0, 2] * x + pose[1, 2] * y + pose[2, 2] * z,
-    )
 
 
 @njit(cache=True, error_model="numpy")

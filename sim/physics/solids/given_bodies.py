@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.bodies import Place, as_unit, as_units
 from peopleboy.sim.physics.solids.cast import cast
-from peopleboy.sim.physics.solids.solids import Array, Placements, Solids, refresh
-from peopleboy.sim.shapes.shape_table import VisualShape, as_given, make_shape_table
+from peopleboy.sim.physics.solids.solids import Array, Placements, Solids, make_solids, refresh
+from peopleboy.sim.shapes.shape_table import VisualShape, as_given
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, Vector
 
 _NONE: Final = -1
@@ -87,7 +87,7 @@ class GivenBodies:
         return fraction, np.append(self._part_of_row[bodies.of_part], _NONE)[solid]
 
     def _pack(self) -> tuple[Placements, Solids]:
-        count, table = len(self._solid_rows), make_shape_table(self._solid)
+        count = len(self._solid_rows)
         self._stale[:] = True
         bodies = Placements(
             places=self._places,
@@ -97,4 +97,4 @@ class GivenBodies:
             base_from_part=np.tile(np.eye(4), (count, 1, 1)),
             poses=np.zeros((count, 4, 4)),
         )
-        return bodies, Solids(table, np.zeros((len(table.kind), 4, 4)), np.zeros((len(table.kind), 2, 3)))
+        return bodies, make_solids(self._solid)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +11,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.vectors import compose, map_point
-from peopleboy.sim.shapes.shape_table import ShapeTable
+from peopleboy.sim.shapes.shape_table import ShapeTable, VisualShape, make_shape_table
 from peopleboy.sim.shapes.shapes import ShapeKind
 
 Array = NDArray[np.float64]
@@ -55,6 +56,13 @@ class Solids(NamedTuple):
     table: ShapeTable
     poses: Array
     boxes: Array
+
+
+def make_solids(shapes: Sequence[VisualShape]) -> Solids:
+    """Give shapes, by the numbers of their parts, room for where they are, which `refresh` fills."""
+    table = make_shape_table(shapes)
+    count = len(table.kind)
+    return Solids(table, np.zeros((count, 4, 4)), np.zeros((count, 2, 3)))
 
 
 @njit(cache=True, nogil=True)
