@@ -20,7 +20,14 @@ from tests.helpers.import_graph import (
 )
 
 FILES = room_files()
-ALLOWED = {"sim": set(), "tracker": set(), "behaviours": set(), "scenarios": {"sim", "tracker", "behaviours"}}
+ALLOWED: dict[str, set[str]] = {
+    "sim": set(),
+    "tracker": set(),
+    "behaviours": set(),
+    "scenarios": {"sim", "tracker", "behaviours"},
+    "studies": {"sim", "tracker", "behaviours", "scenarios"},
+}
+COMMANDS = "scenarios.commands"  # the one place that imports `studies`, when a command runs
 SHARED = {"peopleboy.bad_input", "peopleboy.own_code", "peopleboy.wording"}
 FOLDERS = sorted({str(path.parent.relative_to(ROOT)) for path in FILES.values()})
 ELSEWHERE = ("tests", "benchmarks", "docs", "examples", "src")
@@ -83,7 +90,20 @@ def test_a_room_imports_only_the_rooms_it_may(room: str) -> None:
         for module, names in arrows().items()
         if library_of(module) == room and (found := {name for name in names if library_of(name) in others})
     }
-    assert not intruders
+    assert not {module for module in intruders if not lies_in(module, COMMANDS)}
+    assert not {name for found in intruders.values() for name in found if library_of(name) != "studies"}
+
+
+def test_the_command_line_imports_studies_only_when_a_command_runs() -> None:
+    at_load = {name for names in arrows(only_at_load=True).values() for name in names}
+    importers = {
+        module
+        for module, names in arrows(only_at_load=True).items()
+        for name in names
+        if library_of(name) == "studies"
+    }
+    assert "studies.reproductions.reproduce" in {name.rpartition(".")[0] for name in at_load}
+    assert {library_of(module) for module in importers} == {"studies"}
 
 
 @pytest.mark.parametrize("room", ROOMS)

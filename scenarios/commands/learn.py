@@ -41,7 +41,7 @@ def train_foreground(
     Their places, things, people and drives are drawn by their seeds. Films that are there are not made again.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
-    from peopleboy.scenarios.studies.foreground_learning.foreground_lesson import (
+    from peopleboy.studies.training.foreground_learning.foreground_lesson import (
         ForegroundLessons,
         give_foreground_lesson,
     )
@@ -79,7 +79,7 @@ def train_places(
     scikit-learn. A killed call goes on where it was.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
-    from peopleboy.scenarios.studies.place_learning.place_lesson import give_place_lesson
+    from peopleboy.studies.training.place_learning.place_lesson import give_place_lesson
 
     click.echo(give_place_lesson(out, films, chosen_workers(workers, scheduler), scenes=scenes, ship=ship))
 
@@ -104,7 +104,7 @@ def train_windows(scenes: int, out: Path, ship: bool, workers: int | None, sched
     farther, by colour alone and with depth. Needs scikit-learn. A killed call goes on where it was.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
-    from peopleboy.scenarios.studies.window_learning.window_lesson import give_window_lesson
+    from peopleboy.studies.training.window_learning.window_lesson import give_window_lesson
 
     for path in give_window_lesson(out, chosen_workers(workers, scheduler), scenes=scenes, ship=ship):
         click.echo(path)
@@ -169,9 +169,9 @@ def train_detector(
     again.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
-    from peopleboy.scenarios.studies.look_learning.closer_look_lesson import give_closer_look_lesson
-    from peopleboy.scenarios.studies.look_learning.second_look_lesson import give_second_look_lesson
-    from peopleboy.scenarios.studies.people_learning.people_lesson import give_people_lesson
+    from peopleboy.studies.training.look_learning.closer_look_lesson import give_closer_look_lesson
+    from peopleboy.studies.training.look_learning.second_look_lesson import give_second_look_lesson
+    from peopleboy.studies.training.people_learning.people_lesson import give_people_lesson
     from peopleboy.tracker.proposals.window import Kind
 
     chosen, kinds = chosen_workers(workers, scheduler), [kind for kind in Kind if kind in windows]

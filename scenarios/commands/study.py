@@ -27,7 +27,7 @@ def datasets(suites: Sequence[str], films: Path) -> None:
     SUITES are any of dataset1 to dataset4; without a name, all of them.
     """
     from peopleboy.scenarios.scores.suite_table import THESIS
-    from peopleboy.scenarios.studies.reproduce.showing.show_contents import print_contents
+    from peopleboy.studies.reproductions.showing.show_contents import print_contents
 
     for name in suites:
         if name not in THESIS:
@@ -69,7 +69,7 @@ def train_occlusion(
     Needs scikit-learn. A killed call goes on where it was.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
-    from peopleboy.scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
+    from peopleboy.studies.training.occlusion_learning.occlusion_lesson import give_lesson
 
     who = chosen_workers(workers, scheduler)
     folder = out if out is not None else Path("runs") / f"occlusion-{tracker}"
@@ -112,7 +112,7 @@ def train_distance(
     at a time is there later. A killed call goes on where it was.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
-    from peopleboy.scenarios.studies.distance_learning.distance_lesson import give_distance_lesson
+    from peopleboy.studies.training.distance_learning.distance_lesson import give_distance_lesson
     from peopleboy.tracker.panoramic.paper.distance_network import Lessons
 
     who = chosen_workers(workers, scheduler)
@@ -175,8 +175,8 @@ def reproduce(
     was when it is given again.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
-    from peopleboy.scenarios.studies.reproduce.measuring.workload import REPEATS
-    from peopleboy.scenarios.studies.reproduce.show import list_experiments, reproduce_named
+    from peopleboy.studies.reproductions.measuring.workload import REPEATS
+    from peopleboy.studies.reproductions.show import list_experiments, reproduce_named
 
     if quick and repeats is not None:
         raise BadInput("reproduce: --quick has its own number of repeats; give either it or --repeats")
@@ -238,10 +238,10 @@ def tune(
     no figure is reported on. Leaves a curve of each parameter and a page. A killed call goes on where it was.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
-    from peopleboy.scenarios.studies.tuning.tune import TrainingFilms
-    from peopleboy.scenarios.studies.tuning.tune import tune as tune_all
-    from peopleboy.scenarios.studies.tuning.tuned_page import print_tuned
-    from peopleboy.scenarios.studies.tuning.tuned_parameters import chosen_parameters
+    from peopleboy.studies.reproductions.tuning.tune import TrainingFilms
+    from peopleboy.studies.reproductions.tuning.tune import tune as tune_all
+    from peopleboy.studies.reproductions.tuning.tuned_page import print_tuned
+    from peopleboy.studies.reproductions.tuning.tuned_parameters import chosen_parameters
 
     shown = TrainingFilms(cache=films.resolve(), seeds=seeds, seconds=seconds)
     page, tuned = tune_all(chosen_parameters(names), shown, out, chosen_workers(workers, scheduler))

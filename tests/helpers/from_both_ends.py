@@ -10,7 +10,7 @@ from xdist.scheduler import LoadFileScheduling
 from xdist.workermanage import WorkerController
 
 _COMPILE_MOST: Final = ("benchmarks",)
-_COMPILE_NOTHING: Final = ("scenarios/studies/reproduce", "docs", "test_", "tracker/evaluation")
+_COMPILE_NOTHING: Final = ("studies/reproductions", "docs", "test_", "tracker/evaluation")
 
 
 def from_both_ends(file: Path) -> int:

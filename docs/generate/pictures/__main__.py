@@ -24,8 +24,8 @@ from docs.generate.pictures import (
 )
 from docs.generate.pictures.paper import COLOURS, save
 from docs.generate.pictures.worlds import hard_scenes, light, proposals, reactions
-from peopleboy.scenarios.studies.reproduce.pictures.attention_maps import draw_parts
-from peopleboy.scenarios.studies.reproduce.pictures.silhouette import draw_features
+from peopleboy.studies.reproductions.pictures.attention_maps import draw_parts
+from peopleboy.studies.reproductions.pictures.silhouette import draw_features
 
 FOLDER = Path(__file__).parents[2] / "pictures"
 

@@ -22,11 +22,11 @@ from peopleboy.scenarios.drawing.plan.robot import draw_robot
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop
-from peopleboy.scenarios.studies.foreground_learning.masked_film import film_people
-from peopleboy.scenarios.studies.place_learning.place_task import panorama_of
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
+from peopleboy.studies.training.foreground_learning.masked_film import film_people
+from peopleboy.studies.training.place_learning.place_task import panorama_of
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
 from peopleboy.tracker.panoramic.foreground.foreground import Foreground
 from peopleboy.tracker.panoramic.people.figure_patch import ACROSS, BOTTOM_M, HALF_WIDTH_M, LAYERS, TOP_M, UP

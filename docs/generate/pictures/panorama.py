@@ -10,11 +10,6 @@ from PIL import Image
 
 from peopleboy.scenarios.drawing.overlay import draw_truth, enlarge, people_parts
 from peopleboy.scenarios.running.engine.workers import Workers
-from peopleboy.scenarios.studies.reproduce.experiments.distances import ROOMS, examples_of, walks
-from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store, run_units
-from peopleboy.scenarios.studies.reproduce.measuring.workload import Plan
-from peopleboy.scenarios.studies.reproduce.pictures.curves import draw_ranges
-from peopleboy.scenarios.studies.reproduce.reproduce import RESULTS
 from peopleboy.sim.cameras.camera_config import PanoramaConfig, ThermalConfig
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.person_config import PersonConfig
@@ -22,6 +17,11 @@ from peopleboy.sim.people.walking.waypoint import Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
+from peopleboy.studies.reproductions.experiments.distances import ROOMS, examples_of, walks
+from peopleboy.studies.reproductions.measuring.run_units import open_store, run_units
+from peopleboy.studies.reproductions.measuring.workload import Plan
+from peopleboy.studies.reproductions.pictures.curves import draw_ranges
+from peopleboy.studies.reproductions.reproduce import RESULTS
 
 PEOPLE = {"anna": (6.5, -1.2), "carl": (1.6, 0.1), "dora": (4.2, 1.9)}
 SCALE = 1.5

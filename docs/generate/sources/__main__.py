@@ -17,13 +17,13 @@ import click
 from docs.generate.sources.source_pages import PAGE, whole_page
 from docs.generate.sources.source_run import FOLDER, SourceRun
 from peopleboy.scenarios.running.engine.store import Store
-from peopleboy.scenarios.studies.reproduce.experiments.catalogue import choose, of_paper
-from peopleboy.scenarios.studies.reproduce.experiments.experiment import Outcome
-from peopleboy.scenarios.studies.reproduce.measuring.workload import full_plan
-from peopleboy.scenarios.studies.reproduce.reproduce import RESULTS, finished
-from peopleboy.scenarios.studies.reproduce.showing.experiment_plots import draw
-from peopleboy.scenarios.studies.reproduce.showing.page_head import head_of
-from peopleboy.scenarios.studies.reproduce.showing.source import source_tables
+from peopleboy.studies.reproductions.experiments.catalogue import choose, of_paper
+from peopleboy.studies.reproductions.experiments.experiment import Outcome
+from peopleboy.studies.reproductions.measuring.workload import full_plan
+from peopleboy.studies.reproductions.reproduce import RESULTS, finished
+from peopleboy.studies.reproductions.showing.experiment_plots import draw
+from peopleboy.studies.reproductions.showing.page_head import head_of
+from peopleboy.studies.reproductions.showing.source import source_tables
 
 _COMMAND = "peopleboy reproduce --paper thesis; peopleboy reproduce --paper 2005"
 

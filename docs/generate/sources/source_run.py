@@ -12,8 +12,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.studies.reproduce.experiments.catalogue import EXPERIMENTS
-from peopleboy.scenarios.studies.reproduce.experiments.experiment import (
+from peopleboy.studies.reproductions.experiments.catalogue import EXPERIMENTS
+from peopleboy.studies.reproductions.experiments.experiment import (
     Effort,
     Figures,
     FilmFigure,
@@ -21,7 +21,7 @@ from peopleboy.scenarios.studies.reproduce.experiments.experiment import (
     Outcome,
     Samples,
 )
-from peopleboy.scenarios.studies.reproduce.showing.source_page import PageHead
+from peopleboy.studies.reproductions.showing.source_page import PageHead
 
 FOLDER: Final = Path(__file__).parents[2] / "sources"
 RUN: Final = "run.json"

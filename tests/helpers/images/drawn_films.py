@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from peopleboy.scenarios.studies.people_learning.people_film import PeopleFilm
+from peopleboy.studies.training.people_learning.people_film import PeopleFilm
 
 ROWS, COLUMNS = 120, 160
 WIDTH_PER_HEIGHT = 0.3

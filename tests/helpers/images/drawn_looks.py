@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.studies.look_learning.examples import LookExamples
-from peopleboy.scenarios.studies.look_learning.teach_network import first_weights
+from peopleboy.studies.training.look_learning.examples import LookExamples
+from peopleboy.studies.training.look_learning.teach_network import first_weights
 from peopleboy.tracker.proposals.looks.crops import NUMBERS, PLANES
 from peopleboy.tracker.proposals.looks.network import Form
 from peopleboy.tracker.proposals.placing import OFFSETS

@@ -17,13 +17,13 @@ from peopleboy.scenarios.run_folder.whole import whole
 from peopleboy.scenarios.run_folder.whole_folder import whole_folder
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.frame_cache import film
-from peopleboy.scenarios.studies.distance_learning.distance_lesson import give_distance_lesson
-from peopleboy.scenarios.studies.foreground_learning.foreground_lesson import (
+from peopleboy.studies.reproductions.measuring.run_units import open_store
+from peopleboy.studies.training.distance_learning.distance_lesson import give_distance_lesson
+from peopleboy.studies.training.foreground_learning.foreground_lesson import (
     ForegroundLessons,
     give_foreground_lesson,
 )
-from peopleboy.scenarios.studies.occlusion_learning.occlusion_lesson import give_lesson
-from peopleboy.scenarios.studies.reproduce.measuring.run_units import open_store
+from peopleboy.studies.training.occlusion_learning.occlusion_lesson import give_lesson
 from peopleboy.tracker.panoramic.paper.distance_network import Lessons
 from tests.helpers.calls.footage_calls import refusal
 from tests.helpers.calls.processes import start

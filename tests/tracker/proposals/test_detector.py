@@ -3,9 +3,9 @@ import pytest
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
-from peopleboy.scenarios.studies.people_learning.judge_detector import judge_detector
-from peopleboy.scenarios.studies.people_learning.people_film import film_upright
-from peopleboy.scenarios.studies.people_learning.shots import PeopleShot, shots_of
+from peopleboy.studies.training.people_learning.judge_detector import judge_detector
+from peopleboy.studies.training.people_learning.people_film import film_upright
+from peopleboy.studies.training.people_learning.shots import PeopleShot, shots_of
 from peopleboy.tracker.boxes import iou, shared_of_smaller
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, PeopleDetector, look
 from peopleboy.tracker.proposals.model import shipped_model

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from docs.generate.pictures.paper import panels, show
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
-from peopleboy.scenarios.studies.people_learning.people_film import PeopleFilm, film_upright
+from peopleboy.studies.training.people_learning.people_film import PeopleFilm, film_upright
 from peopleboy.tracker.proposals.channels import BESIDE, FIRST_DIRECTION, GRADIENT, MOTION, OVER
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, PeopleDetector
 from peopleboy.tracker.proposals.pyramid import levels

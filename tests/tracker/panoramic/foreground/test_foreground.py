@@ -8,9 +8,9 @@ import yaml
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.studies.foreground_learning.judge_masks import Judgement, judge
-from peopleboy.scenarios.studies.foreground_learning.masked_film import film_people
-from peopleboy.scenarios.studies.foreground_learning.play_films import watch
+from peopleboy.studies.training.foreground_learning.judge_masks import Judgement, judge
+from peopleboy.studies.training.foreground_learning.masked_film import film_people
+from peopleboy.studies.training.foreground_learning.play_films import watch
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.panoramic.foreground.foreground import Foreground, shipped_model
 from tests.helpers.calls.refused import refused

@@ -1,0 +1,133 @@
+"""How much is done: everything, or a little in a few minutes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from peopleboy.scenarios.files.suite import SuiteRun, load_suite, runs_of
+from peopleboy.studies.reproductions.scene_films.scene_sets import PRESETS, SEQUENCES
+
+DATASETS = ("dataset1", "dataset2", "dataset3", "dataset4")
+TRAINING = "training films"
+"""Of the scenario of dataset1, with other seeds: by these the literal tracker's readings were chosen."""
+_TRAINING_SEEDS = (100, 101)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Plan:
+    """How much of everything.
+
+    Attributes:
+        cache: where rendered frames are kept.
+        suites: runs by the name of their data set.
+        training: runs apart from those, by which readings were chosen.
+        repeats: random streams per tracker.
+        is_quick: whether sweeps take fewer values, too.
+        pair_seeds: seeds per scenario from which examples of overlapping people are taken.
+        splits: of examples into those to learn from and those to test with.
+        triplets: whether weighted triplets are tried, which take minutes.
+        rounds: of boosting.
+        timing_steps: how often each step is timed in each turn.
+        walks: seeds of each room in which people walk before a panoramic camera.
+        sets: numbers of the drives with a depth camera, from 1.
+        drives: seeds of each of them.
+        ablated: seeds of those on which trackers are compared that differ in one thing.
+        drive_s: [s] after which drives are cut.
+        scenes: names of the sequences in which things are moved.
+        scene_seeds: seeds of each of them.
+        presets: depth cameras that watch them.
+        absences: seeds of each film in which somebody goes away and comes back.
+        follows: seeds of runs in which the robot follows such a person.
+    """
+
+    cache: Path
+    suites: Mapping[str, Sequence[SuiteRun]] = field(default_factory=dict)
+    training: Sequence[SuiteRun] = ()
+    repeats: int = 10
+    is_quick: bool = False
+    pair_seeds: int = 10
+    splits: int = 10
+    triplets: bool = True
+    rounds: int = 40
+    timing_steps: int = 40
+    walks: int = 10
+    sets: tuple[int, ...] = tuple(range(1, 13))
+    drives: int = 5
+    ablated: int = 2
+    drive_s: float = 3600.0
+    scenes: tuple[str, ...] = tuple(SEQUENCES)
+    scene_seeds: int = 5
+    presets: tuple[str, ...] = PRESETS
+    absences: int = 10
+    follows: int = 20
+
+    def plays(self, name: str) -> Sequence[SuiteRun]:
+        """Give the runs of a data set, or those of training."""
+        return self.training if name == TRAINING else self.suites[name]
+
+    def repeated(self, repeats: int) -> Plan:
+        """Give a full plan with as many repeats; what is smaller than the sources' ten stays as small."""
+        return replace(
+            self,
+            repeats=repeats,
+            pair_seeds=repeats,
+            walks=repeats,
+            drives=min(repeats, 5),
+            ablated=min(repeats, 2),
+            scene_seeds=min(repeats, 5),
+            absences=repeats,
+            follows=2 * repeats,
+        )
+
+
+QUICK_S = 20.0
+
+
+REPEATS = 10
+"""How often the sources repeat everything."""
+
+
+def full_plan(cache: Path, repeats: int = REPEATS) -> Plan:
+    """Everything, as the sources did it, with as many repeats, or as many seeds where those are repeated."""
+    suites = {name: tuple(runs_of(load_suite(name))) for name in DATASETS}
+    return Plan(cache=cache, suites=suites, training=_training(suites)).repeated(repeats)
+
+
+def quick_plan(cache: Path) -> Plan:
+    """A little of everything: the start of one run per data set, three repeats, fewer values."""
+    suites = {name: (_middle_run(name),) for name in DATASETS}
+    return Plan(
+        cache=cache,
+        suites=suites,
+        training=_training(suites),
+        repeats=3,
+        is_quick=True,
+        pair_seeds=1,
+        splits=3,
+        triplets=False,
+        rounds=20,
+        timing_steps=20,
+        walks=2,
+        sets=(2, 7, 11),
+        drives=1,
+        ablated=1,
+        drive_s=10.0,
+        scenes=("s1r1", "s2r1", "s4r1"),
+        scene_seeds=1,
+        presets=PRESETS[:2],
+        absences=1,
+        follows=1,
+    )
+
+
+def _training(suites: Mapping[str, Sequence[SuiteRun]]) -> tuple[SuiteRun, ...]:
+    scenario = suites[DATASETS[0]][0].scenario
+    return tuple(SuiteRun(scenario, seed) for seed in _TRAINING_SEEDS)
+
+
+def _middle_run(name: str) -> SuiteRun:
+    runs = list(runs_of(load_suite(name)))
+    play = runs[len(runs) // 2]
+    return SuiteRun(play.scenario.lasting(min(QUICK_S, play.scenario.duration_s)), play.seed)

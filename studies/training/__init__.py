@@ -1,0 +1,1 @@
+"""Training of what the trackers ship: tables, networks and the people detector."""

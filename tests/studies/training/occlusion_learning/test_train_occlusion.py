@@ -1,0 +1,187 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.studies.reproductions.measuring.learn_units import LearnUnit
+from peopleboy.studies.reproductions.measuring.tracker_settings import Setting
+from peopleboy.studies.training.occlusion_learning.example_splits import (
+    learn_split,
+    random_split,
+    share_right,
+    split_by_scenario,
+)
+from peopleboy.studies.training.occlusion_learning.occlusion_lesson import give_lesson
+from peopleboy.studies.training.occlusion_learning.occlusion_pairs import (
+    Episodes,
+    PairExample,
+    mirrored,
+    who_is_in_front,
+)
+from peopleboy.studies.training.occlusion_learning.pair_files import read_pairs, write_pairs
+from peopleboy.studies.training.occlusion_learning.train_occlusion import (
+    LEAST,
+    learn,
+    run_trials,
+)
+from peopleboy.tracker.thermal.occlusion.learned_table import LearnedTable
+from tests.helpers.calls.refused import refused
+from tests.helpers.runs.synthetic_ticks import person
+
+
+def examples(count: int, seed: int) -> list[PairExample]:
+    """Pairs of four scenarios, in which a mix of top and bottom tells who is in front, with some noise."""
+    rng = np.random.default_rng(seed)
+    made = []
+    for number in range(count):
+        features = rng.normal(0, 0.05, 6)
+        is_front = bool(features[2] - features[1] + rng.normal(0, 0.01) > 0)
+        made.append(
+            PairExample(
+                scenario=f"made_up_{number % 4}",
+                seed=seed,
+                frame=number,
+                one="ann",
+                other="bob",
+                features=features,
+                is_front=is_front,
+            )
+        )
+    return made
+
+
+def test_whoever_hides_more_of_the_other_is_in_front_and_else_whoever_is_clearly_nearer():
+    ann, bob = person(1, "ann", 4.0), person(2, "bob", 6.0)
+    assert who_is_in_front(ann, bob) is True
+    assert who_is_in_front(bob, ann) is False
+    assert who_is_in_front(ann, replace(bob, distance_m=4.2)) is None
+    # A corner of the distances: who bends over may hide somebody who stands a little nearer.
+    assert who_is_in_front(ann, replace(bob, distance_m=3.9, hidden_by={"ann": 0.3})) is True
+    assert who_is_in_front(replace(ann, hidden_by={"bob": 0.1}), bob) is False
+
+
+def test_nothing_is_taken_from_a_total_occlusion_until_the_two_have_been_apart():
+    ann, bob = person(1, "ann", 4.0), person(2, "bob", 6.0)
+    hidden = replace(bob, visible_fraction=0.05, hidden_by={"ann": 0.95})
+    episodes = Episodes()
+    assert [episodes.takes(ann, bob, frame) for frame in range(1, 6)] == [True, False, True, False, True]
+    assert not episodes.takes(ann, hidden, 6)
+    assert not any(episodes.takes(ann, bob, frame) for frame in range(7, 20))
+    assert episodes.takes(bob, ann, 60)
+
+
+def test_no_pair_and_no_scenario_is_both_learned_from_and_tested_on():
+    given = examples(300, 0)
+    split = random_split(given, np.random.default_rng(0))
+    learned, tested = ({id(one) for one in part} for part in (split.learned, split.tested))
+    assert (len(learned), len(tested)) == (73, 48)
+    assert not learned & tested
+    by_scenario = split_by_scenario(given, np.random.default_rng(0))
+    learned, tested = ({one.scenario for one in part} for part in (by_scenario.learned, by_scenario.tested))
+    assert len(learned) == 3
+    assert not learned & tested
+    assert len(by_scenario.learned) + len(by_scenario.tested) == 300
+
+
+def test_however_uneven_scenarios_are_one_is_left_to_test_with():
+    few, many = examples(8, 0), [replace(one, scenario="most") for one in examples(60, 1)]
+    for seed in range(10):
+        split = split_by_scenario([*few, *many], np.random.default_rng(seed))
+        assert split.tested
+        assert split.learned
+
+
+def test_a_feature_that_tells_nothing_is_right_in_half_of_all_answers():
+    given = [replace(one, features=one.features * [1, 1, 1, 1, 0, 1]) for one in examples(60, 0)]
+    found = learn_split(given, ("colour_o",), 1, 4, np.random.default_rng(0))
+    assert (found.held_out, found.unseen, found.table.classifiers) == (50.0, 50.0, ())
+
+
+def test_as_many_examples_are_positive_as_negative():
+    features, is_front = mirrored(examples(31, 0))
+    assert is_front.sum() == 31
+    assert np.array_equal(features[:31], -features[31:])
+
+
+def test_trials_hold_the_rows_and_counts_of_the_thesis_tables():
+    trials = list(run_trials(examples(140, 0), most=2, rounds=8, repeats=3))
+    assert [(trial.table, trial.name, trial.classifiers) for trial in trials] == [
+        ("7.1", "thermal", 243),
+        ("7.1", "colour", 243),
+        ("7.1", "both", 1206),
+        ("7.2", "single", 6),
+        ("7.2", "weighted pairs", 1206),
+        *(("7.3", name, 1) for name in ("strength", "top", "bottom", "colour", "colour_o", "colour_no")),
+    ]
+    by_name = {trial.name: trial for trial in trials}
+    assert by_name["both"].held_out == by_name["weighted pairs"].held_out
+    assert min(by_name["thermal"].unseen) > 80
+    assert max(by_name["colour"].unseen) < 70
+
+
+def test_what_is_learned_says_from_how_much_and_how_well():
+    learned = learn(examples(100, 0), rounds=10)
+    assert "100 pairs" in learned.about["learned from"]
+    assert float(learned.about["right on each scenario, learned from the others"].split()[0]) > 85
+
+
+def test_a_tracker_that_does_not_order_people_has_nothing_to_learn(tmp_path):
+    with refused("paper", "peopleboy, thesis"):
+        give_lesson(tmp_path, "paper", 1, Workers(), triplets=False, again=False, ship=False)
+
+
+@pytest.mark.slow
+def test_a_lesson_from_kept_examples_prints_the_tables_and_leaves_a_table_that_loads(tmp_path, capsys):
+    write_pairs(tmp_path / "pairs.csv", examples(100, 0))
+    path = give_lesson(tmp_path, "peopleboy", 1, Workers(), triplets=False, again=False, ship=False)
+    assert path == tmp_path / "peopleboy.yaml"
+    assert len(LearnedTable.load(path).classifiers) > 1
+    printed = capsys.readouterr().out
+    for words in ("Table 7.1", "Table 7.2", "Table 7.3", "Table 7.4", "1206", "89.38 ± 2.48", "t-tests"):
+        assert words in printed
+
+
+def test_too_few_examples_are_refused():
+    with pytest.raises(BadInput, match="at least 20"):
+        learn(examples(5, 0))
+
+
+def test_no_answer_counts_half_and_no_question_nothing():
+    assert share_right(np.array([1.0, -1.0, 0.0, 0.2]), np.array([True, True, True, False])) == 37.5
+    assert np.isnan(share_right(np.zeros(0), np.zeros(0, bool)))
+
+
+def test_examples_survive_their_file(tmp_path):
+    path = tmp_path / "pairs.csv"
+    written = examples(7, 3)
+    write_pairs(path, written)
+    read = read_pairs(path)
+    for one, other in zip(written, read, strict=True):
+        assert other.features == pytest.approx(one.features, rel=1e-4)
+        assert (one.scenario, one.seed, one.frame, one.one, one.other, one.is_front) == (
+            other.scenario, other.seed, other.frame, other.one, other.other, other.is_front,
+        )  # fmt: skip
+
+
+@pytest.mark.parametrize("text", ["a,b\n1,2\n", "scenario,seed\nx,one\n"])
+def test_a_file_that_is_no_table_of_examples_is_refused(tmp_path, text):
+    path = tmp_path / "pairs.csv"
+    path.write_text(text)
+    with refused(path, "scenario"):
+        read_pairs(path)
+    with refused(tmp_path / "nothing.csv"):
+        read_pairs(tmp_path / "nothing.csv")
+
+
+def test_too_few_pairs_of_a_tracker_teach_nothing_and_say_so():
+    def lesson(count: int) -> LearnUnit:
+        given = tuple(examples(count, 1))
+        return LearnUnit(("top", "bottom"), 2, 5, 0, given, Setting("thesis-occlusion"))
+
+    few, enough = lesson(LEAST - 1).run(), lesson(LEAST).run()
+    assert np.isnan([few["held out"], few["unseen scenarios"]]).all()
+    assert few["best"] == []
+    assert enough["held out"] > 60
+    assert "thesis-occlusion" in lesson(1).key
