@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
-from peopleboy.studies.reproductions.blind_drive import blind_drive
+from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.tracker.frame import THERMAL, Odometry
 from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.thermal.mount import Mount, mount_of

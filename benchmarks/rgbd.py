@@ -13,7 +13,7 @@ import numpy as np
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.studies.reproductions.blind_drive import blind_drive
+from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
 from peopleboy.tracker.trackers import make_tracker
 

@@ -16,8 +16,8 @@ from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
+from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.random_streams import stream
-from peopleboy.studies.reproductions.blind_drive import blind_drive
 from peopleboy.tracker.attention.attend import Focus
 from peopleboy.tracker.attention.people.attended import Attended
 from peopleboy.tracker.attention.people.attentive_config import AttentiveConfig

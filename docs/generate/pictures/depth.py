@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from docs.generate.pictures.paper import panels, show
 from peopleboy.scenarios.drawing.palette import person_colour
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import DepthConfig, ThermalConfig
 from peopleboy.sim.cameras.depth_image import show_depth
 from peopleboy.sim.config import WorldConfig
@@ -17,7 +18,6 @@ from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.sim.world import World
-from peopleboy.studies.reproductions.blind_drive import blind_drive
 
 PEOPLE = {"anna": (3.9, -0.8), "carl": (5.6, 0.6), "dora": (8.2, -0.35)}
 ROWS = slice(120, 400)

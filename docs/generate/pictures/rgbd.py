@@ -11,8 +11,8 @@ from docs.generate.pictures.paper import show
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.depth_image import show_depth
-from peopleboy.studies.reproductions.blind_drive import blind_drive
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
 from peopleboy.tracker.rgbd.detection.depth_view import DepthView
 from peopleboy.tracker.rgbd.detection.u_depth import FARTHEST_M, depths_m

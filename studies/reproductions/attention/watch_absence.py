@@ -12,9 +12,9 @@ import numpy as np
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
+from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import Truth
-from peopleboy.studies.reproductions.blind_drive import blind_drive
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import COLOUR, THERMAL
 from peopleboy.tracker.track import Status, Track

@@ -13,9 +13,9 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.oracle_tracker import OracleTracker
+from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.studies.reproductions.attention.focus_choices import CHOICES
-from peopleboy.studies.reproductions.blind_drive import blind_drive
 from peopleboy.tracker.attention.attend import Focus, PersonLook, learn, middle_of, search
 from peopleboy.tracker.attention.attention_config import AttentionConfig
 from peopleboy.tracker.attention.parts import check_box

@@ -11,10 +11,10 @@ from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.schema.robot import RobotSpec
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
+from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.truth.truth import PersonTruth, Truth
-from peopleboy.studies.reproductions.blind_drive import blind_drive
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
 from peopleboy.tracker.rgbd.detection.depth_view import DepthView
 from peopleboy.tracker.track import Box

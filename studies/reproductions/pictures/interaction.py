@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.random_streams import stream
-from peopleboy.studies.reproductions.blind_drive import blind_drive
 from peopleboy.studies.reproductions.pictures.png import canvas, label
 from peopleboy.tracker.frame import THERMAL as CAMERA
 from peopleboy.tracker.frame import Frame

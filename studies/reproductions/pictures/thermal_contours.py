@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.studies.reproductions.blind_drive import blind_drive
 from peopleboy.studies.reproductions.pictures.png import canvas, label
 from peopleboy.tracker.frame import THERMAL as CAMERA
 from peopleboy.tracker.thermal.contour.likelihood import ContourModel

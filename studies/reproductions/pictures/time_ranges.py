@@ -8,7 +8,7 @@ from typing import Final
 from matplotlib.figure import Figure
 
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.studies.reproductions.blind_drive import blind_drive
+from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.studies.reproductions.pictures.png import canvas, label
 from peopleboy.tracker.frame import THERMAL
 

@@ -14,13 +14,13 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
+from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.scenarios.watching.run_frames import IMAGES
 from peopleboy.scenarios.watching.true_events import TrueEvent
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.truth.backgrounds import Backgrounds
 from peopleboy.sim.truth.thing_events import ThingLog
 from peopleboy.sim.truth.truth import Truth
-from peopleboy.studies.reproductions.blind_drive import blind_drive
 from peopleboy.studies.reproductions.depth_drives.play_drive import with_cameras
 from peopleboy.studies.reproductions.scene_films.scene_choices import CHOICES
 from peopleboy.studies.reproductions.scene_films.score_scene import (

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.truth.truth import Truth
-from peopleboy.studies.reproductions.blind_drive import blind_drive
 from peopleboy.tracker.frame import PANORAMA, Odometry
 
 Floats = NDArray[np.float64]

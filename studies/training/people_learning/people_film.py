@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.studies.reproductions.blind_drive import blind_drive
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.proposals.motion import change, turned
 from peopleboy.tracker.proposals.past_images import EARLIER_S

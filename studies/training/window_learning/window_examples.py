@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.truth.truth import PersonTruth, Truth
-from peopleboy.studies.reproductions.blind_drive import blind_drive
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR
 from peopleboy.tracker.rgbd.detection.depth_view import Depth, DepthView
 from peopleboy.tracker.rgbd.detection.human_size import HumanSize
