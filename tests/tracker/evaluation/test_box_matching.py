@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.evaluation.association import GATE, associate, pair_up
+from peopleboy.tracker.evaluation.box_matching import GATE, associate, pair_up
 from tests.helpers.images.random_sequences import sequences, tracks_of, truth_of
 
 
