@@ -9,9 +9,9 @@ from typing import Final
 
 from benchmarks.detection_ablation.film import Film
 from benchmarks.detection_ablation.stages import Stage, thermal_finder
-from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
-from peopleboy.tracker.by_detection.config import ByDetectionConfig, ExistenceConfig, RecognitionConfig
 from peopleboy.tracker.track import Track
+from peopleboy.tracker.tracking.by_detection_tracker import ByDetectionTracker
+from peopleboy.tracker.tracking.config import ByDetectionConfig, ExistenceConfig, RecognitionConfig
 
 _ALL: Final = ByDetectionConfig()
 

@@ -13,10 +13,10 @@ from benchmarks.detection_ablation.stages import LEAST, DetectorOfStage, Stage, 
 from benchmarks.detection_ablation.variants import VARIANTS
 from benchmarks.tracker_ablation import recorded
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import NOBODY
+from peopleboy.tracker.tracking.by_detection_tracker import ByDetectionTracker
 
 
 @pytest.fixture(scope="module")

@@ -2,10 +2,10 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.tracker.by_detection.config import STATURE_M
-from peopleboy.tracker.by_detection.other_camera import carried_over
-from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import PinholeCalibration
+from peopleboy.tracker.tracking.config import STATURE_M
+from peopleboy.tracker.tracking.other_camera import carried_over
+from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 SHAPE = (240, 320)
 

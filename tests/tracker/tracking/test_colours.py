@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
-from peopleboy.tracker.by_detection.colours import (
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.tracking.colours import (
     _BIN_OF,
     FEATURES,
     PARTS,
@@ -17,8 +18,7 @@ from peopleboy.tracker.by_detection.colours import (
     coefficients,
     colours_of,
 )
-from peopleboy.tracker.by_detection.viewpoint import Viewpoint
-from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 ROWS, COLUMNS = 240, 320
 BOX = np.array([[100.0, 40.0, 50.0, 160.0]])

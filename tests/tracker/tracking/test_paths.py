@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.tracker.by_detection.test_viewpoint import SHAPE, calibration
 
-from peopleboy.tracker.by_detection.config import PathConfig
-from peopleboy.tracker.by_detection.paths import (
+from peopleboy.tracker.frame import Odometry
+from peopleboy.tracker.tracking.config import PathConfig
+from peopleboy.tracker.tracking.paths import (
     Paths,
     advanced,
     begun,
@@ -19,9 +21,7 @@ from peopleboy.tracker.by_detection.paths import (
     distances,
     places_of,
 )
-from peopleboy.tracker.by_detection.viewpoint import Viewpoint
-from peopleboy.tracker.frame import Odometry
-from tests.tracker.by_detection.test_viewpoint import SHAPE, calibration
+from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 VIEW = Viewpoint.of(calibration(0.0, 1.2), SHAPE)
 CONFIG = PathConfig()

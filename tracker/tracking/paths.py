@@ -10,10 +10,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.by_detection.config import PathConfig
-from peopleboy.tracker.by_detection.viewpoint import NEAREST_M, Viewpoint
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.track import FloorPlace
+from peopleboy.tracker.tracking.config import PathConfig
+from peopleboy.tracker.tracking.viewpoint import NEAREST_M, Viewpoint
 
 Floats = NDArray[np.float64]
 

@@ -8,12 +8,12 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from peopleboy.tracker.by_detection.colours import FEATURES, Colours, alike, blended
-from peopleboy.tracker.by_detection.config import ExistenceConfig
-from peopleboy.tracker.by_detection.looks import Pattern
-from peopleboy.tracker.by_detection.portrait import Portrait
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.track import Status
+from peopleboy.tracker.tracking.colours import FEATURES, Colours, alike, blended
+from peopleboy.tracker.tracking.config import ExistenceConfig
+from peopleboy.tracker.tracking.looks import Pattern
+from peopleboy.tracker.tracking.portrait import Portrait
 
 _LEARNING: Final = 0.1  # share of what is seen now in what is remembered
 _LEARNING_SOON: Final = 0.2  # the same of what is compared with it

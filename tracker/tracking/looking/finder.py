@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from peopleboy.tracker.by_detection.config import ByDetectionConfig
-from peopleboy.tracker.by_detection.looking.colour_finder import ColourFinder
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import NOBODY, Proposals
 from peopleboy.tracker.thermal.mount import mount_of
+from peopleboy.tracker.tracking.config import ByDetectionConfig
+from peopleboy.tracker.tracking.looking.colour_finder import ColourFinder
 
 
 class Finder(Protocol):

@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from peopleboy.tracker.by_detection.colours import FEATURES
-from peopleboy.tracker.by_detection.config import GazeConfig
-from peopleboy.tracker.by_detection.looking.gaze import Aim, Gaze
-from peopleboy.tracker.by_detection.portrait import Portrait
-from peopleboy.tracker.by_detection.target import Target
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.proposals.suppression import Proposals
+from peopleboy.tracker.tracking.colours import FEATURES
+from peopleboy.tracker.tracking.config import GazeConfig
+from peopleboy.tracker.tracking.looking.gaze import Aim, Gaze
+from peopleboy.tracker.tracking.portrait import Portrait
+from peopleboy.tracker.tracking.target import Target
 
 CONFIG = GazeConfig()
 DT_S = 1.0 / 15.0

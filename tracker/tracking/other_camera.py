@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import Floats, PinholeCalibration
+from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 
 def carried_over(

@@ -8,14 +8,14 @@ import cv2
 import numpy as np
 
 from peopleboy.tracker.boxes import area, iou, shared_of_smaller
-from peopleboy.tracker.by_detection.config import BothCamerasConfig
-from peopleboy.tracker.by_detection.other_camera import carried_over
-from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry, PinholeCalibration
 from peopleboy.tracker.fusion.fresh_images import FreshImages, joined
 from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.thermal.mount import mount_of
+from peopleboy.tracker.tracking.config import BothCamerasConfig
+from peopleboy.tracker.tracking.other_camera import carried_over
+from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 
 class ColourFinder:

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.by_detection.colours import FEATURES, Colours, coefficients, colours_of
-from peopleboy.tracker.by_detection.looks import SAMPLES, Pattern, patterns
-from peopleboy.tracker.by_detection.target import Target
-from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import THERMAL, Floats, Frame
 from peopleboy.tracker.proposals.suppression import Proposals
+from peopleboy.tracker.tracking.colours import FEATURES, Colours, coefficients, colours_of
+from peopleboy.tracker.tracking.looks import SAMPLES, Pattern, patterns
+from peopleboy.tracker.tracking.target import Target
+from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -13,15 +13,15 @@ from peopleboy.scenarios.loop.loop import closed_loop, make_frame
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
-from peopleboy.tracker.by_detection.config import BothCamerasConfig, ByDetectionConfig
-from peopleboy.tracker.by_detection.looking.colour_finder import ColourFinder, seen_by_both
-from peopleboy.tracker.by_detection.looking.finder import ThermalFinder
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.track import confirmed
 from peopleboy.tracker.trackers import make_tracker
+from peopleboy.tracker.tracking.by_detection_tracker import ByDetectionTracker
+from peopleboy.tracker.tracking.config import BothCamerasConfig, ByDetectionConfig
+from peopleboy.tracker.tracking.looking.colour_finder import ColourFinder, seen_by_both
+from peopleboy.tracker.tracking.looking.finder import ThermalFinder
 
 CONFIG = BothCamerasConfig()
 NOBODY = Proposals.of_trees(np.empty((0, 4)), np.empty(0))

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from peopleboy.tracker.by_detection.config import MatchingConfig
-from peopleboy.tracker.by_detection.target import Target
+from peopleboy.tracker.tracking.config import MatchingConfig
+from peopleboy.tracker.tracking.target import Target
 
 Floats = NDArray[np.float64]
 

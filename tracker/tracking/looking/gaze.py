@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.boxes import area, cover, intersection, outline
-from peopleboy.tracker.by_detection.config import GazeConfig
-from peopleboy.tracker.by_detection.portrait import Grey
-from peopleboy.tracker.by_detection.target import Target
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.proposals.suppression import Proposals
+from peopleboy.tracker.tracking.config import GazeConfig
+from peopleboy.tracker.tracking.portrait import Grey
+from peopleboy.tracker.tracking.target import Target
 
 _WHOLE: Final = 0.99  # share of a box that must be inside the image
 

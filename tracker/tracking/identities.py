@@ -10,9 +10,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from peopleboy.tracker.by_detection.colours import alike
-from peopleboy.tracker.by_detection.config import RecognitionConfig
-from peopleboy.tracker.by_detection.target import Target
+from peopleboy.tracker.tracking.colours import alike
+from peopleboy.tracker.tracking.config import RecognitionConfig
+from peopleboy.tracker.tracking.target import Target
 
 
 def resolve(targets: Sequence[Target], time_s: float, config: RecognitionConfig) -> None:

@@ -11,20 +11,23 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.boxes import intersection, iou, outline
-from peopleboy.tracker.by_detection.config import (
+from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, Odometry
+from peopleboy.tracker.proposals.suppression import Proposals
+from peopleboy.tracker.track import Box, FloorPlace, Track
+from peopleboy.tracker.tracking.config import (
     ByDetectionConfig,
     ExistenceConfig,
     GazeConfig,
     MatchingConfig,
     RecognitionConfig,
 )
-from peopleboy.tracker.by_detection.explanation import DetectionExplanation
-from peopleboy.tracker.by_detection.identities import known_again, resolve
-from peopleboy.tracker.by_detection.looking.finder import Finder, PeopleFinder
-from peopleboy.tracker.by_detection.looking.gaze import Aim, Gaze
-from peopleboy.tracker.by_detection.matching import matched
-from peopleboy.tracker.by_detection.overlaps import CLEAR, beside, hidden_by, shared
-from peopleboy.tracker.by_detection.paths import (
+from peopleboy.tracker.tracking.explanation import DetectionExplanation
+from peopleboy.tracker.tracking.identities import known_again, resolve
+from peopleboy.tracker.tracking.looking.finder import Finder, PeopleFinder
+from peopleboy.tracker.tracking.looking.gaze import Aim, Gaze
+from peopleboy.tracker.tracking.matching import matched
+from peopleboy.tracker.tracking.overlaps import CLEAR, beside, hidden_by, shared
+from peopleboy.tracker.tracking.paths import (
     NOBODY,
     Floats,
     advanced,
@@ -34,13 +37,10 @@ from peopleboy.tracker.by_detection.paths import (
     distances,
     places_of,
 )
-from peopleboy.tracker.by_detection.portrait import Portrait
-from peopleboy.tracker.by_detection.proposed import Proposed
-from peopleboy.tracker.by_detection.target import Finding, Target
-from peopleboy.tracker.by_detection.viewpoint import Viewpoint
-from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, Odometry
-from peopleboy.tracker.proposals.suppression import Proposals
-from peopleboy.tracker.track import Box, FloorPlace, Track
+from peopleboy.tracker.tracking.portrait import Portrait
+from peopleboy.tracker.tracking.proposed import Proposed
+from peopleboy.tracker.tracking.target import Finding, Target
+from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 FIRST_STEP_S: Final = 1 / 15
 _STANDING: Final = Odometry()

@@ -9,9 +9,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.by_detection.other_camera import carried_over
-from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import COLOUR, THERMAL, Floats, Frame, PinholeCalibration
+from peopleboy.tracker.tracking.other_camera import carried_over
+from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 Colours = NDArray[np.float32]
 

@@ -13,8 +13,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.by_detection.config import STATURE_M
 from peopleboy.tracker.frame import Calibration, PinholeCalibration
+from peopleboy.tracker.tracking.config import STATURE_M
 
 Floats = NDArray[np.float64]
 

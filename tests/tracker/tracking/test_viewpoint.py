@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.tracker.by_detection.config import STATURE_M
-from peopleboy.tracker.by_detection.viewpoint import Viewpoint
 from peopleboy.tracker.frame import PinholeCalibration
+from peopleboy.tracker.tracking.config import STATURE_M
+from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 FOCAL = 300.0
 SHAPE = (240, 320)
