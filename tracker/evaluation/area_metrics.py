@@ -1,7 +1,7 @@
-"""Area metrics of the 2007 thesis, and the temporal, detection and localisation metrics of the 2005 paper.
+"""Area metrics of the 2007 thesis; temporal, detection and localisation metrics of the 2005 paper.
 
-The paper's (its section 4.2) differ from the thesis's: counts take no notice of how well a candidate fits, and areas are compared
-without the 50 % gate. Where the paper is silent, it is read as follows.
+The paper's (its section 4.2) differ from the thesis's: counts take no notice of how well a candidate fits,
+and areas are compared without the 50 % gate. Where the paper is silent, it is read as follows.
 
 - A range is the set of frames that a track has. Ranges are paired one to one over the sequence by the largest
   sum of IoU. A target's range without a partner scores 0; a candidate's range without one belongs to no pair
@@ -22,6 +22,7 @@ from peopleboy.tracker.boxes import Floats, area, cover
 from peopleboy.tracker.evaluation.box_matching import Pairs, associate
 from peopleboy.tracker.evaluation.mot_metrics import Sums, percent, sum_by
 from peopleboy.tracker.evaluation.sequence import Ints, TrackBoxes, TrueBoxes
+
 
 @dataclass(frozen=True, slots=True)
 class AreaSums(Sums):
