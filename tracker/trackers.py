@@ -32,7 +32,7 @@ from peopleboy.tracker.rgbd.verification.window_model import shipped_windows
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import VARIANTS
 from peopleboy.tracker.track import Box, Track
-from peopleboy.tracker.tracking.by_detection_tracker import ByDetectionTracker
+from peopleboy.tracker.tracking.people_tracker import ByDetectionTracker
 
 
 @runtime_checkable

@@ -15,7 +15,7 @@ from peopleboy.tracker.proposals.model import shipped_model
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.thermal.mount import Mount
 from peopleboy.tracker.tracking.config import ByDetectionConfig
-from peopleboy.tracker.tracking.looking.finder import Finder, ThermalFinder
+from peopleboy.tracker.tracking.people_finder import Finder, ThermalFinder
 
 LEAST: Final = ByDetectionConfig().existence.weakest
 _SURE: Final = 3.0  # log odds of a warm blob

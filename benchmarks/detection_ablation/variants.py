@@ -10,8 +10,8 @@ from typing import Final
 from benchmarks.detection_ablation.film import Film
 from benchmarks.detection_ablation.stages import Stage, thermal_finder
 from peopleboy.tracker.track import Track
-from peopleboy.tracker.tracking.by_detection_tracker import ByDetectionTracker
 from peopleboy.tracker.tracking.config import ByDetectionConfig, ExistenceConfig, RecognitionConfig
+from peopleboy.tracker.tracking.people_tracker import ByDetectionTracker
 
 _ALL: Final = ByDetectionConfig()
 

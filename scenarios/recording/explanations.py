@@ -20,7 +20,7 @@ from peopleboy.tracker.thermal.contour.outline import section_lines
 from peopleboy.tracker.thermal.contour.section_evidence import Evidence, evidence_of
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.track import Track
-from peopleboy.tracker.tracking.explanation import DetectionExplanation
+from peopleboy.tracker.tracking.association import DetectionExplanation
 
 # ColorBrewer's RdYlBu without its dark ends: against a person, undecided, for one; in thresholds.
 _STEPS = (0.0, 1.0, 2.0)

@@ -16,7 +16,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import NOBODY
-from peopleboy.tracker.tracking.by_detection_tracker import ByDetectionTracker
+from peopleboy.tracker.tracking.people_tracker import ByDetectionTracker
 
 
 @pytest.fixture(scope="module")

@@ -101,7 +101,6 @@ def _span(frame: Ints, frames: Ints) -> tuple[Ints, Ints]:
 # Either rule is applied once, before any metric, so that all metrics see the same data.
 
 Flags = NDArray[np.bool_]
-Floats = NDArray[np.float64]
 Rule = Literal["ignore", "absent"]
 MIN_VISIBLE = 0.0  # a target counts if more than this fraction of the person is visible
 

@@ -12,8 +12,8 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, PinholeCalibration
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.track import Status, Track
-from peopleboy.tracker.tracking.by_detection_tracker import ByDetectionTracker
 from peopleboy.tracker.tracking.config import ByDetectionConfig, ExistenceConfig, MatchingConfig
+from peopleboy.tracker.tracking.people_tracker import ByDetectionTracker
 
 RATE_HZ = 15.0
 RED, BLUE = (200, 30, 30), (30, 30, 200)

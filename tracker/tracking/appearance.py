@@ -5,13 +5,43 @@ from __future__ import annotations
 import math
 from typing import Final
 
+import cv2
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import COLOUR, THERMAL, Floats, Frame, PinholeCalibration
-from peopleboy.tracker.tracking.other_camera import carried_over
 from peopleboy.tracker.tracking.viewpoint import Viewpoint
+
+# From the image of one camera to that of another one beside it, on the same robot.
+
+
+def carried_over(
+    boxes: Floats, view: Viewpoint, here: PinholeCalibration, there: PinholeCalibration
+) -> Floats:
+    """Tell where people who have boxes (M, 4) [px] in one image are in the other, if all are equally tall.
+
+    Args:
+        boxes: in the image of the first camera.
+        view: of that camera.
+        here: its calibration.
+        there: that of the other camera.
+
+    Returns:
+        (M, 4) [px], 0 of whom the other camera cannot see.
+    """
+    feet = view.feet(boxes)
+    left, top, width, height = boxes.T
+    ends = [np.stack([left + width / 2.0, row], axis=1) for row in (top, top + height)]
+    # Points of the person are as far ahead as the feet.
+    points = [here.rays(end) for end in ends]
+    level = [ray / np.maximum(ray[:, :1], 1e-3) * feet[:, 2:] + np.array(here.position_m) for ray in points]
+    above, below = (there.project(end) for end in level)
+    tall = below[:, 1] - above[:, 1]
+    wide = tall * width / height
+    boxed = np.stack([(above[:, 0] + below[:, 0] - wide) / 2.0, above[:, 1], wide, tall], axis=1)
+    return np.asarray(np.nan_to_num(boxed))
+
 
 Colours = NDArray[np.float32]
 
@@ -175,3 +205,35 @@ def _blend(before: Colours, now: Colours, share: np.float32, told: Colours) -> N
             gain = share if was.any() else np.float32(1.0)
         for k in range(size):
             put[k] = was[k] + gain * (seen[k] - was[k])
+
+
+# How people look in the thermal image: a small pattern of warm and cold.
+
+Pattern = NDArray[np.float32]
+
+ROWS: Final = 12
+COLUMNS: Final = 6
+SAMPLES: Final = ROWS * COLUMNS
+_FAINT_GREY: Final = 4.0  # contrast below which a pattern is mostly noise
+
+
+def patterns(image: NDArray[np.float32], boxes: NDArray[np.float64]) -> Pattern:
+    """Describe what is in boxes (M, 4) of an image (H, W): (M, SAMPLES), mean 0 and length up to 1.
+
+    Neither the brightness of the image nor its contrast matters.
+    """
+    across = (np.arange(COLUMNS) + 0.5) / COLUMNS
+    down = (np.arange(ROWS) + 0.5) / ROWS
+    x = boxes[:, 0, None, None] + boxes[:, 2, None, None] * across[None, None, :]
+    y = boxes[:, 1, None, None] + boxes[:, 3, None, None] * down[None, :, None]
+    if len(boxes) == 0:
+        return np.empty((0, SAMPLES), np.float32)
+    at_x, at_y = (
+        np.broadcast_to(grid, (len(boxes), ROWS, COLUMNS)).reshape(-1, COLUMNS).astype(np.float32)
+        for grid in (x, y)
+    )
+    seen = cv2.remap(image, at_x, at_y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    flat = seen.reshape(len(boxes), -1)
+    flat = flat - flat.mean(axis=1, keepdims=True)
+    contrast = np.sqrt(np.mean(flat * flat, axis=1, keepdims=True))
+    return np.asarray(flat / (contrast + _FAINT_GREY) / np.sqrt(np.float32(flat.shape[1])), np.float32)

@@ -14,6 +14,15 @@ from peopleboy.tracker.boxes import intersection, iou, outline
 from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, Odometry
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.track import Box, FloorPlace, Track
+from peopleboy.tracker.tracking.association import (
+    CLEAR,
+    DetectionExplanation,
+    Proposed,
+    beside,
+    hidden_by,
+    matched,
+    shared,
+)
 from peopleboy.tracker.tracking.config import (
     ByDetectionConfig,
     ExistenceConfig,
@@ -21,13 +30,8 @@ from peopleboy.tracker.tracking.config import (
     MatchingConfig,
     RecognitionConfig,
 )
-from peopleboy.tracker.tracking.explanation import DetectionExplanation
-from peopleboy.tracker.tracking.identities import known_again, resolve
-from peopleboy.tracker.tracking.looking.finder import Finder, PeopleFinder
-from peopleboy.tracker.tracking.looking.gaze import Aim, Gaze
-from peopleboy.tracker.tracking.matching import matched
-from peopleboy.tracker.tracking.overlaps import CLEAR, beside, hidden_by, shared
-from peopleboy.tracker.tracking.paths import (
+from peopleboy.tracker.tracking.detection_schedule import Aim, Gaze
+from peopleboy.tracker.tracking.motion_filter import (
     NOBODY,
     Floats,
     advanced,
@@ -37,9 +41,10 @@ from peopleboy.tracker.tracking.paths import (
     distances,
     places_of,
 )
-from peopleboy.tracker.tracking.portrait import Portrait
-from peopleboy.tracker.tracking.proposed import Proposed
-from peopleboy.tracker.tracking.target import Finding, Target
+from peopleboy.tracker.tracking.people_finder import Finder, PeopleFinder
+from peopleboy.tracker.tracking.reidentification import known_again, resolve
+from peopleboy.tracker.tracking.template import Portrait
+from peopleboy.tracker.tracking.track_state import Finding, Target
 from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 FIRST_STEP_S: Final = 1 / 15

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.tracker.tracking.colours import FEATURES
+from peopleboy.tracker.tracking.appearance import FEATURES
 from peopleboy.tracker.tracking.config import ExistenceConfig
-from peopleboy.tracker.tracking.target import Finding, Target
+from peopleboy.tracker.tracking.track_state import Finding, Target
 
 CONFIG = ExistenceConfig()
 DT_S = 1.0 / 15.0

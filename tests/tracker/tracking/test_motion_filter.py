@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.tracker.by_detection.test_viewpoint import SHAPE, calibration
+from tests.tracker.tracking.test_viewpoint import SHAPE, calibration
 
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.tracking.config import PathConfig
-from peopleboy.tracker.tracking.paths import (
+from peopleboy.tracker.tracking.motion_filter import (
     Paths,
     advanced,
     begun,

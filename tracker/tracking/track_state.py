@@ -10,10 +10,9 @@ import numpy as np
 
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.track import Status
-from peopleboy.tracker.tracking.colours import FEATURES, Colours, alike, blended
+from peopleboy.tracker.tracking.appearance import FEATURES, Colours, Pattern, alike, blended
 from peopleboy.tracker.tracking.config import ExistenceConfig
-from peopleboy.tracker.tracking.looks import Pattern
-from peopleboy.tracker.tracking.portrait import Portrait
+from peopleboy.tracker.tracking.template import Portrait
 
 _LEARNING: Final = 0.1  # share of what is seen now in what is remembered
 _LEARNING_SOON: Final = 0.2  # the same of what is compared with it

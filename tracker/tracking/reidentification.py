@@ -10,9 +10,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from peopleboy.tracker.tracking.colours import alike
+from peopleboy.tracker.tracking.appearance import alike
 from peopleboy.tracker.tracking.config import RecognitionConfig
-from peopleboy.tracker.tracking.target import Target
+from peopleboy.tracker.tracking.track_state import Target
 
 
 def resolve(targets: Sequence[Target], time_s: float, config: RecognitionConfig) -> None:

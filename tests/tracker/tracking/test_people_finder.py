@@ -18,10 +18,9 @@ from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.track import confirmed
 from peopleboy.tracker.trackers import make_tracker
-from peopleboy.tracker.tracking.by_detection_tracker import ByDetectionTracker
 from peopleboy.tracker.tracking.config import BothCamerasConfig, ByDetectionConfig
-from peopleboy.tracker.tracking.looking.colour_finder import ColourFinder, seen_by_both
-from peopleboy.tracker.tracking.looking.finder import ThermalFinder
+from peopleboy.tracker.tracking.people_finder import ColourFinder, ThermalFinder, seen_by_both
+from peopleboy.tracker.tracking.people_tracker import ByDetectionTracker
 
 CONFIG = BothCamerasConfig()
 NOBODY = Proposals.of_trees(np.empty((0, 4)), np.empty(0))

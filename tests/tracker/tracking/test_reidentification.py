@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from peopleboy.tracker.tracking.colours import FEATURES, Colours
+from peopleboy.tracker.tracking.appearance import FEATURES, Colours
 from peopleboy.tracker.tracking.config import RecognitionConfig
-from peopleboy.tracker.tracking.identities import known_again, resolve
-from peopleboy.tracker.tracking.target import Target
+from peopleboy.tracker.tracking.reidentification import known_again, resolve
+from peopleboy.tracker.tracking.track_state import Target
 
 CONFIG = RecognitionConfig()
 NOW_S = 20.0

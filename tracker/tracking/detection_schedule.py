@@ -13,8 +13,8 @@ from peopleboy.tracker.boxes import area, cover, intersection, outline
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.tracking.config import GazeConfig
-from peopleboy.tracker.tracking.portrait import Grey
-from peopleboy.tracker.tracking.target import Target
+from peopleboy.tracker.tracking.template import Grey
+from peopleboy.tracker.tracking.track_state import Target
 
 _WHOLE: Final = 0.99  # share of a box that must be inside the image
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from peopleboy.tracker.tracking.overlaps import beside, hidden_by, shared
+from peopleboy.tracker.tracking.association import beside, hidden_by, shared
 
 FRONT, BEHIND, APART = (100.0, 60.0, 30.0, 120.0), (110.0, 60.0, 20.0, 90.0), (250.0, 60.0, 25.0, 100.0)
 BOXES = np.array([FRONT, BEHIND, APART])

@@ -10,11 +10,11 @@ import pytest
 
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.proposals.suppression import Proposals
-from peopleboy.tracker.tracking.colours import FEATURES
+from peopleboy.tracker.tracking.appearance import FEATURES
 from peopleboy.tracker.tracking.config import GazeConfig
-from peopleboy.tracker.tracking.looking.gaze import Aim, Gaze
-from peopleboy.tracker.tracking.portrait import Portrait
-from peopleboy.tracker.tracking.target import Target
+from peopleboy.tracker.tracking.detection_schedule import Aim, Gaze
+from peopleboy.tracker.tracking.template import Portrait
+from peopleboy.tracker.tracking.track_state import Target
 
 CONFIG = GazeConfig()
 DT_S = 1.0 / 15.0
