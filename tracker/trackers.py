@@ -32,7 +32,7 @@ from peopleboy.tracker.rgbd.verification.window_model import shipped_windows
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import VARIANTS
 from peopleboy.tracker.track import Box, Track
-from peopleboy.tracker.tracking.people_tracker import ByDetectionTracker
+from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
 
 
 @runtime_checkable
@@ -102,8 +102,8 @@ def _contour_tracker(name: str, rng: np.random.Generator) -> PeopleTracker:
     return PeopleTracker(VARIANTS[name], rng)
 
 
-def _by_detection_tracker(rng: np.random.Generator) -> ByDetectionTracker:  # noqa: ARG001
-    return ByDetectionTracker()
+def _by_detection_tracker(rng: np.random.Generator) -> DetectionTracker:  # noqa: ARG001
+    return DetectionTracker()
 
 
 def _panoramic_paper_tracker(rng: np.random.Generator) -> PanoramicPaperTracker:  # noqa: ARG001

@@ -1,4 +1,4 @@
-"""The detector as it is, or as far as one of its looks, or an absolute threshold in its place."""
+"""The detector up to one of its stages, or an absolute threshold in its place."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from peopleboy.tracker.proposals.looks.second_look import look_again, shipped_ne
 from peopleboy.tracker.proposals.model import shipped_model
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.thermal.mount import Mount
-from peopleboy.tracker.tracking.config import ByDetectionConfig
+from peopleboy.tracker.tracking.config import DetectionTrackerConfig
 from peopleboy.tracker.tracking.people_finder import Finder, ThermalFinder
 
-LEAST: Final = ByDetectionConfig().existence.weakest
+LEAST: Final = DetectionTrackerConfig().existence.weakest
 _SURE: Final = 3.0  # log odds of a warm blob
 
 

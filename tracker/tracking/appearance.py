@@ -16,7 +16,7 @@ from peopleboy.tracker.tracking.viewpoint import Viewpoint
 # From the image of one camera to that of another one beside it, on the same robot.
 
 
-def carried_over(
+def transfer_boxes(
     boxes: Floats, view: Viewpoint, here: PinholeCalibration, there: PinholeCalibration
 ) -> Floats:
     """Tell where people who have boxes (M, 4) [px] in one image are in the other, if all are equally tall.
@@ -61,7 +61,7 @@ PARTS: Final = len(_PARTS)
 FEATURES: Final = PARTS * _BINS[0] * _BINS[1] * _BINS[2]
 
 
-def colours_of(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
+def describe_colours(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
     """Describe who has boxes (M, 4) in the thermal image by colours (M, FEATURES).
 
     The product of two rows is Bhattacharyya's coefficient: 1 for the same colours, 0 for none in common. Of
@@ -78,23 +78,23 @@ def colours_of(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
     return told
 
 
-def alike(one: Colours, other: Colours) -> float:
+def colour_similarity(one: Colours, other: Colours) -> float:
     """Give Bhattacharyya's coefficient of colours: of the same clothes above 0.8, of others below 0.4."""
     return float(one @ other) * PARTS / max(_common_parts(one, other), 1)
 
 
-def coefficients(some: Colours, others: Colours) -> tuple[Colours, NDArray[np.bool_]]:
+def colour_similarities(some: Colours, others: Colours) -> tuple[Colours, NDArray[np.bool_]]:
     """Compare colours (K, FEATURES) and (M, FEATURES) by the parts that are seen of both.
 
     Returns:
-        (K, M) Bhattacharyya's coefficients, 0 where nothing is, and whether something is (K, M).
+        (K, M) Bhattacharyya's colour_similarities, 0 where nothing is, and whether something is (K, M).
     """
     ours, theirs = (_are_seen(rows).astype(np.float32) for rows in (some, others))
     seen = ours @ theirs.T
     return some @ others.T * (PARTS / np.maximum(seen, np.float32(1.0))), seen > 0.0
 
 
-def blended(before: Colours, now: Colours, share: float) -> Colours:
+def blend_colours(before: Colours, now: Colours, share: float) -> Colours:
     """Give the colours that are remembered after others are seen, by the parts that are."""
     told = np.empty_like(before)
     _blend(before, now, np.float32(share), told)
@@ -112,7 +112,7 @@ def _seen_there(frame: Frame, boxes: Floats, view: Viewpoint, shape: tuple[int, 
     if not (isinstance(thermal, PinholeCalibration) and isinstance(colour, PinholeCalibration)):
         rows, columns = frame.grey(THERMAL).shape
         return np.asarray(boxes * np.tile([shape[1] / columns, shape[0] / rows], 2))
-    return carried_over(boxes, view, thermal, colour)
+    return transfer_boxes(boxes, view, thermal, colour)
 
 
 def _bins_of(values: Floats, bins: int) -> NDArray[np.uint8]:
@@ -217,7 +217,7 @@ SAMPLES: Final = ROWS * COLUMNS
 _FAINT_GREY: Final = 4.0  # contrast below which a pattern is mostly noise
 
 
-def patterns(image: NDArray[np.float32], boxes: NDArray[np.float64]) -> Pattern:
+def describe_patterns(image: NDArray[np.float32], boxes: NDArray[np.float64]) -> Pattern:
     """Describe what is in boxes (M, 4) of an image (H, W): (M, SAMPLES), mean 0 and length up to 1.
 
     Neither the brightness of the image nor its contrast matters.

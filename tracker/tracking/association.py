@@ -18,20 +18,20 @@ from peopleboy.tracker.tracking.appearance import (
     SAMPLES,
     Colours,
     Pattern,
-    coefficients,
-    colours_of,
-    patterns,
+    colour_similarities,
+    describe_colours,
+    describe_patterns,
 )
-from peopleboy.tracker.tracking.config import MatchingConfig
-from peopleboy.tracker.tracking.track_state import Target
+from peopleboy.tracker.tracking.config import AssociationConfig
+from peopleboy.tracker.tracking.track_state import TrackState
 from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 _NEVER: Final = 1e6
-_SEEN, _UNTOLD, _LOST = range(3)
+_SEEN, _TENTATIVE, _LOST = range(3)
 
 
-def matched(
-    targets: Sequence[Target],
+def associate(
+    targets: Sequence[TrackState],
     distance: Floats,
     overlap: Floats,
     likeness: Floats,
@@ -39,7 +39,7 @@ def matched(
     score: Floats,
     known: Mapping[int, int],
     time_s: float,
-    config: MatchingConfig,
+    config: AssociationConfig,
 ) -> dict[int, int]:
     """Give the number of the proposal that is each target's, by the target's number.
 
@@ -47,7 +47,7 @@ def matched(
         targets: K of them.
         distance: (K, M) Mahalanobis.
         overlap: (K, M) of boxes.
-        likeness: (K, M) of looks, -1 to 1.
+        likeness: (K, M) of pattern, -1 to 1.
         is_coloured: (K, M) whether that is by colours, which tell somebody who was lost wherever he is.
         score: (M,) of proposals.
         known: whose proposals are known.
@@ -59,15 +59,15 @@ def matched(
     is_same = is_coloured & (likeness > config.colours_of_same)
     distance = np.where(is_lost & is_same, np.minimum(distance, config.gate), distance)
     cost = (
-        config.path * distance
+        config.motion * distance
         + config.overlap * (1.0 - overlap)
-        + config.looks * (1.0 - likeness)
+        + config.appearance * (1.0 - likeness)
         - config.score * np.minimum(score, 4.0)[None]
     )
     cost[(distance > config.gate) | (cost > config.highest)] = _NEVER
-    cost[is_lost & ~np.where(is_coloured, is_same, likeness > config.looks_of_lost)] = _NEVER
+    cost[is_lost & ~np.where(is_coloured, is_same, likeness > config.pattern_of_lost)] = _NEVER
     found = dict(known)
-    for rank in (_SEEN, _UNTOLD, _LOST):
+    for rank in (_SEEN, _TENTATIVE, _LOST):
         rows = np.array([i for i in np.flatnonzero(ranks == rank) if i not in known], int)
         columns = np.array([j for j in range(len(score)) if j not in found.values()], int)
         if len(rows) and len(columns):
@@ -77,10 +77,10 @@ def matched(
     return found
 
 
-def _rank(target: Target, time_s: float, config: MatchingConfig) -> int:
+def _rank(target: TrackState, time_s: float, config: AssociationConfig) -> int:
     """Tell whose turn it is: those who are seen, those who may be somebody, and those who were lost."""
-    if not target.is_told:
-        return _UNTOLD
+    if not target.is_confirmed:
+        return _TENTATIVE
     return _SEEN if time_s - target.seen_s < config.lost_s else _LOST
 
 
@@ -94,17 +94,19 @@ CLEAR: Final = 0.2
 """Overlap up to which somebody is seen apart from another one."""
 
 
-def beside(expected: Floats, is_told: Flags) -> Flags:
+def are_overlapped(expected: Floats, is_confirmed: Flags) -> Flags:
     """Tell of K people with boxes (K, 4) who is not seen apart from somebody else who is told."""
     mutual = iou(expected[:, None], expected[None]) * ~np.eye(len(expected), dtype=bool)
-    return np.asarray((is_told[None] & (mutual > CLEAR)).any(axis=1))
+    return np.asarray((is_confirmed[None] & (mutual > CLEAR)).any(axis=1))
 
 
-def hidden_by(expected: Floats, is_told: Flags, found: Iterable[int]) -> list[int | None]:
+def find_occluders(expected: Floats, is_confirmed: Flags, found: Iterable[int]) -> list[int | None]:
     """Tell for each of K people with boxes (K, 4) who of those who were found may hide it."""
     covered = cover(intersection(expected[:, None], expected[None]), area(expected)[:, None])
     foot = expected[:, 1] + expected[:, 3]
-    hides = (covered > _COVERED) & (foot[None] > (foot - _LOWER * expected[:, 3])[:, None]) & is_told[None]
+    hides = (
+        (covered > _COVERED) & (foot[None] > (foot - _LOWER * expected[:, 3])[:, None]) & is_confirmed[None]
+    )
     is_found = np.zeros(len(expected), np.bool_)
     is_found[list(found)] = True
     hides &= is_found[None] & ~np.eye(len(expected), dtype=bool)
@@ -113,7 +115,7 @@ def hidden_by(expected: Floats, is_told: Flags, found: Iterable[int]) -> list[in
     ]
 
 
-def shared(boxes: Floats, theirs: Sequence[int]) -> Floats:
+def shared_area(boxes: Floats, theirs: Sequence[int]) -> Floats:
     """Tell what share of the smaller box each of (M, 4) has in common with one of some others, at most."""
     share = shared_of_smaller(boxes[:, None], boxes[None, theirs])
     share[theirs, np.arange(len(theirs))] = 0.0
@@ -124,51 +126,51 @@ def shared(boxes: Floats, theirs: Sequence[int]) -> Floats:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Proposed:
+class DescribedDetections:
     """M proposals.
 
     Attributes:
         boxes: (M, 4) [px].
         scores: (M,) log odds.
         trees: (M,) likewise, as the detector's trees see it alone.
-        looks: (M, 72) in the thermal image; 0 of those who are followed.
+        pattern: (M, 72) in the thermal image; 0 of those who are followed.
         colours: (M, 512) of clothes; 0 of those, too, and where nobody knows.
     """
 
     boxes: Floats
     scores: Floats
     trees: Floats
-    looks: Pattern
+    pattern: Pattern
     colours: Colours
 
     @classmethod
-    def of(cls, frame: Frame, found: Proposals, view: Viewpoint, followed: int = 0) -> Proposed:
+    def of(cls, frame: Frame, found: Proposals, view: Viewpoint, followed: int = 0) -> DescribedDetections:
         """Look at what is proposed in a frame, but for the last few, who are followed."""
         count = len(found.box)
-        looks, colours = np.zeros((count, SAMPLES), np.float32), np.zeros((count, FEATURES), np.float32)
+        pattern, colours = np.zeros((count, SAMPLES), np.float32), np.zeros((count, FEATURES), np.float32)
         new = slice(count - followed)
         if followed < count:
-            looks[new] = patterns(frame.grey(THERMAL).astype(np.float32), found.box[new])
-            colours[new] = colours_of(frame, found.box[new], view)
-        return cls(*found, looks, colours)
+            pattern[new] = describe_patterns(frame.grey(THERMAL).astype(np.float32), found.box[new])
+            colours[new] = describe_colours(frame, found.box[new], view)
+        return cls(*found, pattern, colours)
 
     def __len__(self) -> int:
         return len(self.boxes)
 
-    def without_colours(self, rows: NDArray[np.bool_]) -> Proposed:
+    def without_colours(self, rows: NDArray[np.bool_]) -> DescribedDetections:
         """Give these, nothing told of the colours of some (M,), which may be another one's."""
         return replace(self, colours=np.where(rows[:, None], np.float32(0.0), self.colours))
 
-    def likeness(self, targets: list[Target]) -> tuple[Floats, NDArray[np.bool_]]:
-        """Tell how alike K targets and these are.
+    def likeness(self, targets: list[TrackState]) -> tuple[Floats, NDArray[np.bool_]]:
+        """Tell how colour_similarity K targets and these are.
 
         Returns:
             (K, M) -1 to 1, by colours where they are known, else by warmth, and whether they are (K, M).
             Colours of the same clothes are mostly above 0.6, and of others below -0.2; warmth tells little.
         """
-        warm = np.stack([target.looks for target in targets]) @ self.looks.T
+        warm = np.stack([target.pattern for target in targets]) @ self.pattern.T
         worn = np.stack([target.colours for target in targets])
-        same, is_known = coefficients(worn, self.colours)
+        same, is_known = colour_similarities(worn, self.colours)
         return np.where(is_known, 2.0 * same - 1.0, warm).astype(np.float64), is_known
 
     def ratio(self, row: int) -> float:

@@ -1,4 +1,4 @@
-"""Settings of the tracker by detection. Lengths are metres, times seconds, scores log odds."""
+"""Settings of the detection tracker. Lengths are metres, times seconds, scores log-odds."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ from dataclasses import dataclass, field
 from typing import Final
 
 STATURE_M: Final = 1.72
-"""How tall everybody is taken to be: what a height in the image says of the distance."""
+"""Assumed stature of a person, by which the height of a box gives the distance."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PathConfig:
-    """How people move, and how well a box tells where they are.
+class KalmanConfig:
+    """Motion and measurement noise of the Kalman filter.
 
     Attributes:
-        acceleration_m_s2: deviation of the acceleration to the right, down, and away.
-        speed_m_s: deviation of the velocity of somebody just found, along the same.
-        column: deviation of a box's middle column, in its heights.
-        head: deviation of its upper end, in its heights.
-        foot: deviation of its lower end, likewise.
-        build: deviation of the logarithm of people's stature.
-        posture: by how much that changes in a second, as people sit down or bend.
-        floor_m: deviation of feet from the floor, where it is known.
-        shown: share of the box of this image in the one that is told; the rest is where the path leads.
+        acceleration_m_s2: standard deviation of the acceleration to the right, down and away.
+        speed_m_s: standard deviation of the velocity of a new track, along the same axes.
+        column: standard deviation of a box's middle column, in box heights.
+        head: standard deviation of its upper end, in box heights.
+        foot: standard deviation of its lower end, in box heights.
+        build: standard deviation of the log stature.
+        posture: change of the log stature in a second, as people sit down or bend.
+        floor_m: standard deviation of the feet from the floor, where the floor is known.
+        shown: weight of the detected box in the output box; the rest is the prediction.
     """
 
     acceleration_m_s2: tuple[float, float, float] = (0.6, 0.2, 0.6)
@@ -38,74 +38,71 @@ class PathConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GazeConfig:
-    """Where an image is looked at, and how closely.
+class DetectionScheduleConfig:
+    """When the detector searches a whole image, rescores predicted boxes, or relies on templates.
 
     Attributes:
-        unsettled_s: as long as it is open who is there, images that come so soon after one that was searched
-            everywhere are looked at where people are expected who were seen just before, and nowhere else: of
-            15 images a second two of three.
-        settled_s: the same while whoever is known is a person, and was just seen: five of six.
-        breadth: tangent of half the angle from side to side of a camera for which that is so; a narrower one,
-            which is crossed sooner by whoever walks past, is searched the more often.
-        lost_s: for how long it is open where somebody is who was not found.
-        look_s: of who stands apart, images that come so soon after the detector's networks looked there are
-            only compared with a portrait of then.
-        alike: least correlation with it.
-        anew_s: searches that come so soon after trees found somebody who stands apart pass him by, if his
-            portrait shows where he is: the networks look there.
+        unsettled_s: least time between two searches of a whole image in an unsettled scene. In between, only
+            predicted boxes of tracks seen just before are rescored: two of three images at 15 Hz.
+        settled_s: the same while every track is confirmed and was just seen: five of six images.
+        breadth: tangent of half the horizontal field of view for which `settled_s` holds; a narrower camera,
+            which people cross sooner, is searched more often in proportion.
+        lost_s: how long a track that was missed keeps the scene unsettled.
+        rescore_s: an isolated track that was rescored more recently is followed by its template only.
+        min_correlation: least correlation of the template.
+        anew_s: a search passes over an isolated track that the cascade found more recently, if its template
+            matches: the networks rescore it there.
     """
 
     unsettled_s: float = 0.14
     settled_s: float = 0.34
     breadth: float = 0.53
     lost_s: float = 1.0
-    look_s: float = 0.19
-    alike: float = 0.8
+    rescore_s: float = 0.19
+    min_correlation: float = 0.8
     anew_s: float = 1.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MatchingConfig:
-    """What it costs to take a proposal for a person.
+class AssociationConfig:
+    """Cost of assigning a detection to a track.
 
     Attributes:
-        gate: Mahalanobis distance of proposals that are nobody's own.
-        path: cost of a unit of it.
-        overlap: cost of boxes that do not overlap at all.
-        looks: cost of looks that are the opposite.
-        score: what a unit of the proposal's score takes off.
-        highest: cost that is too high.
-        lost_s: who was not seen for longer comes after all others.
-        looks_of_lost: least likeness of who was lost, -1 to 1, where colours are not known.
-        colours_of_same: likeness of colours from which on somebody may be one who was lost, however far from
-            where he is expected.
+        gate: greatest Mahalanobis distance.
+        motion: cost of a unit of Mahalanobis distance.
+        overlap: cost of boxes that do not overlap.
+        appearance: cost of opposite appearance.
+        score: discount for a unit of the detection's score.
+        highest: greatest cost of an assignment.
+        lost_s: tracks unseen for longer are assigned after all others.
+        pattern_of_lost: least similarity of the thermal pattern, -1 to 1, of a lost track of unknown colours.
+        colours_of_same: least similarity of colours for a lost track, however far from its prediction.
     """
 
     gate: float = 3.5
-    path: float = 0.35
+    motion: float = 0.35
     overlap: float = 1.5
-    looks: float = 1.3
+    appearance: float = 1.3
     score: float = 0.05
     highest: float = 2.6
     lost_s: float = 1.0
-    looks_of_lost: float = 0.35
+    pattern_of_lost: float = 0.35
     colours_of_same: float = 0.3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RecognitionConfig:
-    """When people turn out to be others than they were taken for.
+class ReidentificationConfig:
+    """When tracks are recognised again, and when exchanged identities are resolved.
 
     Attributes:
-        gone_s: who was not found for so long may be somebody new.
-        revised_s: for how long after somebody new is told he may still turn out to be another one.
-        parted_s: how long people who met are seen apart before it is decided who is who.
-        margin: by how much better they must look like each other, in sums of Bhattacharyya's coefficient.
-        same: coefficient from which on somebody new is one of those who were lost.
+        lost_s: a track unseen for so long may be a new one's earlier self.
+        revised_s: how long after its confirmation a new track may still be reidentified.
+        parted_s: how long people who met must be seen apart before swapped identities are resolved.
+        margin: gain in summed Bhattacharyya coefficients that a swap needs.
+        same: Bhattacharyya coefficient from which a new track is a lost one.
     """
 
-    gone_s: float = 0.2
+    lost_s: float = 0.2
     revised_s: float = 3.0
     parted_s: float = 0.5
     margin: float = 0.2
@@ -114,37 +111,36 @@ class RecognitionConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExistenceConfig:
-    """When somebody is believed to be there, by the log odds that add up.
+    """When a track exists, by log-odds that add up over images.
 
     Attributes:
-        weakest: proposals of a lower score are not looked at.
-        trust: what a unit of the others counts: of cameras unlike those that taught it the detector is too
-            sure.
-        lasting: what is added to them: who is hardly somebody, in one image after another, is nobody more
-            often than single images say.
-        birth: score of a proposal that may be somebody new.
-        independent_s: images so far apart speak for themselves, at the soonest.
-        still_s: the same of who stands still: what looks like somebody does so in the next image, too.
-        look_m: who has gone so far is looked at anew.
-        as_seen_now: what counts at once of how much surer an image is than all before: who was hardly seen
-            in the first ones, as behind a door, does not look the same in the next.
-        highest_score: what one image can say at most.
-        shared_doubt: what is taken off the score of somebody new whose box is all within that of another,
-            from the second image on.
-        highest: what all can say.
-        sightings: images in which somebody must have been found to be told.
-        at_once: score of a single image that is enough.
-        confirmed: log odds at which somebody is told.
-        hopeless: log odds below which nobody is followed.
-        missed: what an image without somebody says who should be seen.
-        missed_hidden: the same of somebody behind others.
-        doubt_s: who was not found for so long is told no more.
-        hidden_doubt_s: the same of somebody behind others.
-        hidden_share: the same, as a share of how long he was watched: a mistake that is made beside somebody
-            seems to be hidden by him in the end.
-        forget_s: who was not found for so long is forgotten.
-        brief_s: of who was seen for less than that, `brief_forget_s`.
-        brief_forget_s: who was hardly seen is forgotten sooner.
+        weakest: least score of detections that are used.
+        trust: weight of a score: the detector is overconfident on cameras unlike those it was trained on.
+        lasting: added to each score: a faint detection that repeats is wrong more often
+            than single images say.
+        birth: least score of a detection that initiates a track.
+        independent_s: time after which two images of a moving person are independent evidence.
+        still_s: the same for a stationary person, whose images repeat.
+        look_m: distance after which the appearance is new evidence.
+        evidence_gain: weight of how much surer an image is than all before, counted at once: a person who
+            appears from behind a door looks different in the next image.
+        highest_score: greatest evidence of one image.
+        shared_doubt: taken off the score of a new track whose box lies within that of another, from its
+            second image on.
+        highest: greatest log-odds.
+        sightings: detections needed for confirmation.
+        at_once: score of a single detection that suffices instead.
+        confirmed: log-odds at which a track is confirmed.
+        deletion_log_odds: log-odds below which a track is deleted.
+        missed: loss for an image without a detection of a visible track.
+        missed_hidden: the same for an occluded track.
+        max_coast_s: how long an unoccluded track is output without a detection.
+        max_coast_occluded_s: the same for an occluded track.
+        coast_occluded_share: the same, as a share of its observed time: a false track next to a person seems
+            to be occluded by the person in the end.
+        forget_s: a track unseen for so long is deleted.
+        brief_s: a track observed for less time is brief.
+        brief_forget_s: a brief track is deleted sooner.
     """
 
     weakest: float = -2.0
@@ -154,36 +150,36 @@ class ExistenceConfig:
     independent_s: float = 0.25
     still_s: float = 4.0
     look_m: float = 0.25
-    as_seen_now: float = 0.4
+    evidence_gain: float = 0.4
     highest_score: float = 3.0
     shared_doubt: float = 2.0
     highest: float = 8.0
     sightings: int = 2
     at_once: float = 3.0
     confirmed: float = 2.0
-    hopeless: float = -0.5
+    deletion_log_odds: float = -0.5
     missed: float = 1.0
     missed_hidden: float = 0.3
-    doubt_s: float = 0.25
-    hidden_doubt_s: float = 1.0
-    hidden_share: float = 0.5
+    max_coast_s: float = 0.25
+    max_coast_occluded_s: float = 1.0
+    coast_occluded_share: float = 0.5
     forget_s: float = 10.0
     brief_s: float = 1.0
     brief_forget_s: float = 2.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BothCamerasConfig:
-    """What the detector, which was taught by thermal images, says of the brightness of colour images.
+class ColourDetectionConfig:
+    """Use of the detector, which was trained on thermal images, on the colour image.
 
     Attributes:
-        every_s: how often it looks there, at the most.
-        beside_s: the same while the thermal image shows somebody.
-        alone_every_s: the same while colours show somebody whom the thermal image does not.
-        believed: share of its log odds that is believed.
-        same: IoU from which on what both cameras show is one person.
-        shared: of the smaller box: up to there whom colours alone show is another one.
-        alone: least score of whom colours alone show.
+        every_s: least time between two searches of the colour image.
+        beside_s: the same while the thermal image shows people.
+        alone_every_s: the same while only the colour image shows some person.
+        believed: weight of its log-odds.
+        same: IoU from which detections of both cameras are one person.
+        shared: greatest overlap, in shares of the smaller box, of a separate person in the colour image.
+        alone: least score of a person in the colour image alone.
     """
 
     every_s: float = 0.79
@@ -196,31 +192,31 @@ class BothCamerasConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ByDetectionConfig:
-    """All settings of the tracker by detection.
+class DetectionTrackerConfig:
+    """All settings of the detection tracker.
 
     Attributes:
-        path: how people move.
-        gaze: where images are looked at.
-        matching: what it costs to take a proposal for a person.
-        existence: when somebody is believed to be there.
-        identity: when people turn out to be others.
-        gaze_uncalibrated: where images are looked at where nothing is known of the camera: everywhere.
-        existence_uncalibrated: when somebody is, where nothing is known of the camera: neither does the
-            detector know images like its, nor is anybody known to stand on the floor.
-        matching_uncalibrated: what it costs to take a proposal for a person there, where no colours tell
-            people apart in crowds.
-        identity_uncalibrated: when people turn out to be others there: boxes fit a colour image less well.
-        colour: what is believed of the colour image.
+        motion: motion and measurement noise.
+        schedule: when the detector runs.
+        association: cost of an assignment.
+        existence: confirmation and deletion.
+        reidentification: recognition and identity swaps.
+        schedule_uncalibrated: schedule without calibration: every image is searched.
+        existence_uncalibrated: existence without calibration, where detections are less reliable and no floor
+            constrains them.
+        association_uncalibrated: association without calibration, where colours do not tell people apart.
+        reidentification_uncalibrated: reidentification without calibration, where boxes fit the colour
+            image less well.
+        colour: use of the colour image.
     """
 
-    path: PathConfig = field(default_factory=PathConfig)
-    gaze: GazeConfig = field(default_factory=GazeConfig)
-    matching: MatchingConfig = field(default_factory=MatchingConfig)
+    motion: KalmanConfig = field(default_factory=KalmanConfig)
+    schedule: DetectionScheduleConfig = field(default_factory=DetectionScheduleConfig)
+    association: AssociationConfig = field(default_factory=AssociationConfig)
     existence: ExistenceConfig = field(default_factory=ExistenceConfig)
-    identity: RecognitionConfig = field(default_factory=RecognitionConfig)
-    gaze_uncalibrated: GazeConfig = field(
-        default_factory=lambda: GazeConfig(unsettled_s=0.0, settled_s=0.0, anew_s=0.0)
+    reidentification: ReidentificationConfig = field(default_factory=ReidentificationConfig)
+    schedule_uncalibrated: DetectionScheduleConfig = field(
+        default_factory=lambda: DetectionScheduleConfig(unsettled_s=0.0, settled_s=0.0, anew_s=0.0)
     )
     existence_uncalibrated: ExistenceConfig = field(
         default_factory=lambda: ExistenceConfig(
@@ -229,12 +225,14 @@ class ByDetectionConfig:
             at_once=math.inf,
             confirmed=2.3,
             shared_doubt=4.0,
-            hidden_doubt_s=0.5,
-            hidden_share=math.inf,
+            max_coast_occluded_s=0.5,
+            coast_occluded_share=math.inf,
         )
     )
-    matching_uncalibrated: MatchingConfig = field(
-        default_factory=lambda: MatchingConfig(highest=2.3, lost_s=4.0)
+    association_uncalibrated: AssociationConfig = field(
+        default_factory=lambda: AssociationConfig(highest=2.3, lost_s=4.0)
     )
-    identity_uncalibrated: RecognitionConfig = field(default_factory=lambda: RecognitionConfig(same=0.65))
-    colour: BothCamerasConfig = field(default_factory=BothCamerasConfig)
+    reidentification_uncalibrated: ReidentificationConfig = field(
+        default_factory=lambda: ReidentificationConfig(same=0.65)
+    )
+    colour: ColourDetectionConfig = field(default_factory=ColourDetectionConfig)

@@ -12,34 +12,34 @@ from numpy.typing import NDArray
 from peopleboy.tracker.boxes import area, cover, intersection, outline
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.proposals.suppression import Proposals
-from peopleboy.tracker.tracking.config import GazeConfig
+from peopleboy.tracker.tracking.config import DetectionScheduleConfig
 from peopleboy.tracker.tracking.template import Grey
-from peopleboy.tracker.tracking.track_state import Target
+from peopleboy.tracker.tracking.track_state import TrackState
 
 _WHOLE: Final = 0.99  # share of a box that must be inside the image
 
 
-class Aim(NamedTuple):
+class Schedule(NamedTuple):
     """What is looked at in one image.
 
     Attributes:
         everywhere: whether the detector looks for anybody.
         expected: boxes (4,) [px] in which the detector's networks look at who is known, by their row; where
             it looks for anybody its trees pass them by.
-        followed: boxes of those whom their portraits show, at whom nobody looks, likewise.
+        followed: boxes of those whom their portraits show, at whom nobody pattern, likewise.
     """
 
     everywhere: bool
     expected: Mapping[int, Floats]
     followed: Mapping[int, Floats]
 
-    def proposed(self, targets: Sequence[Target]) -> Proposals:
+    def proposed(self, targets: Sequence[TrackState]) -> Proposals:
         """Propose who is expected, as sure as trees were when they last found them, the surest first."""
         trees = np.array([targets[row].trees for row in self.expected], np.float64)
         found = Proposals.of_trees(np.array(list(self.expected.values())).reshape(-1, 4), trees)
         return found.taken(np.argsort(-trees, kind="stable"))
 
-    def with_followed(self, found: Proposals, targets: Sequence[Target]) -> Proposals:
+    def with_followed(self, found: Proposals, targets: Sequence[TrackState]) -> Proposals:
         """Give who was found by the detector, and then who is followed, as sure as when last looked at."""
         if not self.followed:
             return found
@@ -51,21 +51,21 @@ class Aim(NamedTuple):
         )
 
 
-class Gaze:
+class DetectionSchedule:
     """Decides where to look, image by image."""
 
     def __init__(self) -> None:
         self._everywhere_s = self._last_s = -math.inf
 
-    def aim(
+    def schedule_next(
         self,
         grey: Grey,
-        targets: Sequence[Target],
+        targets: Sequence[TrackState],
         expected: Floats,
         time_s: float,
         breadth: float,
-        config: GazeConfig,
-    ) -> Aim:
+        config: DetectionScheduleConfig,
+    ) -> Schedule:
         """Decide it for the next image.
 
         Args:
@@ -73,7 +73,7 @@ class Gaze:
             targets: whoever is known, K.
             expected: (K, 4) where they should be [px].
             time_s: when the image was taken.
-            breadth: how wide the camera looks, as `Viewpoint` has it.
+            breadth: how wide the camera pattern, as `Viewpoint` has it.
             config: what it takes.
         """
         last_s, self._last_s = self._last_s, time_s
@@ -82,33 +82,39 @@ class Gaze:
         share = cover(intersection(expected, outline(grey)), area(expected))
         is_missed = ~was_seen & (share > 0.0) & is_recent
         is_easy = was_seen & (share > _WHOLE) & _are_apart(expected, is_recent) & _are_sure(targets)
-        is_settled = bool(targets) and all(target.is_told for target in targets) and not is_missed.any()
+        is_settled = bool(targets) and all(target.is_confirmed for target in targets) and not is_missed.any()
         settled_s = max(config.settled_s * min(breadth / config.breadth, 1.0), config.unsettled_s)
         if time_s - self._everywhere_s > (settled_s if is_settled else config.unsettled_s):
             self._everywhere_s = time_s
             since_s = time_s - np.array([target.searched_s for target in targets])
-            return Aim(True, _shown(is_easy & (since_s < config.anew_s), targets, grey, expected, config), {})
-        since_s = time_s - np.array([target.looked_s for target in targets])
-        followed = _shown(is_easy & (since_s < config.look_s), targets, grey, expected, config)
+            return Schedule(
+                True, _shown(is_easy & (since_s < config.anew_s), targets, grey, expected, config), {}
+            )
+        since_s = time_s - np.array([target.rescored_s for target in targets])
+        followed = _shown(is_easy & (since_s < config.rescore_s), targets, grey, expected, config)
         looked = [row for row in np.flatnonzero(was_seen & (share > 0.0)).tolist() if row not in followed]
-        return Aim(False, {row: expected[row] for row in looked}, followed)
+        return Schedule(False, {row: expected[row] for row in looked}, followed)
 
 
 def _shown(
-    these: NDArray[np.bool_], targets: Sequence[Target], grey: Grey, expected: Floats, config: GazeConfig
+    these: NDArray[np.bool_],
+    targets: Sequence[TrackState],
+    grey: Grey,
+    expected: Floats,
+    config: DetectionScheduleConfig,
 ) -> dict[int, Floats]:
     """Give the boxes (4,) of some (K,) of those whom their portraits show, by their row."""
     shown = {}
     for row in np.flatnonzero(these).tolist():
-        portrait = targets[row].portrait
-        box = None if portrait is None else portrait.found(grey, expected[row], config.alike)
+        template = targets[row].template
+        box = None if template is None else template.found(grey, expected[row], config.min_correlation)
         if box is not None:
             shown[row] = box
     return shown
 
 
-def _are_sure(targets: Sequence[Target]) -> NDArray[np.bool_]:
-    return np.array([target.is_told and target.log_odds >= 0.0 for target in targets], np.bool_)
+def _are_sure(targets: Sequence[TrackState]) -> NDArray[np.bool_]:
+    return np.array([target.is_confirmed and target.log_odds >= 0.0 for target in targets], np.bool_)
 
 
 def _are_apart(expected: Floats, counts: NDArray[np.bool_]) -> NDArray[np.bool_]:

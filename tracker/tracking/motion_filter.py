@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.track import FloorPlace
-from peopleboy.tracker.tracking.config import PathConfig
+from peopleboy.tracker.tracking.config import KalmanConfig
 from peopleboy.tracker.tracking.viewpoint import NEAREST_M, Viewpoint
 
 Floats = NDArray[np.float64]
@@ -23,7 +23,7 @@ _LEAST_SPREAD: Final = 1e-9  # px^2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Paths:
+class StateEstimates:
     """What is believed of K people's feet.
 
     Attributes:
@@ -38,27 +38,27 @@ class Paths:
     def __len__(self) -> int:
         return len(self.mean)
 
-    def take(self, rows: NDArray[np.intp]) -> Paths:
+    def take(self, rows: NDArray[np.intp]) -> StateEstimates:
         """Give some of them."""
-        return Paths(self.mean[rows], self.covariance[rows])
+        return StateEstimates(self.mean[rows], self.covariance[rows])
 
-    def joined(self, others: Paths) -> Paths:
+    def joined(self, others: StateEstimates) -> StateEstimates:
         """Give these and others."""
-        return Paths(
+        return StateEstimates(
             np.concatenate([self.mean, others.mean]), np.concatenate([self.covariance, others.covariance])
         )
 
-    def replaced(self, rows: NDArray[np.intp], others: Paths) -> Paths:
+    def replaced(self, rows: NDArray[np.intp], others: StateEstimates) -> StateEstimates:
         """Give these, with others in some rows."""
         mean, covariance = self.mean.copy(), self.covariance.copy()
         mean[rows], covariance[rows] = others.mean, others.covariance
-        return Paths(mean, covariance)
+        return StateEstimates(mean, covariance)
 
 
-NOBODY = Paths(np.empty((0, STATE)), np.empty((0, STATE, STATE)))
+NOBODY = StateEstimates(np.empty((0, STATE)), np.empty((0, STATE, STATE)))
 
 
-def begun(boxes: Floats, view: Viewpoint, config: PathConfig) -> Paths:
+def initiate(boxes: Floats, view: Viewpoint, config: KalmanConfig) -> StateEstimates:
     """Begin paths where people are proposed (K, 4); nobody knows where they go."""
     feet = view.feet(boxes)
     build = np.zeros(len(feet))
@@ -73,26 +73,28 @@ def begun(boxes: Floats, view: Viewpoint, config: PathConfig) -> Paths:
     covariance[:, 6, 6] = config.build**2
     covariance[:, :3, 6] = -grown[:, :, 0] * config.build**2
     covariance[:, 6, :3] = covariance[:, :3, 6]
-    begun_at = Paths(np.concatenate([feet, np.zeros((len(feet), 4))], axis=1), covariance)
+    begun_at = StateEstimates(np.concatenate([feet, np.zeros((len(feet), 4))], axis=1), covariance)
     return begun_at if view.floor_m is None else _on_floor(begun_at, view.floor_m, config.floor_m)
 
 
-def advanced(paths: Paths, dt_s: float, moved: Odometry, config: PathConfig) -> Paths:
+def predict(paths: StateEstimates, dt_s: float, moved: Odometry, config: KalmanConfig) -> StateEstimates:
     """Carry paths on to the next frame, by white acceleration, and into the frame of a robot that moved."""
     mean, covariance = np.empty_like(paths.mean), np.empty_like(paths.covariance)
     pushed = np.square(config.acceleration_m_s2)
     _walk_on(paths.mean, paths.covariance, dt_s, _turn(moved), pushed, config.posture**2, mean, covariance)
-    mean[:, :3] = carried(mean[:, :3], moved)
+    mean[:, :3] = move_points(mean[:, :3], moved)
     mean[:, 2] = np.maximum(mean[:, 2], NEAREST_M)
-    return Paths(mean, covariance)
+    return StateEstimates(mean, covariance)
 
 
-def carried(points_m: Floats, moved: Odometry) -> Floats:
+def move_points(points_m: Floats, moved: Odometry) -> Floats:
     """Give points (K, 3) of the level frame before the robot moved in that after it."""
     return np.asarray((points_m - (-moved.aside_m, 0.0, moved.advance_m)) @ _turn(moved).T)
 
 
-def distances(paths: Paths, boxes: Floats, view: Viewpoint, config: PathConfig) -> Floats:
+def mahalanobis_distances(
+    paths: StateEstimates, boxes: Floats, view: Viewpoint, config: KalmanConfig
+) -> Floats:
     """Give the Mahalanobis distances (K, M) of proposals (M, 4) from where people are expected."""
     expected, slope = _expected(paths, view)
     deviation = np.maximum(expected[:, 2:] - expected[:, 1:2], 1.0) * _deviations(config)
@@ -101,18 +103,20 @@ def distances(paths: Paths, boxes: Floats, view: Viewpoint, config: PathConfig) 
     return told
 
 
-def corrected(paths: Paths, boxes: Floats, view: Viewpoint, config: PathConfig) -> Paths:
+def update_states(
+    paths: StateEstimates, boxes: Floats, view: Viewpoint, config: KalmanConfig
+) -> StateEstimates:
     """Take in a box (K, 4) for each, and that feet are on the floor, where it is known."""
     if len(paths) == 0:
         return paths
     expected, slope = _expected(paths, view)
-    later = Paths(paths.mean.copy(), paths.covariance.copy())
+    later = StateEstimates(paths.mean.copy(), paths.covariance.copy())
     noise = np.square(boxes[:, 3:] * _deviations(config))
     _learn(later.mean, later.covariance, slope, noise, _ends(boxes) - expected)
     return later if view.floor_m is None else _on_floor(later, view.floor_m, config.floor_m)
 
 
-def boxes_of(paths: Paths, view: Viewpoint, ratio: Floats) -> Floats:
+def predicted_boxes(paths: StateEstimates, view: Viewpoint, ratio: Floats) -> Floats:
     """Give the boxes (K, 4) [px] of people who are so wide (K,), in heights."""
     column, head, foot = view.seen(paths.mean[:, :3], paths.mean[:, 6]).T
     height = np.maximum(foot - head, 1.0)
@@ -121,7 +125,7 @@ def boxes_of(paths: Paths, view: Viewpoint, ratio: Floats) -> Floats:
     return np.asarray(boxes, np.float64)
 
 
-def places_of(paths: Paths, camera_m: tuple[float, float, float]) -> list[FloorPlace]:
+def floor_positions(paths: StateEstimates, camera_m: tuple[float, float, float]) -> list[FloorPlace]:
     """Tell where on the floor people stand in the frame of the robot whose camera is there [m]."""
     forward, left, _ = camera_m
     return [
@@ -139,7 +143,7 @@ def _turn(moved: Odometry) -> Floats:
     return np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]])
 
 
-def _expected(paths: Paths, view: Viewpoint) -> tuple[Floats, Floats]:
+def _expected(paths: StateEstimates, view: Viewpoint) -> tuple[Floats, Floats]:
     """Give what is expected to be seen (K, 3), and its slopes (K, 3, 7)."""
     feet, build = paths.mean[:, :3], paths.mean[:, 6]
     slope = np.zeros((len(paths), 3, STATE))
@@ -153,15 +157,15 @@ def _ends(boxes: Floats) -> Floats:
     return np.stack([left + width / 2.0, top, top + height], axis=1)
 
 
-def _deviations(config: PathConfig) -> Floats:
+def _deviations(config: KalmanConfig) -> Floats:
     """Give the deviations (3,) of the ends of boxes, in their heights."""
     return np.array([config.column, config.head, config.foot])
 
 
-def _on_floor(paths: Paths, floor_m: float, deviation_m: float) -> Paths:
+def _on_floor(paths: StateEstimates, floor_m: float, deviation_m: float) -> StateEstimates:
     covariance = paths.covariance
     gain = covariance[:, :, 1] / (covariance[:, 1, 1] + deviation_m**2)[:, None]
-    return Paths(
+    return StateEstimates(
         paths.mean + gain * (floor_m - paths.mean[:, 1])[:, None],
         covariance - gain[:, :, None] * covariance[:, 1, None, :],
     )

@@ -14,8 +14,8 @@ from peopleboy.tracker.fusion.fresh_images import FreshImages, joined
 from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import NOBODY, Proposals
 from peopleboy.tracker.thermal.mount import mount_of
-from peopleboy.tracker.tracking.appearance import carried_over
-from peopleboy.tracker.tracking.config import BothCamerasConfig, ByDetectionConfig
+from peopleboy.tracker.tracking.appearance import transfer_boxes
+from peopleboy.tracker.tracking.config import ColourDetectionConfig, DetectionTrackerConfig
 from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 # Who is seen in the colour image, as in a room as warm as people, where the thermal one shows nobody.
@@ -29,7 +29,7 @@ class ColourFinder:
     whom the thermal image does not.
     """
 
-    def __init__(self, config: BothCamerasConfig, weakest: float) -> None:
+    def __init__(self, config: ColourDetectionConfig, weakest: float) -> None:
         """Make one that keeps proposals from some log odds on."""
         self._config = config
         self._detector = PeopleDetector(least_score=weakest)
@@ -44,11 +44,11 @@ class ColourFinder:
         By heat alone, if it is too soon, there is no new image, or not both cameras are calibrated.
         """
         here, there = frame.calibrations.get(COLOUR), frame.calibrations.get(THERMAL)
-        if not self.takes_in(frame) or frame.time_s - self._last_s < self._pause_s:
+        if not self.accumulate_motion(frame) or frame.time_s - self._last_s < self._pause_s:
             return thermal
         if not (isinstance(here, PinholeCalibration) and isinstance(there, PinholeCalibration)):
             return thermal
-        both = seen_by_both(thermal, self._found(frame, here, there), self._config)
+        both = merge_cameras(thermal, self._found(frame, here, there), self._config)
         self._pause_s = self._pause_after(thermal, both)
         return both
 
@@ -62,11 +62,11 @@ class ColourFinder:
         grey = np.asarray(cv2.cvtColor(frame.rgb(COLOUR), cv2.COLOR_RGB2GRAY), np.uint8)
         found = self._detector.update(grey, frame.time_s, self._way, mount_of(here, grey.shape[0]))
         self._last_s, self._way = frame.time_s, Odometry()
-        boxes = carried_over(found.box, Viewpoint.of(here, (grey.shape[0], grey.shape[1])), here, there)
+        boxes = transfer_boxes(found.box, Viewpoint.of(here, (grey.shape[0], grey.shape[1])), here, there)
         seen = Proposals(boxes, self._config.believed * found.score, found.trees)
         return seen.taken(area(boxes) > 0.0)
 
-    def takes_in(self, frame: Frame) -> bool:
+    def accumulate_motion(self, frame: Frame) -> bool:
         """Take in how the robot moved until the next new image, and tell whether a frame has that."""
         fresh = self._images.of(frame)
         if fresh is None:
@@ -75,7 +75,7 @@ class ColourFinder:
         return True
 
 
-def seen_by_both(thermal: Proposals, colour: Proposals, config: BothCamerasConfig) -> Proposals:
+def merge_cameras(thermal: Proposals, colour: Proposals, config: ColourDetectionConfig) -> Proposals:
     """Take together what both cameras show, all in the thermal image, the surest first.
 
     Of whom both show the box is the thermal one's, which is the more exact, and the score that of the surer
@@ -117,7 +117,7 @@ class Finder(Protocol):
 class PeopleFinder:
     """The learned detector on the thermal image, and now and then on the colour image."""
 
-    def __init__(self, config: ByDetectionConfig) -> None:
+    def __init__(self, config: DetectionTrackerConfig) -> None:
         """Make one for a tracker with such settings."""
         weakest = config.existence.weakest
         self._thermal = ThermalFinder(PeopleDetector(least_score=weakest))
@@ -127,7 +127,7 @@ class PeopleFinder:
         """Look for people in the next frame; for those who are known in the thermal image alone."""
         seen = self._thermal(frame, expected, everywhere=everywhere)
         if not everywhere:
-            self._colour.takes_in(frame)
+            self._colour.accumulate_motion(frame)
             return seen
         return self._colour(frame, seen)
 

@@ -10,17 +10,19 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from peopleboy.tracker.tracking.appearance import alike
-from peopleboy.tracker.tracking.config import RecognitionConfig
-from peopleboy.tracker.tracking.track_state import Target
+from peopleboy.tracker.tracking.appearance import colour_similarity
+from peopleboy.tracker.tracking.config import ReidentificationConfig
+from peopleboy.tracker.tracking.track_state import TrackState
 
 
-def resolve(targets: Sequence[Target], time_s: float, config: RecognitionConfig) -> None:
+def resolve_identity_swaps(
+    targets: Sequence[TrackState], time_s: float, config: ReidentificationConfig
+) -> None:
     """Let people exchange their numbers who look like each other did before.
 
     Who is seen apart from others for a while is compared with whoever is so, too, or is gone as long.
     """
-    known = [target for target in targets if target.is_told and target.colours.any()]
+    known = [target for target in targets if target.is_confirmed and target.colours.any()]
     for one in known:
         if not _is_clear(one, config):
             continue
@@ -29,39 +31,41 @@ def resolve(targets: Sequence[Target], time_s: float, config: RecognitionConfig)
             for other in known
             if other is not one
             and (_is_clear(other, config) or time_s - other.seen_s > config.parted_s)
-            and alike(one.recent, other.colours) > config.same
+            and colour_similarity(one.recent, other.colours) > config.same
         ]
         gains = [_gain(one, other, config) for other in others]
         if gains and max(gains) > config.margin:
             _exchange(one, others[int(np.argmax(gains))])
 
 
-def known_again(target: Target, lost: Sequence[Target], config: RecognitionConfig) -> Target | None:
+def reidentify(
+    target: TrackState, lost: Sequence[TrackState], config: ReidentificationConfig
+) -> TrackState | None:
     """Tell by colours which of those who were lost somebody new is, if any.
 
     Args:
         target: who is new.
         lost: who may be meant.
-        config: how alike they must be.
+        config: how colour_similarity they must be.
     """
-    likeness = [alike(target.colours, other.colours) for other in lost]
+    likeness = [colour_similarity(target.colours, other.colours) for other in lost]
     best = int(np.argmax(likeness)) if likeness else -1
     return lost[best] if best >= 0 and likeness[best] > config.same else None
 
 
-def _is_clear(target: Target, config: RecognitionConfig) -> bool:
+def _is_clear(target: TrackState, config: ReidentificationConfig) -> bool:
     return target.clear_s >= config.parted_s and bool(target.recent.any())
 
 
-def _gain(one: Target, other: Target, config: RecognitionConfig) -> float:
+def _gain(one: TrackState, other: TrackState, config: ReidentificationConfig) -> float:
     """Tell how much better people fit who they look like if both are the other one."""
-    gain = alike(one.recent, other.colours) - alike(one.recent, one.colours)
+    gain = colour_similarity(one.recent, other.colours) - colour_similarity(one.recent, one.colours)
     if _is_clear(other, config):
-        gain += alike(other.recent, one.colours) - alike(other.recent, other.colours)
+        gain += colour_similarity(other.recent, one.colours) - colour_similarity(other.recent, other.colours)
     return gain
 
 
-def _exchange(one: Target, other: Target) -> None:
+def _exchange(one: TrackState, other: TrackState) -> None:
     one.id, other.id = other.id, one.id
     one.colours, other.colours = other.colours, one.colours
-    one.looks, other.looks = other.looks, one.looks
+    one.pattern, other.pattern = other.pattern, one.pattern

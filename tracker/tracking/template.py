@@ -1,7 +1,7 @@
-"""What somebody looked like in an image, by which the next ones show where he went.
+"""Template of a person in one image, by which the following images locate the person.
 
-A cheap step between two looks of the networks: normalised cross-correlation of a small picture (Lewis, Fast
-Normalized Cross-Correlation, 1995), at the size that the path expects.
+A cheap step between two runs of the networks: normalised cross-correlation of a small picture (Lewis, Fast
+Normalized Cross-Correlation, 1995), at the predicted size.
 """
 
 from __future__ import annotations
@@ -19,21 +19,21 @@ Grey = NDArray[np.uint8]
 
 _HEIGHT: Final = 40  # cells from head to feet
 _ABOVE: Final = 2  # cells above the head
-_ROWS: Final = 34  # down to the knees: legs look different in the next image
-_WIDER: Final = 1.35  # than the box, which is as wide as the torso: outlines tell most
+_ROWS: Final = 34  # down to the knees: legs change from image to image
+_WIDER: Final = 1.35  # than the box, which is as wide as the torso: the outline has the most contrast
 _FEWEST: Final = 6  # columns
-_MARGIN: Final = 5  # cells, by which somebody may be aside of where he is expected
-_FLAT: Final = 1.0  # greys; what deviates less shows nothing
+_MARGIN: Final = 5  # cells by which a person may be off the prediction
+_FLAT: Final = 1.0  # greys; less contrast cannot be located
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Portrait:
-    """Somebody's small picture.
+class Template:
+    """A small image of one person.
 
     Attributes:
         cells: (34, C) greys, 40 cells a height, down to the knees.
         ratio: width of the box over its height.
-        is_flat: whether it shows nothing that could be found again.
+        is_flat: whether it has too little contrast to be located again.
     """
 
     cells: Grey
@@ -41,33 +41,33 @@ class Portrait:
     is_flat: bool
 
     @classmethod
-    def of(cls, grey: Grey, box: Floats) -> Portrait:
-        """Take it of who is in a box (4,) of an image (H, W)."""
+    def of(cls, grey: Grey, box: Floats) -> Template:
+        """Cut the template from a box (4,) of an image (H, W)."""
         ratio = float(box[2] / box[3])
         cells = _cells(grey, box, _columns(ratio), 0)
         return cls(cells, ratio, float(cv2.meanStdDev(cells)[1][0, 0]) < _FLAT)
 
     def found(self, grey: Grey, expected: Floats, least: float) -> Floats | None:
-        """Tell where in an image (H, W) somebody is.
+        """Locate the template in an image (H, W).
 
         Args:
             grey: the image.
-            expected: (4,) the box in which he should be [px].
-            least: correlation, up to 1, below which nobody is found.
+            expected: (4,) the predicted box [px].
+            least: least correlation, up to 1, of a match.
 
         Returns:
-            (4,) a box of the expected height; None if nothing near is like this.
+            (4,) a box of the predicted height; None without a match nearby.
         """
         if self.is_flat:
             return None
         around = _cells(grey, expected, self.cells.shape[1], _MARGIN)
-        alike = cv2.matchTemplate(around, self.cells, cv2.TM_CCOEFF_NORMED)
-        row, column = (int(place) for place in np.unravel_index(alike.argmax(), alike.shape))
+        match = cv2.matchTemplate(around, self.cells, cv2.TM_CCOEFF_NORMED)
+        row, column = (int(place) for place in np.unravel_index(match.argmax(), match.shape))
         is_inside = 0 < row < 2 * _MARGIN and 0 < column < 2 * _MARGIN
-        if not is_inside or alike[row, column] < least:
+        if not is_inside or match[row, column] < least:
             return None
-        right = column - _MARGIN + _peak(*alike[row, column - 1 : column + 2].tolist())
-        down = row - _MARGIN + _peak(*alike[row - 1 : row + 2, column].tolist())
+        right = column - _MARGIN + _peak(*match[row, column - 1 : column + 2].tolist())
+        down = row - _MARGIN + _peak(*match[row - 1 : row + 2, column].tolist())
         left, top, width, height = expected.tolist()
         cell_px, wide_px = height / _HEIGHT, self.ratio * height
         middle = left + width / 2.0 + right * cell_px
@@ -79,7 +79,7 @@ def _columns(ratio: float) -> int:
 
 
 def _cells(grey: Grey, box: Floats, columns: int, margin: int) -> Grey:
-    """Give greys of who is in a box, and of some cells around."""
+    """Sample the greys in a box, with a margin of some cells."""
     left, top, width, height = box.tolist()
     cell_px = height / _HEIGHT
     first_x = left + width / 2.0 + (0.5 - columns / 2.0 - margin) * cell_px
@@ -93,6 +93,6 @@ def _cells(grey: Grey, box: Floats, columns: int, margin: int) -> Grey:
 
 
 def _peak(before: float, here: float, after: float) -> float:
-    """Tell where from -0.5 to 0.5 a parabola through three neighbours is highest, the middle one at 0."""
+    """Return the vertex, from -0.5 to 0.5, of the parabola through three neighbours, the middle one at 0."""
     bend = before - 2.0 * here + after
     return 0.0 if bend >= 0.0 else min(max(0.5 * (before - after) / bend, -0.5), 0.5)

@@ -44,7 +44,7 @@ class Viewpoint:
 
     @property
     def breadth(self) -> float:
-        """How wide it looks: the tangent of half the angle from side to side."""
+        """How wide it pattern: the tangent of half the angle from side to side."""
         return (self.centre_px[0] + 0.5) / self.focal_px[0]
 
     @classmethod

@@ -13,11 +13,11 @@ from peopleboy.tracker.tracking.appearance import (
     FEATURES,
     PARTS,
     _histogram,
-    alike,
-    blended,
-    carried_over,
-    coefficients,
-    colours_of,
+    blend_colours,
+    colour_similarities,
+    colour_similarity,
+    describe_colours,
+    transfer_boxes,
 )
 from peopleboy.tracker.tracking.config import STATURE_M
 from peopleboy.tracker.tracking.viewpoint import Viewpoint
@@ -41,7 +41,7 @@ def worn(
     image[middle : round(top + height), rows] = legs
     frame = Frame(images={THERMAL: np.zeros((ROWS, COLUMNS), np.uint8), COLOUR: image}, time_s=0.0)
     view = replace(Viewpoint.of(None, (ROWS, COLUMNS)), floor_m=floor_m)
-    return colours_of(frame, box, view)[0]
+    return describe_colours(frame, box, view)[0]
 
 
 def lower(by: float) -> NDArray[np.float64]:
@@ -50,17 +50,17 @@ def lower(by: float) -> NDArray[np.float64]:
 
 def test_the_same_clothes_are_alike_and_others_are_not() -> None:
     one = worn(BOX, RED, BLUE)
-    assert alike(one, worn(lower(10.0), RED, BLUE)) > 0.95
-    assert alike(one, worn(BOX, RED, GREEN)) == pytest.approx(0.5, abs=0.1)
-    assert alike(one, worn(BOX, GREEN, GREEN)) < 0.1
+    assert colour_similarity(one, worn(lower(10.0), RED, BLUE)) > 0.95
+    assert colour_similarity(one, worn(BOX, RED, GREEN)) == pytest.approx(0.5, abs=0.1)
+    assert colour_similarity(one, worn(BOX, GREEN, GREEN)) < 0.1
 
 
 def test_who_is_seen_without_legs_is_known_by_the_torso() -> None:
     whole, cut = worn(BOX, RED, BLUE), worn(lower(95.0), RED, BLUE)
     assert not cut.reshape(PARTS, -1)[1].any()
-    assert alike(whole, cut) > 0.95
-    assert alike(cut, cut) == pytest.approx(1.0, abs=1e-5)
-    assert alike(worn(BOX, GREEN, BLUE), cut) < 0.1
+    assert colour_similarity(whole, cut) > 0.95
+    assert colour_similarity(cut, cut) == pytest.approx(1.0, abs=1e-5)
+    assert colour_similarity(worn(BOX, GREEN, BLUE), cut) < 0.1
 
 
 def test_what_is_seen_of_legs_counts_where_the_floor_is_not_known() -> None:
@@ -71,21 +71,21 @@ def test_what_is_seen_of_legs_counts_where_the_floor_is_not_known() -> None:
 def test_of_whose_torso_is_not_seen_nothing_is_known() -> None:
     nothing = worn(lower(195.0), RED, BLUE)
     assert not nothing.any()
-    same, is_known = coefficients(np.stack([nothing, worn(BOX, RED, BLUE)]), nothing[None])
+    same, is_known = colour_similarities(np.stack([nothing, worn(BOX, RED, BLUE)]), nothing[None])
     assert not same.any()
     assert not is_known.any()
 
 
 def test_legs_are_remembered_while_the_torso_is_learned() -> None:
     whole, cut = worn(BOX, RED, BLUE), worn(lower(95.0), GREEN, BLUE)
-    torso, legs = blended(whole, cut, 0.3).reshape(PARTS, -1)
+    torso, legs = blend_colours(whole, cut, 0.3).reshape(PARTS, -1)
     np.testing.assert_array_equal(legs, whole.reshape(PARTS, -1)[1])
     np.testing.assert_allclose(
         torso, 0.7 * whole.reshape(PARTS, -1)[0] + 0.3 * cut.reshape(PARTS, -1)[0], atol=1e-6
     )
     nothing = np.zeros(FEATURES, np.float32)
-    np.testing.assert_array_equal(blended(whole, nothing, 0.3), whole)
-    np.testing.assert_array_equal(blended(nothing, cut, 0.3), cut)
+    np.testing.assert_array_equal(blend_colours(whole, nothing, 0.3), whole)
+    np.testing.assert_array_equal(blend_colours(nothing, cut, 0.3), cut)
 
 
 @given(pixels=arrays(np.uint8, st.tuples(st.integers(3, 9), st.integers(4, 9), st.just(3))))
@@ -93,9 +93,9 @@ def test_colours_are_the_shares_of_numpys_own_bins(pixels: NDArray[np.uint8]) ->
     red, green, blue = pixels.reshape(-1, 3).T.astype(np.float64)
     light = (red + green + blue) / 3.0
     told = np.zeros(FEATURES // PARTS, np.float32)
-    is_told = _histogram(pixels, *_BIN_OF, told)
-    assert is_told == (light.mean() >= 24.0)
-    if not is_told:
+    is_confirmed = _histogram(pixels, *_BIN_OF, told)
+    assert is_confirmed == (light.mean() >= 24.0)
+    if not is_confirmed:
         assert not told.any()
         return
     axes = [light, np.clip(red - green, -59.9, 59.9), np.clip(blue - (red + green) / 2.0, -59.9, 59.9)]
@@ -111,12 +111,12 @@ def test_colours_are_blended_by_the_parts_that_are_seen(seed: int, share: float)
         (rng.random((PARTS, FEATURES // PARTS)) * rng.integers(0, 2, (PARTS, 1))).astype(np.float32)
         for _ in range(2)
     )
-    told = blended(before.ravel(), now.ravel(), share).reshape(PARTS, -1)
+    told = blend_colours(before.ravel(), now.ravel(), share).reshape(PARTS, -1)
     for was, seen, both in zip(before, now, told, strict=True):
         gain = 0.0 if not seen.any() else share if was.any() else 1.0
         np.testing.assert_allclose(both, (1.0 - gain) * was + gain * seen, atol=1e-6)
     common = max(int((before.any(axis=1) & now.any(axis=1)).sum()), 1)
-    assert alike(before.ravel(), now.ravel()) == pytest.approx(
+    assert colour_similarity(before.ravel(), now.ravel()) == pytest.approx(
         PARTS * float((before * now).sum()) / common, rel=1e-5
     )
 
@@ -144,19 +144,19 @@ def test_a_box_is_where_the_other_camera_sees_the_same_person(
     ahead_m: float, left_m: float, aside_m: float, height_m: float
 ) -> None:
     here, there = calibration(), calibration(aside_m, height_m, 250.0)
-    found = carried_over(seen(here, ahead_m, left_m)[None], Viewpoint.of(here, SHAPE), here, there)
+    found = transfer_boxes(seen(here, ahead_m, left_m)[None], Viewpoint.of(here, SHAPE), here, there)
     np.testing.assert_allclose(found[0], seen(there, ahead_m, left_m), atol=1e-6)
 
 
 def test_the_camera_itself_sees_the_same() -> None:
     here = calibration()
     box = np.array([[100.0, 40.0, 30.0, 120.0], [10.0, 100.0, 8.0, 40.0]])
-    np.testing.assert_allclose(carried_over(box, Viewpoint.of(here, SHAPE), here, here), box, atol=1e-9)
+    np.testing.assert_allclose(transfer_boxes(box, Viewpoint.of(here, SHAPE), here, here), box, atol=1e-9)
 
 
 def test_whom_the_other_camera_cannot_see_has_no_box() -> None:
     here, pose = calibration(), calibration().robot_from_camera.copy()
     pose[:3, :3] = pose[:3, :3] @ np.diag([-1.0, 1.0, -1.0])  # looks back
     behind = PinholeCalibration(here.intrinsics, pose)
-    found = carried_over(seen(here, 4.0, 0.0)[None], Viewpoint.of(here, SHAPE), here, behind)
+    found = transfer_boxes(seen(here, 4.0, 0.0)[None], Viewpoint.of(here, SHAPE), here, behind)
     assert not found.any()

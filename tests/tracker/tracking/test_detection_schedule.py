@@ -11,23 +11,23 @@ import pytest
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.tracking.appearance import FEATURES
-from peopleboy.tracker.tracking.config import GazeConfig
-from peopleboy.tracker.tracking.detection_schedule import Aim, Gaze
-from peopleboy.tracker.tracking.template import Portrait
-from peopleboy.tracker.tracking.track_state import Target
+from peopleboy.tracker.tracking.config import DetectionScheduleConfig
+from peopleboy.tracker.tracking.detection_schedule import DetectionSchedule, Schedule
+from peopleboy.tracker.tracking.template import Template
+from peopleboy.tracker.tracking.track_state import TrackState
 
-CONFIG = GazeConfig()
+CONFIG = DetectionScheduleConfig()
 DT_S = 1.0 / 15.0
 GREY = np.random.default_rng(0).integers(0, 256, (240, 320)).astype(np.uint8)
 BOXES = np.array([[40.0, 60.0, 27.0, 100.0], [200.0, 60.0, 27.0, 100.0]])
 
 
-def targets(boxes: Floats = BOXES) -> list[Target]:
+def targets(boxes: Floats = BOXES) -> list[TrackState]:
     return [
-        Target(
+        TrackState(
             born_s=-9.0,
             seen_s=0.0,
-            looks=np.zeros(4, np.float32),
+            pattern=np.zeros(4, np.float32),
             colours=np.zeros(FEATURES, np.float32),
             ratio=0.27,
             shown=box,
@@ -35,36 +35,36 @@ def targets(boxes: Floats = BOXES) -> list[Target]:
             id=number,
             trees=float(number),
             score=2.0,
-            looked_s=0.0,
-            portrait=Portrait.of(GREY, box),
+            rescored_s=0.0,
+            template=Template.of(GREY, box),
         )
         for number, box in enumerate(boxes, 1)
     ]
 
 
 def aims(
-    who: list[Target],
+    who: list[TrackState],
     images: int,
     boxes: Floats = BOXES,
-    config: GazeConfig = CONFIG,
+    config: DetectionScheduleConfig = CONFIG,
     breadth: float = CONFIG.breadth,
-) -> list[Aim]:
+) -> list[Schedule]:
     """Look at images that are all the same, in which everybody is found who was found before."""
-    gaze, found = Gaze(), []
+    gaze, found = DetectionSchedule(), []
     for image in range(images):
         time_s = image * DT_S
         last_s = max(image - 1, 0) * DT_S
-        found.append(gaze.aim(GREY, who, boxes, time_s, breadth, config))
+        found.append(gaze.schedule_next(GREY, who, boxes, time_s, breadth, config))
         for row, target in enumerate(who):
             if target.seen_s == last_s:
                 target.seen_s = time_s
-                target.looked_s = target.looked_s if row in found[-1].followed else time_s
+                target.rescored_s = target.rescored_s if row in found[-1].followed else time_s
                 is_anew = found[-1].everywhere and row not in found[-1].expected
                 target.searched_s = time_s if is_anew else target.searched_s
     return found
 
 
-def everywhere(told: list[Aim]) -> list[int]:
+def everywhere(told: list[Schedule]) -> list[int]:
     return [image for image, aim in enumerate(told) if aim.everywhere]
 
 
@@ -111,22 +111,22 @@ def test_who_stands_apart_is_followed_by_his_portrait_for_a_while() -> None:
     assert aim.proposed(targets()).trees.tolist() == [2.0, 1.0]
 
 
-def close() -> list[Target]:
+def close() -> list[TrackState]:
     return targets(BOXES + np.array([[140.0], [0.0]]) * [1.0, 0.0, 0.0, 0.0])
 
 
-def untold() -> list[Target]:
+def untold() -> list[TrackState]:
     first, second = targets()
     return [replace(first, id=0), replace(second, log_odds=-0.1)]
 
 
-def unlike() -> list[Target]:
-    return [replace(target, portrait=Portrait.of(GREY.T.copy(), target.shown)) for target in targets()]
+def unlike() -> list[TrackState]:
+    return [replace(target, template=Template.of(GREY.T.copy(), target.shown)) for target in targets()]
 
 
 @pytest.mark.parametrize("make", [close, untold, unlike])
 def test_the_detector_looks_at_who_is_near_others_or_unsure_or_looks_different(
-    make: Callable[[], list[Target]],
+    make: Callable[[], list[TrackState]],
 ) -> None:
     who = make()
     aim = aims(who, 2, np.array([target.shown for target in who]))[1]
@@ -141,14 +141,14 @@ def test_who_is_partly_outside_the_image_is_looked_at() -> None:
 
 def test_who_is_followed_is_as_sure_as_when_looked_at() -> None:
     who = targets()
-    aim = Aim(True, {}, {1: BOXES[1] + 1.0})
+    aim = Schedule(True, {}, {1: BOXES[1] + 1.0})
     seen = aim.with_followed(Proposals.of_trees(BOXES[:1], np.array([0.5])), who)
     np.testing.assert_array_equal(seen.box, [BOXES[0], BOXES[1] + 1.0])
     assert (seen.score.tolist(), seen.trees.tolist()) == ([0.5, 2.0], [0.5, 2.0])
 
 
 def test_every_image_is_searched_everywhere_where_no_pause_is_asked_for() -> None:
-    config = GazeConfig(unsettled_s=0.0, settled_s=0.0, anew_s=0.0)
+    config = DetectionScheduleConfig(unsettled_s=0.0, settled_s=0.0, anew_s=0.0)
     assert everywhere(aims(targets(), 5, config=config)) == [0, 1, 2, 3, 4]
 
 
@@ -158,7 +158,7 @@ def test_two_of_three_searches_pass_by_who_stands_apart() -> None:
 
 
 @pytest.mark.parametrize("make", [close, untold])
-def test_no_search_passes_by_who_is_near_others_or_unsure(make: Callable[[], list[Target]]) -> None:
+def test_no_search_passes_by_who_is_near_others_or_unsure(make: Callable[[], list[TrackState]]) -> None:
     who = make()
     told = aims(who, 13, np.array([target.shown for target in who]))
     assert not any(aim.expected for aim in told if aim.everywhere)

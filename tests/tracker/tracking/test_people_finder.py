@@ -18,11 +18,11 @@ from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.track import confirmed
 from peopleboy.tracker.trackers import make_tracker
-from peopleboy.tracker.tracking.config import BothCamerasConfig, ByDetectionConfig
-from peopleboy.tracker.tracking.people_finder import ColourFinder, ThermalFinder, seen_by_both
-from peopleboy.tracker.tracking.people_tracker import ByDetectionTracker
+from peopleboy.tracker.tracking.config import ColourDetectionConfig, DetectionTrackerConfig
+from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
+from peopleboy.tracker.tracking.people_finder import ColourFinder, ThermalFinder, merge_cameras
 
-CONFIG = BothCamerasConfig()
+CONFIG = ColourDetectionConfig()
 NOBODY = Proposals.of_trees(np.empty((0, 4)), np.empty(0))
 ONE = Proposals.of_trees(np.array([[100.0, 40.0, 30.0, 100.0]]), np.array([1.0]))
 
@@ -38,7 +38,7 @@ def proposals() -> st.SearchStrategy[Proposals]:
 
 @given(proposals(), proposals())
 def test_colours_take_nobody_away_and_move_nobody(thermal: Proposals, colour: Proposals) -> None:
-    both = seen_by_both(thermal, colour, CONFIG)
+    both = merge_cameras(thermal, colour, CONFIG)
     assert (np.diff(both.score) <= 0.0).all()
     for box, score in zip(thermal.box, thermal.score, strict=True):
         rows = (both.box == box).all(axis=1)
@@ -53,18 +53,18 @@ def test_colours_take_nobody_away_and_move_nobody(thermal: Proposals, colour: Pr
 
 def test_of_whom_both_show_the_surer_score_and_the_thermal_box_are_told() -> None:
     colour = Proposals.of_trees(ONE.box + np.array([3.0, 2.0, 0.0, 0.0]), np.array([2.5]))
-    both = seen_by_both(ONE, colour, CONFIG)
+    both = merge_cameras(ONE, colour, CONFIG)
     assert both.score.tolist() == [2.5]
     np.testing.assert_array_equal(both.box, ONE.box)
-    assert seen_by_both(colour, ONE, CONFIG).score.tolist() == [2.5]
+    assert merge_cameras(colour, ONE, CONFIG).score.tolist() == [2.5]
 
 
 def test_whom_colours_alone_show_is_told_if_that_is_likely() -> None:
     elsewhere = Proposals.of_trees(ONE.box + np.array([80.0, 0.0, 0.0, 0.0]), np.array([2.0]))
-    assert seen_by_both(ONE, elsewhere, CONFIG).score.tolist() == [2.0, 1.0]
-    assert seen_by_both(NOBODY, elsewhere, CONFIG).score.tolist() == [2.0]
-    assert seen_by_both(ONE, replace_score(elsewhere, -0.5), CONFIG).score.tolist() == [1.0]
-    assert seen_by_both(ONE, NOBODY, CONFIG) is ONE
+    assert merge_cameras(ONE, elsewhere, CONFIG).score.tolist() == [2.0, 1.0]
+    assert merge_cameras(NOBODY, elsewhere, CONFIG).score.tolist() == [2.0]
+    assert merge_cameras(ONE, replace_score(elsewhere, -0.5), CONFIG).score.tolist() == [1.0]
+    assert merge_cameras(ONE, NOBODY, CONFIG) is ONE
 
 
 def replace_score(found: Proposals, score: float) -> Proposals:
@@ -73,7 +73,7 @@ def replace_score(found: Proposals, score: float) -> Proposals:
 
 def test_a_part_of_somebody_known_is_nobody_else() -> None:
     head = Proposals.of_trees(np.array([[105.0, 42.0, 12.0, 40.0]]), np.array([3.0]))
-    assert seen_by_both(ONE, head, CONFIG).score.tolist() == [1.0]
+    assert merge_cameras(ONE, head, CONFIG).score.tolist() == [1.0]
 
 
 @pytest.fixture(scope="module")
@@ -98,7 +98,7 @@ def without_warmth(frames: list[Frame]) -> Iterator[Frame]:
 
 @pytest.mark.slow
 def test_in_a_room_as_warm_as_people_they_are_found_by_colours(frames: list[Frame]) -> None:
-    tracker, thermal = ByDetectionTracker(), ThermalFinder(PeopleDetector())
+    tracker, thermal = DetectionTracker(), ThermalFinder(PeopleDetector())
     told, warm = 0, 0
     for frame in without_warmth(frames):
         warm += len(thermal(frame).score)
@@ -107,15 +107,15 @@ def test_in_a_room_as_warm_as_people_they_are_found_by_colours(frames: list[Fram
     assert told > 0.3 * len(frames)
 
 
-def looks_s(frames: Iterable[Frame], thermal: Proposals) -> list[float]:
+def independent_per_s(frames: Iterable[Frame], thermal: Proposals) -> list[float]:
     """When something came of looking."""
-    find = ColourFinder(CONFIG, ByDetectionConfig().existence.weakest)
+    find = ColourFinder(CONFIG, DetectionTrackerConfig().existence.weakest)
     return [frame.time_s for frame in frames if find(frame, thermal) is not thermal]
 
 
 def test_it_looks_now_and_then_and_more_often_while_heat_shows_nobody(frames: list[Frame]) -> None:
     everywhere = Proposals.of_trees(np.array([[0.0, 0.0, 320.0, 240.0]]), np.array([5.0]))
-    seldom, often = looks_s(frames, everywhere), looks_s(frames, NOBODY)
+    seldom, often = independent_per_s(frames, everywhere), independent_per_s(frames, NOBODY)
     assert len(seldom) >= 2
     assert CONFIG.beside_s <= np.diff(seldom).min() < CONFIG.beside_s + 0.1
     assert CONFIG.alone_every_s <= np.diff(often).min() < CONFIG.alone_every_s + 0.1
@@ -124,13 +124,13 @@ def test_it_looks_now_and_then_and_more_often_while_heat_shows_nobody(frames: li
 def test_it_looks_more_seldom_while_heat_shows_somebody(frames: list[Frame]) -> None:
     dark = [replace(one, images={THERMAL: one.grey(THERMAL), COLOUR: 0 * one.rgb(COLOUR)}) for one in frames]
     later = [frame if frame.time_s > 0.5 else nobody for frame, nobody in zip(frames, dark, strict=True)]
-    assert CONFIG.every_s <= looks_s(later, NOBODY)[0] < CONFIG.every_s + 0.1
+    assert CONFIG.every_s <= independent_per_s(later, NOBODY)[0] < CONFIG.every_s + 0.1
     surely, hardly = (Proposals.of_trees(ONE.box + 200.0, np.array([score])) for score in (0.1, -0.1))
-    assert looks_s(later, hardly)[0] < CONFIG.every_s + 0.1
-    assert looks_s(later, surely)[0] >= CONFIG.beside_s
+    assert independent_per_s(later, hardly)[0] < CONFIG.every_s + 0.1
+    assert independent_per_s(later, surely)[0] >= CONFIG.beside_s
 
 
 def test_it_looks_where_both_cameras_are_known_and_the_image_is_new(frames: list[Frame]) -> None:
-    assert looks_s([replace(frame, calibrations={}) for frame in frames], NOBODY) == []
+    assert independent_per_s([replace(frame, calibrations={}) for frame in frames], NOBODY) == []
     still = frames[len(frames) // 2]
-    assert len(looks_s([still, replace(still, time_s=still.time_s + 1.0)], NOBODY)) <= 1
+    assert len(independent_per_s([still, replace(still, time_s=still.time_s + 1.0)], NOBODY)) <= 1

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.tracker.frame import Floats
-from peopleboy.tracker.tracking.template import Grey, Portrait
+from peopleboy.tracker.tracking.template import Grey, Template
 
 HERE = np.array([100.0, 60.0, 27.0, 100.0])
 
@@ -44,31 +44,31 @@ def around(box: Floats, right: float, down: float) -> Floats:
 def test_who_moved_is_found_to_a_fraction_of_a_cell(
     scale: float, right: float, down: float, off: tuple[float, float]
 ) -> None:
-    portrait = Portrait.of(scene(), HERE)
+    template = Template.of(scene(), HERE)
     later, truth = moved(scene(), scale, right, down)
-    box = portrait.found(later, around(truth, *off), 0.6)
+    box = template.found(later, around(truth, *off), 0.6)
     assert box is not None
     np.testing.assert_allclose(box, truth, atol=0.8)  # a cell is 2.5 px
 
 
 @pytest.mark.parametrize("off", [(30.0, 0.0), (0.0, -30.0)])
 def test_who_is_far_from_where_he_should_be_is_not_found(off: tuple[float, float]) -> None:
-    assert Portrait.of(scene(), HERE).found(scene(), around(HERE, *off), 0.6) is None
+    assert Template.of(scene(), HERE).found(scene(), around(HERE, *off), 0.6) is None
 
 
 def test_another_one_is_not_taken_for_him() -> None:
-    portrait = Portrait.of(scene(), HERE)
-    assert all(portrait.found(scene(seed), HERE, 0.6) is None for seed in range(1, 20))
+    template = Template.of(scene(), HERE)
+    assert all(template.found(scene(seed), HERE, 0.6) is None for seed in range(1, 20))
 
 
 def test_gain_and_offset_do_not_matter() -> None:
-    portrait, grey = Portrait.of(scene(), HERE), (0.4 * scene() + 30.0).round().astype(np.uint8)
-    box = portrait.found(grey, HERE, 0.6)
+    template, grey = Template.of(scene(), HERE), (0.4 * scene() + 30.0).round().astype(np.uint8)
+    box = template.found(grey, HERE, 0.6)
     assert box is not None
     np.testing.assert_allclose(box, HERE, atol=0.1)
 
 
 def test_what_shows_nothing_is_not_found() -> None:
     flat = np.full((240, 320), 90, np.uint8)
-    assert Portrait.of(flat, HERE).found(flat, HERE, 0.6) is None
-    assert Portrait.of(scene(), HERE).found(flat, HERE, 0.6) is None
+    assert Template.of(flat, HERE).found(flat, HERE, 0.6) is None
+    assert Template.of(scene(), HERE).found(flat, HERE, 0.6) is None

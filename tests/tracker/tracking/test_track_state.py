@@ -9,59 +9,59 @@ from hypothesis import strategies as st
 
 from peopleboy.tracker.tracking.appearance import FEATURES
 from peopleboy.tracker.tracking.config import ExistenceConfig
-from peopleboy.tracker.tracking.track_state import Finding, Target
+from peopleboy.tracker.tracking.track_state import DetectionEvidence, TrackState
 
 CONFIG = ExistenceConfig()
 DT_S = 1.0 / 15.0
 
 
-def known() -> Target:
-    return Target(
+def known() -> TrackState:
+    return TrackState(
         born_s=0.0,
         seen_s=0.0,
-        looks=np.zeros(4, np.float32),
+        pattern=np.zeros(4, np.float32),
         colours=np.zeros(FEATURES, np.float32),
         ratio=0.3,
         shown=np.array([0.0, 0.0, 10.0, 40.0]),
         log_odds=CONFIG.confirmed,
         id=1,
-        told_s=0.0,
+        confirmed_s=0.0,
     )
 
 
-def seen(target: Target, score: float, images: int, since_s: float, speed_m_s: float = 1.5) -> float:
+def seen(target: TrackState, score: float, images: int, since_s: float, speed_m_s: float = 1.5) -> float:
     for image in range(1, images + 1):
         time_s = since_s + image * DT_S
-        target.see(Finding(score, 0.0, speed_m_s), time_s, DT_S, CONFIG)
+        target.update_seen(DetectionEvidence(score, 0.0, speed_m_s), time_s, DT_S, CONFIG)
     return time_s
 
 
 def test_who_goes_on_to_look_like_nobody_is_told_no_more() -> None:
     target = known()
-    images = round((CONFIG.confirmed - CONFIG.hopeless) * CONFIG.independent_s / DT_S)
+    images = round((CONFIG.confirmed - CONFIG.deletion_log_odds) * CONFIG.independent_s / DT_S)
     time_s = seen(target, -1.0, images - 1, 0.0)
-    assert target.is_shown(time_s, CONFIG)
+    assert target.is_output(time_s, CONFIG)
     time_s = seen(target, -1.0, 2, time_s)
-    assert not target.is_shown(time_s, CONFIG)
+    assert not target.is_output(time_s, CONFIG)
 
 
 @pytest.mark.parametrize("hider", [None, 2])
 def test_who_was_away_is_told_with_the_first_image_that_shows_him(hider: int | None) -> None:
     target = known()
     for _ in range(200):
-        target.miss(hider, DT_S, CONFIG)
-    assert target.log_odds == CONFIG.hopeless
+        target.update_missed(hider, DT_S, CONFIG)
+    assert target.log_odds == CONFIG.deletion_log_odds
     time_s = seen(target, 0.5, 1, 200 * DT_S)
-    assert target.is_shown(time_s, CONFIG)
+    assert target.is_output(time_s, CONFIG)
 
 
 def test_a_clear_image_counts_at_once_though_those_before_said_little() -> None:
     target = known()
-    target.id, target.log_odds = 0, CONFIG.hopeless
+    target.id, target.log_odds = 0, CONFIG.deletion_log_odds
     seen(target, CONFIG.highest_score, 3, 0.0, speed_m_s=0.0)
-    left = (1.0 - CONFIG.as_seen_now) ** 3 * (CONFIG.highest_score - CONFIG.hopeless)
+    left = (1.0 - CONFIG.evidence_gain) ** 3 * (CONFIG.highest_score - CONFIG.deletion_log_odds)
     assert target.log_odds == pytest.approx(CONFIG.highest_score - left)
-    assert target.is_confirmed(CONFIG)
+    assert target.has_enough_evidence(CONFIG)
 
 
 @given(st.floats(0.0, 8.0), st.floats(-8.0, 8.0))
@@ -75,9 +75,9 @@ def test_an_image_that_says_less_than_those_before_adds_its_own_part(before: flo
 
 def test_who_was_never_told_fades_when_not_found() -> None:
     target = known()
-    target.id, target.log_odds = 0, CONFIG.hopeless
-    target.miss(None, DT_S, CONFIG)
-    assert target.is_forgotten(DT_S, CONFIG)
+    target.id, target.log_odds = 0, CONFIG.deletion_log_odds
+    target.update_missed(None, DT_S, CONFIG)
+    assert target.is_deleted(DT_S, CONFIG)
 
 
 def images_until_told(score: float, speed_m_s: float) -> int:
@@ -85,7 +85,7 @@ def images_until_told(score: float, speed_m_s: float) -> int:
     target.id, target.log_odds = 0, score
     for image in range(1, 1000):
         seen(target, score, 1, image * DT_S, speed_m_s)
-        if target.is_confirmed(CONFIG):
+        if target.has_enough_evidence(CONFIG):
             return image
     raise AssertionError("never told")
 
@@ -98,9 +98,11 @@ def test_hidden_people_are_told_for_a_share_of_how_long_they_were_watched(
     for one in (hidden, away):
         one.watched_s, one.log_odds = watched_s, CONFIG.highest
     hidden.occluder = 2
-    longest_s = max(min(CONFIG.hidden_share * watched_s, CONFIG.hidden_doubt_s), CONFIG.doubt_s)
-    assert hidden.is_shown(gone_s, CONFIG) == (gone_s <= longest_s)
-    assert away.is_shown(gone_s, CONFIG) == (gone_s <= CONFIG.doubt_s)
+    longest_s = max(
+        min(CONFIG.coast_occluded_share * watched_s, CONFIG.max_coast_occluded_s), CONFIG.max_coast_s
+    )
+    assert hidden.is_output(gone_s, CONFIG) == (gone_s <= longest_s)
+    assert away.is_output(gone_s, CONFIG) == (gone_s <= CONFIG.max_coast_s)
 
 
 def test_who_stands_still_is_no_new_sight_in_every_image() -> None:

@@ -12,18 +12,18 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, PinholeCalibration
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.track import Status, Track
-from peopleboy.tracker.tracking.config import ByDetectionConfig, ExistenceConfig, MatchingConfig
-from peopleboy.tracker.tracking.people_tracker import ByDetectionTracker
+from peopleboy.tracker.tracking.config import AssociationConfig, DetectionTrackerConfig, ExistenceConfig
+from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
 
 RATE_HZ = 15.0
 RED, BLUE = (200, 30, 30), (30, 30, 200)
-AS_CALIBRATED = ByDetectionConfig(
-    existence_uncalibrated=ExistenceConfig(), matching_uncalibrated=MatchingConfig()
+AS_CALIBRATED = DetectionTrackerConfig(
+    existence_uncalibrated=ExistenceConfig(), association_uncalibrated=AssociationConfig()
 )
 Box = tuple[float, float, float, float]
 
 
-class Told:
+class FixedDetections:
     """A finder that is told what to find."""
 
     def __init__(self, boxes: Sequence[Sequence[Box]], score: float = 3.0) -> None:
@@ -76,9 +76,9 @@ def tracked(
     boxes: Sequence[Sequence[Box]],
     score: float = 3.0,
     clothes: Sequence[tuple[int, int, int]] = (),
-    config: ByDetectionConfig | None = None,
+    config: DetectionTrackerConfig | None = None,
 ) -> list[tuple[Track, ...]]:
-    tracker = ByDetectionTracker(config, find=Told(boxes, score))
+    tracker = DetectionTracker(config, find=FixedDetections(boxes, score))
     return [tracker.update(frame) for frame in frames(boxes, clothes)]
 
 
@@ -95,7 +95,7 @@ def test_who_walks_is_told_within_a_second_and_keeps_one_number() -> None:
 
 def test_who_is_seen_by_a_known_camera_has_a_place_on_the_floor_and_nobody_else() -> None:
     boxes = [[standing(0.8)]] * 10
-    tracker = ByDetectionTracker(find=Told(boxes))
+    tracker = DetectionTracker(find=FixedDetections(boxes))
     (track,) = [tracker.update(frame) for frame in calibrated(boxes)][-1]
     assert track.place is not None
     assert track.place.position_m == pytest.approx((5.0, -0.8), abs=0.02)
@@ -126,7 +126,7 @@ def test_whom_one_image_shows_beyond_doubt_is_told_at_once() -> None:
 
 
 def test_a_camera_that_is_calibrated_is_one_that_is_known() -> None:
-    tracker = ByDetectionTracker(find=Told([[standing(0.0)]] * 4))
+    tracker = DetectionTracker(find=FixedDetections([[standing(0.0)]] * 4))
     seen = [tracker.update(frame) for frame in calibrated([[standing(0.0)]] * 4)]
     assert [len(tracks) for tracks in seen] == [0, 1, 1, 1]
 
@@ -154,7 +154,7 @@ def test_who_comes_back_elsewhere_in_the_same_colours_keeps_the_number_and_nobod
 ) -> None:
     away = [[walker(60.0 + 3.0 * i)] for i in range(30)] + [[]] * 60
     back = [[walker(250.0 - 3.0 * i)] for i in range(30)]
-    tracker = ByDetectionTracker(find=Told(away + back))
+    tracker = DetectionTracker(find=FixedDetections(away + back))
     shots = [*frames(away, (RED,))]
     shots += [
         Frame(images=frame.images, time_s=frame.time_s + len(away) / RATE_HZ)
@@ -190,8 +190,8 @@ def test_nobody_is_told_outside_the_image() -> None:
 
 def test_in_five_of_six_images_only_who_was_just_seen_is_looked_for_where_he_is_expected() -> None:
     boxes = [[standing(0.05 * i - 1.0), standing(1.5)] for i in range(20)] + [[standing(1.5)]] * 4
-    find = Told(boxes)
-    tracker = ByDetectionTracker(find=find)
+    find = FixedDetections(boxes)
+    tracker = DetectionTracker(find=find)
     for frame in calibrated(boxes):
         tracker.update(frame)
     # Nobody is told in the first image; somebody is lost in that with number 20.
@@ -206,8 +206,10 @@ def test_who_stands_apart_is_followed_without_the_detector() -> None:
     boxes = [[standing(0.02 * i - 0.2)] for i in range(14)]
     grey = np.random.default_rng(0).integers(0, 60, (240, 320)).astype(np.uint8)
     person = np.kron(np.random.default_rng(1).integers(100, 250, (40, 10)), np.ones((6, 6))).astype(np.uint8)
-    find = Told([box if number in (0, 1, 4, 6, 9, 12) else [] for number, box in enumerate(boxes)], score=4.5)
-    tracker, seen = ByDetectionTracker(find=find), []
+    find = FixedDetections(
+        [box if number in (0, 1, 4, 6, 9, 12) else [] for number, box in enumerate(boxes)], score=4.5
+    )
+    tracker, seen = DetectionTracker(find=find), []
     for frame, ((left, top, width, height),) in zip(calibrated(boxes), boxes, strict=True):
         image = grey.copy()
         image[round(top) : round(top + height), round(left) : round(left + width)] = person[
@@ -225,8 +227,8 @@ def test_who_stands_apart_is_followed_without_the_detector() -> None:
 def test_every_image_of_a_slow_camera_or_one_that_is_not_known_is_searched_everywhere() -> None:
     boxes = [[standing(0.0)]] * 10
     for shots in (calibrated(boxes, rate_hz=2.5), frames(boxes)):
-        find = Told(boxes)
-        tracker = ByDetectionTracker(find=find)
+        find = FixedDetections(boxes)
+        tracker = DetectionTracker(find=find)
         for frame in shots:
             tracker.update(frame)
         assert find.everywhere == list(range(10))
@@ -236,21 +238,21 @@ def test_nobody_new_is_begun_with_where_only_others_are_looked_for() -> None:
     one, other = standing(-1.0), standing(1.0)
     for later, told in (([[one, other], [one, other], [one]], {1}), ([[one], [one], [one, other]], {1, 2})):
         boxes = [[one]] * 10 + later * 5
-        tracker = ByDetectionTracker(find=Told(boxes, score=4.5))
+        tracker = DetectionTracker(find=FixedDetections(boxes, score=4.5))
         seen = [numbers(tracker.update(frame)) for frame in calibrated(boxes)]
         assert set().union(*seen) == told
 
 
 def test_who_is_pointed_out_is_told_at_once() -> None:
     boxes = [[walker(100.0 + 2.0 * i)] for i in range(5)]
-    tracker = ByDetectionTracker(find=Told(boxes))
+    tracker = DetectionTracker(find=FixedDetections(boxes))
     tracker.introduce(boxes[0][0])
     seen = [tracker.update(frame) for frame in frames(boxes)]
     assert all({track.id for track in tracks} == {1} for tracks in seen)
 
 
 def test_time_must_go_forward() -> None:
-    tracker = ByDetectionTracker(find=Told([[], []]))
+    tracker = DetectionTracker(find=FixedDetections([[], []]))
     frame = next(frames([[]]))
     tracker.update(frame)
     with pytest.raises(BadInput, match="time_s must go forward"):
