@@ -238,10 +238,9 @@ def tune(
     no figure is reported on. Leaves a curve of each parameter and a page. A killed call goes on where it was.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
-    from peopleboy.studies.reproductions.tuning.tune import TrainingFilms
-    from peopleboy.studies.reproductions.tuning.tune import tune as tune_all
-    from peopleboy.studies.reproductions.tuning.tuned_page import print_tuned
-    from peopleboy.studies.reproductions.tuning.tuned_parameters import chosen_parameters
+    from peopleboy.studies.reproductions.tune import TrainingFilms, print_tuned
+    from peopleboy.studies.reproductions.tune import tune as tune_all
+    from peopleboy.studies.reproductions.tuned_parameters import chosen_parameters
 
     shown = TrainingFilms(cache=films.resolve(), seeds=seeds, seconds=seconds)
     page, tuned = tune_all(chosen_parameters(names), shown, out, chosen_workers(workers, scheduler))

@@ -24,8 +24,8 @@ from docs.generate.pictures import (
 )
 from docs.generate.pictures.paper import COLOURS, save
 from docs.generate.pictures.worlds import hard_scenes, light, proposals, reactions
-from peopleboy.studies.reproductions.pictures.attention_maps import draw_parts
-from peopleboy.studies.reproductions.pictures.silhouette import draw_features
+from peopleboy.studies.reproductions.pictures.panoramic_figures import draw_features
+from peopleboy.studies.reproductions.pictures.situation_figures import draw_part_scores
 
 FOLDER = Path(__file__).parents[2] / "pictures"
 
@@ -51,7 +51,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "panoramic_features": draw_features,
     "panoramic_errors": panorama.errors_over_distance,
     "attention": attention.absence,
-    "attention_parts": draw_parts,
+    "attention_parts": draw_part_scores,
     "all_round": all_round.all_round,
     "handed_over": all_round.handed_over,
     "proposals": proposals.proposals,

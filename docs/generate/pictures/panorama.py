@@ -20,7 +20,7 @@ from peopleboy.sim.world import World
 from peopleboy.studies.reproductions.experiments.distances import ROOMS, examples_of, walks
 from peopleboy.studies.reproductions.measuring.run_units import open_store, run_units
 from peopleboy.studies.reproductions.measuring.workload import Plan
-from peopleboy.studies.reproductions.pictures.curves import draw_ranges
+from peopleboy.studies.reproductions.pictures.panoramic_figures import draw_ranges
 from peopleboy.studies.reproductions.reproduce import RESULTS
 
 PEOPLE = {"anna": (6.5, -1.2), "carl": (1.6, 0.1), "dora": (4.2, 1.9)}

@@ -9,7 +9,12 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.studies.reproductions.attention.focus_choices import CHOICES, DEFAULT, MATCHING, PRINTED_NAME
+from peopleboy.studies.reproductions.evaluations.attention_focus import (
+    CHOICES,
+    DEFAULT,
+    MATCHING,
+    PRINTED_NAME,
+)
 from peopleboy.studies.reproductions.experiments.experiment import Chart, Done, Line, Samples, missing
 from peopleboy.studies.reproductions.measuring.attention_units import (
     AbsenceUnit,

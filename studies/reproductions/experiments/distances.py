@@ -15,8 +15,12 @@ from peopleboy.studies.reproductions.measuring.distance_units import (
 )
 from peopleboy.studies.reproductions.measuring.units import Unit
 from peopleboy.studies.reproductions.measuring.workload import Plan
-from peopleboy.studies.reproductions.pictures.curves import draw_correlations, draw_path, draw_ranges
-from peopleboy.studies.reproductions.pictures.png import png_address
+from peopleboy.studies.reproductions.pictures.canvas import png_address
+from peopleboy.studies.reproductions.pictures.panoramic_figures import (
+    draw_correlations,
+    draw_path,
+    draw_ranges,
+)
 from peopleboy.studies.training.distance_learning.distance_examples import Examples
 from peopleboy.studies.training.distance_learning.distance_trials import FILTERS, SplitTrial
 from peopleboy.studies.training.distance_learning.image_errors import ImageErrors

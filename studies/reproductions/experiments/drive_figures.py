@@ -9,15 +9,21 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.figure import Figure
 
-from peopleboy.studies.reproductions.depth_drives.drive_sets import SETS, set_name
-from peopleboy.studies.reproductions.depth_drives.score_drive import RADIUS_M
-from peopleboy.studies.reproductions.depth_drives.tracker_choices import CHOICES, DEFAULT, NO_DEPTH
+from peopleboy.studies.reproductions.evaluations.drive_scores import RADIUS_M
+from peopleboy.studies.reproductions.evaluations.drive_tracking import (
+    CHOICES,
+    DEFAULT,
+    NO_DEPTH,
+    SETS,
+    set_name,
+)
 from peopleboy.studies.reproductions.experiments.drives import MAIN, columns, drive
 from peopleboy.studies.reproductions.experiments.experiment import Chart, Done, Line, Samples, missing
 from peopleboy.studies.reproductions.measuring.drive_units import LegsUnit
 from peopleboy.studies.reproductions.measuring.units import Unit
 from peopleboy.studies.reproductions.measuring.workload import Plan
-from peopleboy.studies.reproductions.pictures.drive_tracks import (
+from peopleboy.studies.reproductions.pictures.canvas import png_address
+from peopleboy.studies.reproductions.pictures.situation_figures import (
     draw_crossing,
     draw_errors,
     draw_legs,
@@ -25,7 +31,6 @@ from peopleboy.studies.reproductions.pictures.drive_tracks import (
     draw_ways,
     draw_world,
 )
-from peopleboy.studies.reproductions.pictures.png import png_address
 
 Films = dict[str, Any]
 

@@ -8,8 +8,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from peopleboy.studies.reproductions.depth_drives.drive_sets import SETS
-from peopleboy.studies.reproductions.depth_drives.sliding_windows import (
+from peopleboy.studies.reproductions.evaluations.drive_tracking import SETS
+from peopleboy.studies.reproductions.evaluations.sliding_windows import (
     BY_SIZE,
     FAR_SLIDES,
     NEAR_SLIDES,

@@ -9,15 +9,16 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.studies.reproductions.depth_drives.drive_record import CLOSE_M, DriveRecord, interval
-from peopleboy.studies.reproductions.depth_drives.drive_sets import SETS, TURNS, set_name
-from peopleboy.studies.reproductions.depth_drives.score_drive import RADIUS_M
-from peopleboy.studies.reproductions.depth_drives.tracker_choices import (
+from peopleboy.studies.reproductions.evaluations.drive_scores import CLOSE_M, RADIUS_M, DriveRecord, interval
+from peopleboy.studies.reproductions.evaluations.drive_tracking import (
     CHOICES,
     DEFAULT,
     LITERAL,
     NO_CONNECTOR,
     NO_ODOMETRY,
+    SETS,
+    TURNS,
+    set_name,
 )
 from peopleboy.studies.reproductions.experiments.experiment import Chart, Done, Line, Samples, missing
 from peopleboy.studies.reproductions.measuring.drive_units import DriveUnit

@@ -8,15 +8,23 @@ from typing import Any, Final
 
 import numpy as np
 
+from peopleboy.studies.reproductions.evaluations.scene_scores import (
+    ADAPT,
+    CHAIRS,
+    MEAN,
+    OURS,
+    PRESETS,
+    PRINTED,
+    ROBUST,
+    SEQUENCES,
+)
 from peopleboy.studies.reproductions.experiments.drives import Row, columns
 from peopleboy.studies.reproductions.experiments.experiment import Chart, Done, Line, Samples, missing
 from peopleboy.studies.reproductions.measuring.scene_units import SceneUnit
 from peopleboy.studies.reproductions.measuring.units import Unit
 from peopleboy.studies.reproductions.measuring.workload import Plan
-from peopleboy.studies.reproductions.pictures.png import png_address
-from peopleboy.studies.reproductions.pictures.scene_maps import draw_maps
-from peopleboy.studies.reproductions.scene_films.scene_choices import ADAPT, MEAN, OURS, PRINTED, ROBUST
-from peopleboy.studies.reproductions.scene_films.scene_sets import CHAIRS, PRESETS, SEQUENCES
+from peopleboy.studies.reproductions.pictures.canvas import png_address
+from peopleboy.studies.reproductions.pictures.situation_figures import draw_maps
 
 TOF: Final = PRESETS[0]
 ALL: Final = "all"

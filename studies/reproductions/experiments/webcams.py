@@ -45,7 +45,7 @@ class WebcamUnit:
 
     def run(self) -> Result:
         """Play and measure."""
-        from peopleboy.studies.reproductions.webcams.measure import (
+        from peopleboy.studies.reproductions.evaluations.webcam_positions import (
             measure_webcams,  # here, as it needs PyBullet
         )
 

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.engine.store import Result
-from peopleboy.studies.reproductions.attention.watch_absence import watch_absence
-from peopleboy.studies.reproductions.attention.watch_focus import watch_focus
-from peopleboy.studies.reproductions.attention.watch_follower import watch_follower
+from peopleboy.studies.reproductions.evaluations.attention_focus import (
+    watch_absence,
+    watch_focus,
+    watch_follower,
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.engine.store import Result
-from peopleboy.studies.reproductions.depth_drives.play_drive import with_cameras
-from peopleboy.studies.reproductions.depth_drives.watch_drive import watch_drive
-from peopleboy.studies.reproductions.depth_drives.watch_legs import watch_legs
+from peopleboy.studies.reproductions.evaluations.drive_tracking import watch_drive, watch_legs
+from peopleboy.studies.reproductions.evaluations.playback import with_cameras
 from peopleboy.tracker.frame import DEPTH
 
 

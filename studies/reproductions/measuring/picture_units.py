@@ -26,7 +26,7 @@ class PictureUnit:
     def run(self) -> Result:
         """Film what it needs, and draw it."""
         # Here, as these need PyBullet.
+        from peopleboy.studies.reproductions.pictures.canvas import png_address
         from peopleboy.studies.reproductions.pictures.drawn_again import DRAWN
-        from peopleboy.studies.reproductions.pictures.png import png_address
 
         return {"picture": png_address(DRAWN[self.name]())}

@@ -8,16 +8,16 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+from peopleboy.scenarios.files.load import LIBRARY
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.store import Result, Store, code_digest
 from peopleboy.scenarios.running.engine.task import Failure, Task, TasksFailed, Tell
 from peopleboy.scenarios.running.engine.workers import Workers
-from peopleboy.studies.reproductions.depth_drives.drive_sets import SETS, TURNS
+from peopleboy.studies.reproductions.evaluations.drive_tracking import SETS, TURNS
 from peopleboy.studies.reproductions.measuring.units import Unit
 
 STUDIES = Path(__file__).parents[2]
-LIBRARY = STUDIES.with_name("library")
-_STUDIES = ("webcams", "distance_learning", "depth_drives", "window_learning")
+_STUDIES = ("reproductions/evaluations", "training/distance_learning", "training/window_learning")
 _MODELS = (
     "corridor_meeting", "corridor_straight", "crossing_2", "follow_visitors", "hall_visits", "hidden_2s",
     "leader_swap", "passers_by",

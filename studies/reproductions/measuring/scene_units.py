@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.engine.store import Result
-from peopleboy.studies.reproductions.scene_films.watch_scene import watch_scene, with_preset
+from peopleboy.studies.reproductions.evaluations.scene_scores import watch_scene, with_preset
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,7 +7,7 @@ from typing import Final
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.engine.store import Result
-from peopleboy.studies.reproductions.depth_drives.sliding_windows import compare_windows
+from peopleboy.studies.reproductions.evaluations.sliding_windows import compare_windows
 from peopleboy.studies.training.window_learning.teach_windows import scores_of
 from peopleboy.studies.training.window_learning.window_examples import collect_windows
 from peopleboy.tracker.rgbd.verification.window_model import people_detector, shipped_windows

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from peopleboy.scenarios.files.suite import SuiteRun, load_suite, runs_of
-from peopleboy.studies.reproductions.scene_films.scene_sets import PRESETS, SEQUENCES
+from peopleboy.studies.reproductions.evaluations.scene_scores import PRESETS, SEQUENCES
 
 DATASETS = ("dataset1", "dataset2", "dataset3", "dataset4")
 TRAINING = "training films"

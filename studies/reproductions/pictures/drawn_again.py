@@ -6,22 +6,25 @@ from collections.abc import Callable, Mapping
 
 from matplotlib.figure import Figure
 
-from peopleboy.studies.reproductions.pictures.attention_maps import (
+from peopleboy.studies.reproductions.pictures.panoramic_figures import (
+    draw_features,
+    draw_fields_of_view,
+    draw_set_up,
+    draw_webcam_images,
+)
+from peopleboy.studies.reproductions.pictures.situation_figures import (
     draw_examples,
     draw_excitation,
-    draw_parts,
-    draw_paths,
+    draw_focus_paths,
+    draw_part_scores,
 )
-from peopleboy.studies.reproductions.pictures.frame_example import draw_example
-from peopleboy.studies.reproductions.pictures.interaction import draw_interaction
-from peopleboy.studies.reproductions.pictures.set_up import draw_set_up
-from peopleboy.studies.reproductions.pictures.silhouette import draw_features
-from peopleboy.studies.reproductions.pictures.thermal_contours import draw_cues, draw_fitness
-from peopleboy.studies.reproductions.pictures.time_ranges import draw_time_ranges
-from peopleboy.studies.reproductions.pictures.typical_errors import draw_errors
-from peopleboy.studies.reproductions.pictures.webcam_views import (
-    draw_fields_of_view,
-    draw_webcam_images,
+from peopleboy.studies.reproductions.pictures.tracking_figures import (
+    draw_cues,
+    draw_errors,
+    draw_example,
+    draw_fitness,
+    draw_interaction,
+    draw_time_ranges,
 )
 
 DRAWN: Mapping[str, Callable[[], Figure]] = {
@@ -36,8 +39,8 @@ DRAWN: Mapping[str, Callable[[], Figure]] = {
     "panoramic-figure-3": draw_fields_of_view,
     "panoramic-figure-4": draw_features,
     "situation-figure-5.6": draw_excitation,
-    "situation-figure-5.7": draw_parts,
-    "situation-figure-5.8": draw_paths,
+    "situation-figure-5.7": draw_part_scores,
+    "situation-figure-5.8": draw_focus_paths,
     "situation-figure-5.9": draw_examples,
 }
 """By id of the experiment."""

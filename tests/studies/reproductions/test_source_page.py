@@ -15,14 +15,16 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.suite import SuiteRun
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.sim.random_streams import stream
-from peopleboy.studies.reproductions.attention.focus_choices import CHOICES as WAYS
-from peopleboy.studies.reproductions.depth_drives.sliding_windows import (
+from peopleboy.studies.reproductions.evaluations.attention_focus import CHOICES as WAYS
+from peopleboy.studies.reproductions.evaluations.drive_tracking import CHOICES
+from peopleboy.studies.reproductions.evaluations.scene_scores import CHOICES as SCENE_MODELS
+from peopleboy.studies.reproductions.evaluations.scene_scores import CLEAN
+from peopleboy.studies.reproductions.evaluations.sliding_windows import (
     BY_SIZE,
     FAR_SLIDES,
     NEAR_SLIDES,
     PARTS,
 )
-from peopleboy.studies.reproductions.depth_drives.tracker_choices import CHOICES
 from peopleboy.studies.reproductions.experiments.attention import TRACKERS
 from peopleboy.studies.reproductions.experiments.catalogue import EXPERIMENTS, PAPERS, choose
 from peopleboy.studies.reproductions.experiments.distances import CUES, Correlations, Distances
@@ -39,8 +41,6 @@ from peopleboy.studies.reproductions.measuring.units import RECORDS, TrackUnit, 
 from peopleboy.studies.reproductions.measuring.window_units import MACHINES
 from peopleboy.studies.reproductions.measuring.workload import Plan, full_plan
 from peopleboy.studies.reproductions.reproduce import MEANS, RESULTS, Means, reproduce
-from peopleboy.studies.reproductions.scene_films.scene_choices import CHOICES as SCENE_MODELS
-from peopleboy.studies.reproductions.scene_films.watch_scene import CLEAN
 from peopleboy.studies.reproductions.showing.against_source import ClaimStatus, judge
 from peopleboy.studies.reproductions.showing.print_sections import print_sections
 from peopleboy.studies.reproductions.showing.source import Claim, source_tables
@@ -51,7 +51,7 @@ from peopleboy.studies.reproductions.showing.source_page import (
     write_page,
 )
 from peopleboy.studies.training.distance_learning.image_errors import ImageErrors
-from peopleboy.tracker.evaluation.area_metrics import PaperMetrics
+from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import refused
 from tests.helpers.some_of import some_of

@@ -1,1 +1,0 @@
-"""Where attention goes: whether its focus is on the right person, and whether that one is known again."""

@@ -1,0 +1,1 @@
+"""Recordings and runs played through trackers and models, and scored against the truth."""

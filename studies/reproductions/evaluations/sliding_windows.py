@@ -1,0 +1,284 @@
+"""People found by windows slid over whole images, and by windows on what has a human's size in depth."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.sim.random_streams import stream
+from peopleboy.studies.reproductions.evaluations.drive_tracking import (
+    COLOUR_ONLY,
+    DEFAULT,
+    OURS,
+    make_choice,
+)
+from peopleboy.studies.reproductions.evaluations.playback import DriveMoment, Stander, play_drive
+from peopleboy.tracker.boxes import iou
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
+from peopleboy.tracker.rgbd.detection.depth_view import DepthView
+from peopleboy.tracker.rgbd.detection.human_size import HumanSize
+from peopleboy.tracker.rgbd.detection.pre_detection import Layout, PreDetection, PreDetector
+from peopleboy.tracker.rgbd.detection.u_depth import UDepthConfig
+from peopleboy.tracker.rgbd.detection.v_disparity import HeightLine
+from peopleboy.tracker.rgbd.verification.window_model import people_detector, shipped_windows
+from peopleboy.tracker.rgbd.verification.windows import (
+    SIZES,
+    Image,
+    Range,
+    range_of,
+    window_of,
+)
+from peopleboy.tracker.track import Box
+
+Floats = NDArray[np.float64]
+
+BY_SIZE: Final = "pre-detection + verification"
+PARTS: Final = ("pre-detection", "verification", "hypotheses and filters")
+
+_OVERLAP: Final = 0.4  # of a window with that of somebody whom it found
+_DOUBLE: Final = 0.4  # overlap from which the weaker one of two windows is left out
+_HIDDEN: Final = 0.5  # share from which somebody need not be found
+_TORSO_M, _FRONT_M = 0.45, 0.1  # width of a body, and from its middle to the surface that is seen
+
+
+@dataclass(frozen=True, slots=True)
+class Slide:
+    """How windows slide over an image.
+
+    Attributes:
+        kind: of windows.
+        shift_px: from one to the next.
+        scale: by which the image shrinks from step to step.
+        is_opencv: whether OpenCV's people detector judges them, or the tracker's own machine.
+    """
+
+    kind: Range
+    shift_px: int
+    scale: float
+    is_opencv: bool = False
+
+    @property
+    def name(self) -> str:
+        """Shift and scale as tables have them."""
+        return f"{self.shift_px} px, scale {self.scale:.2f}"
+
+    @property
+    def key(self) -> str:
+        """All that it is, in words."""
+        return f"{self.kind} {self.name}{' by OpenCV' if self.is_opencv else ''}"
+
+
+FAR_SLIDES: Final = tuple(
+    Slide(Range.FAR, shift, scale, is_opencv)
+    for shift, scale in ((4, 1.05), (8, 1.05), (8, 1.1), (8, 1.2))
+    for is_opencv in (True, False)
+)
+"""SA table 4.3."""
+
+NEAR_SLIDES: Final = tuple(
+    Slide(Range.NEAR, shift, scale) for shift, scale in ((4, 1.1), (8, 1.05), (8, 1.1))
+)
+"""SA table 4.4."""
+
+
+_Window = tuple[Range, Box]
+
+
+@dataclass(frozen=True, slots=True)
+class _Sought:
+    """Windows that somebody should be in, by range; in which range the person is; whether in plain view."""
+
+    windows: Mapping[Range, Box]
+    kind: Range
+    is_plain: bool
+
+
+@dataclass(slots=True, eq=False)
+class WindowTally:
+    """How a detector does: times of images [ms], people there, people found, and windows on nobody."""
+
+    times_ms: list[float] = field(default_factory=list)
+    people: int = 0
+    found: int = 0
+    false: int = 0
+
+    def add(self, windows: Sequence[_Window], people: Sequence[_Sought], kinds: Sequence[Range]) -> None:
+        """Take in an image: what was found, and who is there; only people in some ranges must be found."""
+        matches = [[_is_on(window, person) for window in windows] for person in people]
+        wanted = [number for number, person in enumerate(people) if person.is_plain and person.kind in kinds]
+        self.people += len(wanted)
+        self.found += sum(any(matches[number]) for number in wanted)
+        self.false += sum(not any(row[k] for row in matches) for k in range(len(windows)))
+
+    def plain(self) -> dict[str, Any]:
+        """Give it as plain data."""
+        ms = float(np.median(self.times_ms))
+        images = len(self.times_ms)
+        return {
+            "ms": ms,
+            "images": images,
+            "people": self.people,
+            "found": self.found,
+            "false": self.false,
+        }
+
+
+def compare_windows(drives: Sequence[tuple[Scenario, int]], every: int) -> dict[str, Any]:
+    """Look for people in the same images in all ways; times are those of one core.
+
+    Args:
+        drives: scenarios and seeds.
+        every: so-manieth image of them.
+
+    Returns:
+        Plain data: a tally by the key of the slide, or `BY_SIZE` with the ranges of those who must be found;
+        and "parts", the tracker's median times [ms].
+    """
+    comparison = _Comparison()
+    with _one_thread():
+        for scenario, seed in drives:
+            comparison.watch(scenario, seed, every)
+    return comparison.plain()
+
+
+def slide(image: Image, how: Slide) -> Floats:
+    """Find windows (N, 4) with people in an image; of those that overlap the best ones are kept."""
+    hog = cv2.HOGDescriptor(SIZES[how.kind], (16, 16), (8, 8), (8, 8), 9)
+    machines = people_detector() if how.is_opencv else shipped_windows(sees_depth=False)
+    hog.setSVMDetector(machines.weights[how.kind])
+    # Grouping by OpenCV takes minutes for the thousands of hits of near windows.
+    boxes, scores = hog.detectMultiScale(
+        image,
+        hitThreshold=0.0 if how.is_opencv else COLOUR_ONLY.least_score(how.kind),
+        winStride=(how.shift_px, how.shift_px),
+        padding=(8, 8),
+        scale=how.scale,
+        groupThreshold=0,
+    )
+    found = np.asarray(boxes, np.float64).reshape(-1, 4)
+    kept = cv2.dnn.NMSBoxes(found.tolist(), np.ravel(scores).tolist(), 0.0, _DOUBLE) if len(found) else []
+    return found[np.asarray(kept, np.int64).ravel()]
+
+
+class _Comparison:
+    def __init__(self) -> None:
+        self.slides = {how: WindowTally() for how in (*FAR_SLIDES, *NEAR_SLIDES)}
+        self.by_size: dict[tuple[Range, ...], WindowTally] = {
+            kinds: WindowTally() for kinds in (tuple(Range), (Range.FAR,), (Range.NEAR,))
+        }
+        self.parts: dict[str, list[float]] = {name: [] for name in PARTS}
+        self.detector = PreDetector(HumanSize(), UDepthConfig())
+
+    def watch(self, scenario: Scenario, seed: int, every: int) -> None:
+        tracker = make_choice(DEFAULT, stream(0, "reproduce.tracker"))
+        for moment in play_drive(scenario, seed):
+            with _timed() as whole:
+                tracker.update(moment.frame)
+            if moment.number % every == 0:
+                view = DepthView.of(moment.frame.calibrations[DEPTH], DEPTH)
+                people = _people(moment, view)
+                parts = self._look_by_size(moment, people, view)
+                for name, spent in zip(PARTS, (*parts, whole[0] - sum(parts)), strict=True):
+                    self.parts[name].append(spent)
+                self._slide(moment, people)
+
+    def plain(self) -> dict[str, Any]:
+        tallies = {how.key: tally.plain() for how, tally in self.slides.items()}
+        tallies |= {f"{'+'.join(kinds)} {BY_SIZE}": tally.plain() for kinds, tally in self.by_size.items()}
+        return tallies | {"parts": {name: float(np.median(times)) for name, times in self.parts.items()}}
+
+    def _look_by_size(
+        self, moment: DriveMoment, people: Sequence[_Sought], view: DepthView
+    ) -> tuple[float, float]:
+        with _timed() as sizes:
+            layout = self.detector(moment.frame.depth(DEPTH), view)
+        with _timed() as looks:
+            windows = list(_verified(moment.frame, layout, view))
+        for kinds, tally in self.by_size.items():
+            tally.times_ms.append(sizes[0] + looks[0])
+            tally.add(windows, people, kinds)
+        return sizes[0], looks[0]
+
+    def _slide(self, moment: DriveMoment, people: Sequence[_Sought]) -> None:
+        for how, tally in self.slides.items():
+            with _timed() as spent:
+                found = slide(moment.frame.rgb(DEPTH_COLOUR), how)
+            tally.times_ms.append(spent[0])
+            tally.add([(how.kind, _box(row)) for row in found.tolist()], people, (how.kind,))
+
+
+def _verified(frame: Frame, layout: Layout, view: DepthView) -> Iterator[_Window]:
+    model, depth, colour = shipped_windows(sees_depth=True), frame.depth(DEPTH), frame.rgb(DEPTH_COLOUR)
+    for found in layout.detections:
+        kind = range_of(found.z_m, layout.floor, view, len(depth))
+        window = window_of(found, kind, layout.floor, view)
+        if model.look(colour, depth, found.z_m, window, kind) > OURS.least_score(kind):
+            yield kind, window
+
+
+def _people(moment: DriveMoment, view: DepthView) -> list[_Sought]:
+    """Place windows on everybody, by the truth."""
+    floor = HeightLine(view.horizon_px / view.focal_px, view.height_m)
+    return [
+        _person(person, view, floor, moment.frame.depth(DEPTH).shape)
+        for person in moment.people
+        if person.whole_box is not None and person.place_m[0] > view.calibration.position_m[0] + _TORSO_M
+    ]
+
+
+def _person(person: Stander, view: DepthView, floor: HeightLine, shape: tuple[int, ...]) -> _Sought:
+    assert person.whole_box is not None
+    left, top, width, height = person.whole_box
+    z_m = person.place_m[0] - view.calibration.position_m[0] - _FRONT_M
+    torso = _TORSO_M * view.focal_px / z_m
+    middle = left + width / 2.0
+    body = PreDetection(
+        box=(middle - torso / 2.0, top, torso, height),
+        x_m=0.0,
+        z_m=z_m,
+        width_m=_TORSO_M,
+        height_m=0.0,
+        depth_m=0.0,
+        probability=1.0,
+    )
+    return _Sought(
+        windows={kind: window_of(body, kind, floor, view) for kind in Range},
+        kind=range_of(z_m, floor, view, shape[0]),
+        is_plain=person.is_counted and person.hidden < _HIDDEN and 0.0 <= middle < shape[1],
+    )
+
+
+def _is_on(window: _Window, person: _Sought) -> bool:
+    kind, box = window
+    return float(iou(np.array(box), np.array(person.windows[kind]))) > _OVERLAP
+
+
+def _box(row: Sequence[float]) -> Box:
+    left, top, width, height = row
+    return left, top, width, height
+
+
+@contextmanager
+def _timed() -> Iterator[list[float]]:
+    """Measure processor time; the list holds it [ms] at the end."""
+    spent, start = [0.0], time.process_time()
+    yield spent
+    spent[0] = 1000.0 * (time.process_time() - start)
+
+
+@contextmanager
+def _one_thread() -> Iterator[None]:
+    before = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        yield
+    finally:
+        cv2.setNumThreads(before)

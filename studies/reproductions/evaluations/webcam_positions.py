@@ -1,0 +1,328 @@
+"""How well webcams in the corners of a room tell where somebody is, against the exact truth."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.sim.cameras.camera_config import PanoramaConfig
+from peopleboy.sim.cameras.kinds import flat_geometry
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.sim.world import World
+from peopleboy.studies.training.distance_learning.distance_examples import panoramas
+from peopleboy.studies.training.distance_learning.image_errors import ErrorSummary
+from peopleboy.tracker.frame import PANORAMA
+from peopleboy.tracker.panoramic.paper.background import EMPTY_IMAGES, Background, learn_background
+from peopleboy.tracker.panoramic.paper.depth_cues import measure
+from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig
+
+# From angles in webcams to a place on the floor, and from known places to the webcams' own (2003 paper).
+
+LEAST_ANGLE_RAD: Final = math.radians(10.0)  # between two lines of sight; flatter ones meet anywhere
+X, Y, HEADING, RANGE = range(4)
+"""Columns of the webcams' numbers: x, y [m], heading and angle of view [rad], counter-clockwise."""
+
+
+def bearings(columns: Floats, webcams: Floats, width: int) -> Floats:
+    """Turn hats' columns (..., C) [px] into angles (..., C) [rad] in the room; NaN stays NaN.
+
+    Args:
+        columns: one per webcam.
+        webcams: (C, 4).
+        width: of the images [px].
+    """
+    focal = width / 2.0 / np.tan(webcams[:, RANGE] / 2.0)
+    return np.asarray(webcams[:, HEADING] + np.arctan2((width - 1) / 2.0 - columns, focal))
+
+
+def triangulate(angles: Floats, webcams: Floats) -> Floats:
+    """Find the places (T, 2) [m] that angles (T, C) [rad] point at; NaN where no two webcams do.
+
+    Every pair of webcams that sees the hat gives a point. The paper does not say how they are put together:
+    here by their mean, weighted by the squared sine of the angle at which their lines meet.
+    """
+    total, weight = np.zeros((len(angles), 2)), np.zeros(len(angles))
+    for a, b in combinations(range(len(webcams)), 2):
+        one, other = angles[:, a], angles[:, b]
+        sine = np.sin(other - one)
+        between = webcams[b, :2] - webcams[a, :2]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            along = (between[0] * np.sin(other) - between[1] * np.cos(other)) / sine
+        point = webcams[a, :2] + along[:, None] * np.stack([np.cos(one), np.sin(one)], axis=1)
+        counts = np.where(np.abs(sine) >= math.sin(LEAST_ANGLE_RAD), sine**2, 0.0)
+        is_known = np.isfinite(point).all(axis=1) & (counts > 0.0)
+        total[is_known] += counts[is_known, None] * point[is_known]
+        weight[is_known] += counts[is_known]
+    with np.errstate(invalid="ignore"):
+        return np.asarray(total / np.where(weight > 0.0, weight, np.nan)[:, None])
+
+
+def calibrate(columns: Floats, known_m: Floats, guess: Floats, width: int) -> Floats:
+    """Fit the 16 numbers of four webcams, (C, 4), to hats' columns (T, C) at known places (T, 2) [m].
+
+    Source: 2003 paper, section 4: the mean distance of the triangulated places from the known ones is made as
+    small as it can be; here that of their squares.
+
+    Raises:
+        BadInput: a webcam never sees the hat, or there are fewer known places than the fit needs.
+    """
+    for number, seen in enumerate(np.isfinite(columns).sum(axis=0)):
+        if seen < len(guess[0]):
+            raise BadInput(f"webcam {number + 1}: sees the hat at {seen} known places; 4 are needed")
+
+    def residuals(flat: Floats) -> Floats:
+        webcams = flat.reshape(guess.shape)
+        found = triangulate(bearings(columns, webcams, width), webcams)
+        return np.nan_to_num(found - known_m, nan=1.0).ravel()
+
+    return np.asarray(least_squares(residuals, guess.ravel(), x_scale=0.1).x.reshape(guess.shape))
+
+
+# The green hat in a webcam's image (2003 paper, section 4).
+
+HUES: Final = (45, 75)  # of green, in OpenCV's half degrees
+LEAST_SATURATION: Final = 110
+LEAST_VALUE: Final = 40
+LEAST_PX: Final = 12
+
+
+def hat_column(image: NDArray[np.uint8]) -> float | None:
+    """Find the middle column [px] of the hat in an (H, W, 3) sRGB image; None if it is not seen whole."""
+    hsv = cv2.cvtColor(image, cv2.COLOR_RGB2HSV)
+    low = np.array([HUES[0], LEAST_SATURATION, LEAST_VALUE])
+    mask = cv2.inRange(hsv, low, np.array([HUES[1], 255, 255]))
+    count, _, stats, centres = cv2.connectedComponentsWithStats(mask)
+    if count < 2:
+        return None
+    largest = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
+    left, _, width, _, area = stats[largest].tolist()
+    if area < LEAST_PX or left == 0 or left + width == image.shape[1]:
+        return None
+    return float(centres[largest, 0])
+
+
+Floats = NDArray[np.float64]
+
+SCENE: Final = "corner_webcams"
+KNOWN: Final = 12  # of the places where the person stands
+SKEW_S: Final = 0.2
+RATE_HZ: Final = 3  # of the panorama
+_STILL_M_S: Final = 0.05
+_EARS: Final = slice(3, 5)  # of the 17 joints
+_GUESS_OFF: Final = (0.2, 0.2, math.radians(5.0), math.radians(3.0))  # of a webcam that was put up by hand
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WebcamErrors:
+    """Mean distances [m] of the triangulated hat from where it is, the middle between the ears.
+
+    Bearings are those from the robot while the person walks; `panorama` are those of the silhouette in the
+    panorama, as the paper's tracker tells them, held against what is named.
+
+    Attributes:
+        in_sample_m: at the known places, to which the webcams were fitted.
+        new_m: standing at other places.
+        walking_m: walking, all webcams at once.
+        skewed_m: walking, the webcams one after the other within `SKEW_S`.
+        bearing_deg: mean error [deg] of the bearing by all webcams at once.
+        skewed_bearing_deg: the same with the webcams one after the other.
+        panorama_truth: errors [deg] of the panorama's bearing.
+        panorama_at_once: differences [deg] of the panorama's bearing from that of all webcams at once.
+        panorama_skewed: the same with the webcams one after the other.
+        panorama_late: the same with all webcams `SKEW_S` later than the panorama.
+    """
+
+    in_sample_m: float
+    new_m: float
+    walking_m: float
+    skewed_m: float
+    bearing_deg: float
+    skewed_bearing_deg: float
+    panorama_truth: ErrorSummary
+    panorama_at_once: ErrorSummary
+    panorama_skewed: ErrorSummary
+    panorama_late: ErrorSummary
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Film:
+    """What there is to triangulate.
+
+    Attributes:
+        columns: (T, C) of the hat in the webcams [px].
+        hat_m: (T, 2) where it is.
+        is_still: (T,) whether the person stands.
+        seen_rad: (T,) bearing in the room of the silhouette in the panorama; NaN where there is none.
+    """
+
+    columns: Floats
+    hat_m: Floats
+    is_still: NDArray[np.bool_]
+    seen_rad: Floats
+
+
+def measure_webcams(seed: int) -> WebcamErrors:
+    """Play the scene, calibrate the webcams at known places, and measure.
+
+    Raises:
+        BadInput: a webcam sees the hat too seldom; if the path tells, before the scene is played.
+    """
+    scenario = load_scenario(SCENE)
+    config = with_panorama(scenario.world(seed))
+    cameras = webcam_names(config)
+    true = true_webcams(config, cameras)
+    check_views(true, np.array([point.at_m for point in config.people[0].path[:KNOWN]]))
+    film = _shoot(config, cameras, round(scenario.duration_s * config.control_hz))
+    width = config.robot.cameras[cameras[0]].camera.width
+    places = _standing(film)
+    columns = np.array([film.columns[place].mean(axis=0) for place in places])
+    stood = np.array([film.hat_m[place].mean(axis=0) for place in places])
+    guess = true + stream(seed, "webcams.guess").uniform(-1.0, 1.0, true.shape) * _GUESS_OFF
+    webcams = calibrate(columns[:KNOWN], stood[:KNOWN], guess, width)
+    found = triangulate(bearings(columns, webcams, width), webcams)
+    off = np.hypot(*(found - stood).T)
+
+    walk, robot = slice(places[-1].stop, None), np.array(config.robot.at_m)
+    true_m, seen_rad = film.hat_m[walk], film.seen_rad[walk]
+    at_once, skewed, late = (
+        triangulate(bearings(told[walk], webcams, width), webcams)
+        for told in (
+            film.columns,
+            _skew(film.columns, config.control_hz),
+            _late(film.columns, config.control_hz),
+        )
+    )
+    return WebcamErrors(
+        in_sample_m=float(np.nanmean(off[:KNOWN])),
+        new_m=float(np.nanmean(off[KNOWN:])),
+        walking_m=float(np.nanmean(np.hypot(*(at_once - true_m).T))),
+        skewed_m=float(np.nanmean(np.hypot(*(skewed - true_m).T))),
+        bearing_deg=float(np.nanmean(_between(_bearing(at_once, robot), _bearing(true_m, robot)))),
+        skewed_bearing_deg=float(np.nanmean(_between(_bearing(skewed, robot), _bearing(true_m, robot)))),
+        panorama_truth=_summary(seen_rad, true_m, robot),
+        panorama_at_once=_summary(seen_rad, at_once, robot),
+        panorama_skewed=_summary(seen_rad, skewed, robot),
+        panorama_late=_summary(seen_rad, late, robot),
+    )
+
+
+def with_panorama(config: WorldConfig) -> WorldConfig:
+    """Mount the panoramic camera, at the paper's rate, too."""
+    cameras = {**config.robot.cameras, PANORAMA: PanoramaConfig(rate_hz=RATE_HZ)}
+    return replace(config, robot=replace(config.robot, cameras=cameras))
+
+
+def webcam_names(config: WorldConfig) -> list[str]:
+    """Name the webcams of the scene."""
+    return [name for name in config.robot.cameras if name.startswith("webcam")]
+
+
+def check_views(webcams: Floats, places_m: Floats) -> None:
+    """Refuse webcams (C, 4) that look past the known places (T, 2) [m].
+
+    Raises:
+        BadInput: one has fewer of them in its field of view than its four numbers need.
+    """
+    for number, (x, y, heading, view) in enumerate(webcams.tolist(), 1):
+        off = np.arctan2(places_m[:, 1] - y, places_m[:, 0] - x) - heading
+        seen = np.count_nonzero(np.abs(np.angle(np.exp(1j * off))) < view / 2.0)
+        if seen < webcams.shape[1]:
+            raise BadInput(f"webcam {number}: looks at {seen} of the known places; 4 are needed")
+
+
+def _shoot(config: WorldConfig, cameras: Sequence[str], frames: int) -> _Film:
+    background = _empty_room(config)
+    columns = np.full((frames, len(cameras)), np.nan)
+    hat, speed, seen = np.zeros((frames, 2)), np.zeros(frames), np.full(frames, np.nan)
+    with World(config) as world:
+        for frame in range(frames):
+            images = world.observe().images
+            found = [hat_column(images[camera]) for camera in cameras]
+            columns[frame] = [math.nan if column is None else column for column in found]
+            if PANORAMA in images:
+                seen[frame] = _seen(images[PANORAMA], background, config.robot.heading_rad)
+            (person,) = world.truth().people
+            hat[frame], speed[frame] = _hat_of(person), math.hypot(*person.velocity_m_s)
+            world.step(0.0, 0.0)
+    return _Film(columns, hat, speed < _STILL_M_S, seen)
+
+
+def _empty_room(config: WorldConfig) -> Background:
+    """Learn the background without the person, who is in the scene from its start."""
+    duration_s = EMPTY_IMAGES / RATE_HZ
+    return learn_background([image for image, _ in panoramas(replace(config, people=()), duration_s)])
+
+
+def _seen(image: NDArray[np.uint8], background: Background, heading_rad: float) -> float:
+    """Tell where in the room the silhouette is [rad]; NaN if there is none."""
+    figure = measure(background.silhouette(image), PanoramicConfig().least_px)
+    return math.nan if figure is None else heading_rad + figure.bearing_rad
+
+
+def _hat_of(person: PersonTruth) -> Floats:
+    return np.asarray(person.joints_m[_EARS, :2].mean(axis=0))
+
+
+def _standing(film: _Film) -> list[slice]:
+    """Find the spans in which the person stands for a second or more, the middle of each."""
+    edges = np.diff(np.concatenate([[0], film.is_still.astype(np.int8), [0]]))
+    spans = zip(np.flatnonzero(edges == 1).tolist(), np.flatnonzero(edges == -1).tolist(), strict=True)
+    return [slice(start + 4, end - 2) for start, end in spans if end - start >= 15 and end < len(film.hat_m)]
+
+
+def true_webcams(config: WorldConfig, cameras: Sequence[str]) -> Floats:
+    """Give x, y [m], heading and angle of view [rad] of the webcams in the room, (C, 4)."""
+    return np.array([_true_webcam(config, name) for name in cameras])
+
+
+def _true_webcam(config: WorldConfig, name: str) -> tuple[float, float, float, float]:
+    camera = flat_geometry(config.robot.cameras, name)
+    (x, y), turn = config.robot.at_m, config.robot.heading_rad
+    ahead, aside, _ = camera.position_m
+    cosine, sine = math.cos(turn), math.sin(turn)
+    view = 2.0 * math.atan(camera.width / 2.0 / camera.focal_px)
+    return x + cosine * ahead - sine * aside, y + sine * ahead + cosine * aside, turn + camera.yaw_rad, view
+
+
+def _skew(columns: Floats, rate_hz: int) -> Floats:
+    """Let each webcam's columns (T, C) come later than those of the one before it, the last by `SKEW_S`."""
+    late = columns.copy()
+    for number in range(columns.shape[1]):
+        frames = round(SKEW_S * rate_hz * number / (columns.shape[1] - 1))
+        late[frames:, number] = columns[: len(columns) - frames, number]
+    return late
+
+
+def _late(columns: Floats, rate_hz: int) -> Floats:
+    """Let all webcams' columns (T, C) come later by `SKEW_S`."""
+    frames, late = round(SKEW_S * rate_hz), columns.copy()
+    late[frames:] = columns[:-frames]
+    return late
+
+
+def _bearing(places_m: Floats, robot_m: Floats) -> Floats:
+    """Tell where places (T, 2) [m] are from the robot, (T,) [rad] in the room."""
+    return np.asarray(np.arctan2(*(places_m - robot_m).T[::-1]), np.float64)
+
+
+def _between(one_rad: Floats, other_rad: Floats) -> Floats:
+    """Give the angles (T,) between directions, in 0..180 [deg]."""
+    return np.asarray(np.degrees(np.abs(np.angle(np.exp(1j * (one_rad - other_rad))))), np.float64)
+
+
+def _summary(seen_rad: Floats, places_m: Floats, robot_m: Floats) -> ErrorSummary:
+    """Sum up [deg] where both the panorama and the other measurement tell a bearing."""
+    off = _between(seen_rad, _bearing(places_m, robot_m))
+    return ErrorSummary.of(off[np.isfinite(off)])

@@ -1,0 +1,318 @@
+"""How the panoramic camera sits on the robot: figure 1 of the 2003 paper, as a drawing to scale."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon, Rectangle
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.sim.cameras.camera_config import PanoramaConfig
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.geometry.mirror import Mirror
+from peopleboy.sim.world import World
+from peopleboy.studies.reproductions.evaluations.webcam_positions import (
+    HEADING,
+    RANGE,
+    SCENE,
+    X,
+    Y,
+    hat_column,
+    true_webcams,
+    webcam_names,
+)
+from peopleboy.studies.reproductions.pictures.canvas import canvas, label
+from peopleboy.studies.training.distance_learning.distance_examples import Examples, panoramas
+from peopleboy.studies.training.distance_learning.distance_trials import SplitTrial, told_in_turn
+from peopleboy.studies.training.distance_learning.walks import filtered
+from peopleboy.tracker.panoramic.paper.background import EMPTY_IMAGES, Background, learn_background
+from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure, measure
+from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig
+from peopleboy.tracker.panoramic.paper.position_filter import PRINTED, PositionFilter
+
+SET_UP_SCENE: Final = "room_long"
+_SET_UP_S: Final = 8.0
+_FARTHEST_M: Final = 6.0
+_RAY, _BODY, _MIRROR = "#d95f02", "#9aa3ad", "#1f78b4"
+
+
+def draw_set_up() -> Figure:
+    """Draw lens, mirror and lines of sight from the side, and the round image that the lens sees."""
+    page = canvas(2.5)
+    side, close, raw = page.subplots(1, 3, gridspec_kw={"width_ratios": (1.6, 0.8, 1)})
+    mirror = PanoramaConfig().camera.mirror
+    _draw_side(side, mirror)
+    _draw_mirror(close, mirror)
+    raw.imshow(_round_image())
+    raw.set_axis_off()
+    label(raw, "what the lens sees")
+    return page
+
+
+def _draw_side(axes: Axes, mirror: Mirror) -> None:
+    """Draw the robot, a person, and the steepest and the flattest line of sight."""
+    axes.add_patch(Rectangle((-0.2, 0.0), 0.4, 1.2, color=_BODY))
+    axes.add_patch(Rectangle((-0.03, 1.2), 0.06, mirror.apex_m - 1.2, color=_BODY))
+    steep, flat = mirror.axis_rad, mirror.axis_rad - mirror.lens_half_angle_rad
+    for angle in (steep, flat):
+        reach = min(mirror.ring_height_m / math.tan(angle), _FARTHEST_M)
+        axes.plot(
+            [0.0, reach], [mirror.ring_height_m, mirror.ring_height_m - reach * math.tan(angle)], color=_RAY
+        )
+    axes.add_patch(Rectangle((3.0 - 0.18, 0.0), 0.36, 1.5, color="#cfd8c8"))
+    axes.add_patch(Rectangle((3.0 - 0.1, 1.52), 0.2, 0.23, color="#cfd8c8"))
+    axes.axhline(0.0, color="black", linewidth=0.8)
+    axes.set_xlim(-0.5, _FARTHEST_M)
+    axes.set_ylim(-0.1, 2.0)
+    axes.set_aspect("equal")
+    words = f"{math.degrees(flat):.0f} to {math.degrees(steep):.0f} deg below the horizon"
+    label(axes, f"{words}, from {mirror.ring_height_m:.2f} m", "m", "m")
+
+
+def _draw_mirror(axes: Axes, mirror: Mirror) -> None:
+    """Draw the cone over the lens, and how it turns the lens's rays outwards."""
+    radius = 0.09
+    top = mirror.apex_m + radius / math.tan(mirror.half_apex_rad)
+    axes.add_patch(Polygon([(0.0, mirror.apex_m), (radius, top), (-radius, top)], color=_MIRROR, alpha=0.6))
+    lens = mirror.apex_m - mirror.lens_m
+    axes.plot(0.0, lens, "ko", markersize=5)
+    for angle in np.linspace(0.12, 0.98, 4) * mirror.lens_half_angle_rad:
+        x, y = _met(mirror, float(angle))
+        down = mirror.axis_rad - angle
+        axes.plot(
+            [0.0, x, x + 0.1 * math.cos(down)], [lens, y, y - 0.1 * math.sin(down)], color=_RAY, linewidth=1.0
+        )
+    axes.set_xlim(-0.1, 0.16)
+    axes.set_aspect("equal")
+    label(axes, "cone and lens", "m", "")
+
+
+def _met(mirror: Mirror, angle: float) -> tuple[float, float]:
+    """Tell where the ray that leaves the lens at an angle [rad] off its axis meets the mirror: x, y [m]."""
+    # x = (y - lens) tan(angle) and x = (y - apex) tan(half apex)
+    spread, side = math.tan(angle), math.tan(mirror.half_apex_rad)
+    y = (mirror.apex_m * side - (mirror.apex_m - mirror.lens_m) * spread) / (side - spread)
+    return (y - mirror.apex_m) * side, y
+
+
+def _round_image() -> NDArray[np.uint8]:
+    config = load_scenario(SET_UP_SCENE).world(0)
+    with World(_with_round_image(config)) as world:
+        for _ in range(round(_SET_UP_S * config.control_hz)):
+            world.step(0.0, 0.0)
+        return np.asarray(world.observe().images["panorama_raw"], np.uint8)
+
+
+def _with_round_image(config: WorldConfig) -> WorldConfig:
+    cameras = {**config.robot.cameras, "panorama": PanoramaConfig(raw=True)}
+    return replace(config, robot=replace(config.robot, cameras=cameras))
+
+
+# How features are taken from a panorama: figure 4 of the 2003 paper.
+
+Picture = NDArray[np.uint8]
+
+FEATURES_SCENE: Final = "room_long"
+FEATURES_S: Final = 12.0
+_SHARES: Final = {"height_ratios": (1, 1, 0.45, 1), "width_ratios": (1, 0.13)}
+_MARK: Final = "#d95f02"
+
+
+def draw_features() -> Figure:
+    """Film the beginning of a scenario; draw a panorama, what differs from the background, and the cues."""
+    scenario = load_scenario(FEATURES_SCENE)
+    images = [image for image, _ in panoramas(scenario.world(0), FEATURES_S)]
+    background = learn_background(images[:EMPTY_IMAGES])
+    figure = measure(background.silhouette(images[-1]), PanoramicConfig().least_px)
+    if figure is None:
+        raise BadInput(f"{FEATURES_SCENE}: nobody is seen at {FEATURES_S:g} s")
+    return _drawn(images[-1], background, figure)
+
+
+def _drawn(image: Picture, background: Background, found: MeasuredFigure) -> Figure:
+    page = canvas(7.2)
+    grid = page.subplots(4, 2, gridspec_kw=_SHARES)
+    for axes in (grid[0, 1], grid[2, 1], grid[3, 1]):
+        axes.set_axis_off()
+    _show_stretched(grid[0, 0], image, "a) panorama: the robot's back, left, front, right, and back")
+    difference = np.abs(image.astype(np.float64) - background.mean).max(axis=2)
+    _show_stretched(
+        grid[1, 0], difference, "b) difference from the background, and histograms of rows and columns"
+    )
+    grid[1, 1].barh(np.arange(len(found.rows)), found.rows, 1.0, color="#1f78b4")
+    grid[1, 1].set_ylim(len(found.rows) - 0.5, -0.5)
+    grid[2, 0].bar(np.arange(len(found.columns)), found.columns, 1.0, color="#1f78b4")
+    grid[2, 0].set_xlim(-0.5, len(found.columns) - 0.5)
+    for axes in (grid[1, 1], grid[2, 0]):
+        label(axes)
+    cues, bearing = found.cues, np.degrees(found.bearing_rad)
+    title = (
+        f"c) what is above the threshold: width {cues.width_px:.0f} px, {cues.gap_px:.0f} px to the bottom, "
+        f"{cues.area_px:.0f} px in all, {abs(bearing):.1f} deg to the {'left' if bearing > 0.0 else 'right'}"
+    )
+    _show_stretched(grid[3, 0], background.silhouette(image), title)
+    _mark(grid[3, 0], found)
+    return page
+
+
+def _show_stretched(axes: Axes, image: NDArray[np.generic], title: str) -> None:
+    axes.imshow(image, cmap="gray", interpolation="nearest", aspect="auto")
+    axes.set_title(title, fontsize=9, loc="left")
+    axes.set_axis_off()
+
+
+def _mark(axes: Axes, found: MeasuredFigure) -> None:
+    """Draw the person's box, the mean column, and the way to the lower border."""
+    left, top, width, height = found.box
+    right, bottom, border = left + width, top + height, len(found.rows) - 0.5
+    axes.plot([left, right, right, left, left], [top, top, bottom, bottom, top], color=_MARK, linewidth=1.0)
+    axes.plot([found.mean_column] * 2, [top, bottom], color=_MARK, linewidth=0.8, linestyle=":")
+    axes.annotate(
+        "", (right + 6, border), (right + 6, bottom), arrowprops={"arrowstyle": "<->", "color": _MARK}
+    )
+
+
+# The external measurement in pictures: figures 2 and 3 of the 2003 paper.
+
+_WEBCAMS_S: Final = 3.0
+_STEP_M: Final = 0.05
+
+
+def draw_webcam_images() -> Figure:
+    """Draw what the four webcams see at one instant, and where the hat was found."""
+    config = load_scenario(SCENE).world(0)
+    names = webcam_names(config)
+    with World(config) as world:
+        for _ in range(round(_WEBCAMS_S * config.control_hz)):
+            world.step(0.0, 0.0)
+        seen = world.observe().images
+        images = {name: seen[name] for name in names}
+    figure = canvas(4.4, 5.6)
+    for axes, name in zip(figure.subplots(2, 2).flat, names, strict=True):
+        axes.imshow(images[name])
+        axes.set_axis_off()
+        column = hat_column(images[name])
+        label(axes, f"{name}: hat {'not seen whole' if column is None else f'at column {column:.1f}'}")
+        if column is not None:
+            axes.axvline(column, color="#d95f02", linewidth=1.0)
+    return figure
+
+
+def draw_fields_of_view() -> Figure:
+    """Draw the floor plan with the webcams and the robot, shaded by how many webcams see a place."""
+    scenario = load_scenario(SCENE)
+    config = scenario.world(0)
+    webcams = true_webcams(config, webcam_names(config))
+    floor = scenario.plan.bounds()
+    low_x, low_y, high_x, high_y = floor.min_x, floor.min_y, floor.max_x, floor.max_y
+    x, y = np.meshgrid(np.arange(low_x, high_x, _STEP_M), np.arange(low_y, high_y, _STEP_M))
+    seen = sum(
+        np.abs(np.angle(np.exp(1j * (np.arctan2(y - one[Y], x - one[X]) - one[HEADING])))) < one[RANGE] / 2.0
+        for one in webcams
+    )
+    figure = canvas(4.6)
+    axes = figure.subplots()
+    drawn = axes.pcolormesh(
+        x, y, seen, cmap="Greens", vmin=-0.5, vmax=4.5, shading="nearest", rasterized=True
+    )
+    figure.colorbar(drawn, ax=axes, ticks=range(5), label="webcams that see it", shrink=0.8)
+    axes.plot(webcams[:, X], webcams[:, Y], "o", color="#d95f02", markersize=9)
+    axes.add_patch(Rectangle((low_x, low_y), high_x - low_x, high_y - low_y, fill=False, linewidth=1.5))
+    axes.plot(*config.robot.at_m, "s", color="#d64541", markersize=10)
+    axes.annotate("robot", config.robot.at_m, (10, -2), textcoords="offset points", fontsize=8, color="white")
+    axes.set_aspect("equal")
+    label(axes, "", "m", "m")
+    return figure
+
+
+# Curves of what was measured in films: figures 5 and 6 of the 2003 paper, and errors over the distance.
+
+Floats = NDArray[np.float64]
+
+_TRUE_COLOUR, _MODEL, _FILTER = "#1a1a1a", "#d95f02", "#1f78b4"
+_PEOPLE: Final = ("#1f78b4", "#d95f02")
+_ROOMS: Final = ("#1f78b4", "#d95f02", "#66a61e")
+_FRAGMENT: Final = slice(60, 110)  # of a film's images: some 17 s
+_CLASS_M, _LEAST = 0.5, 30  # width of a class of distances, and images that it must have
+
+
+def draw_correlations(run: Examples, names: Sequence[str]) -> Figure:
+    """Draw each cue of a film, and what the network tells, over the true distance."""
+    told = told_in_turn(run, SplitTrial(split="random"))
+    figure = canvas(5.6)
+    for axes, name, values in zip(figure.subplots(2, 2).flat, names, (*run.cues.T, told), strict=True):
+        for person, colour in zip(np.unique(run.person).tolist(), _PEOPLE, strict=False):
+            is_here = run.person == person
+            axes.plot(
+                run.distance_m[is_here],
+                values[is_here],
+                ".",
+                markersize=2.5,
+                color=colour,
+                label=f"person {person}",
+            )
+        r = np.corrcoef(values, run.distance_m)[0, 1]
+        label(axes, f"{name}: r = {r:.3f}", "true distance [m]", "m" if values is told else "px")
+    figure.axes[0].legend(fontsize=7, frameon=False, markerscale=3)
+    return figure
+
+
+def draw_path(run: Examples) -> Figure:
+    """Draw a piece of a path on the floor: true, by the model alone, and with the filter."""
+    measured = run.seen_at(told_in_turn(run, SplitTrial(split="blocks")))
+    smooth = filtered(run, measured, PositionFilter(PRINTED, uses_velocity=True))
+    figure = canvas(4.6)
+    axes = figure.subplots()
+    for name, place, colour, style, width in (
+        ("true", run.true_m, _TRUE_COLOUR, "-", 2.0),
+        ("appearance model", measured, _MODEL, "x-", 0.6),
+        ("with Kalman filter", smooth, _FILTER, "o-", 1.2),
+    ):
+        x, y = place[_FRAGMENT].T
+        axes.plot(-y, x, style, color=colour, linewidth=width, markersize=3, label=name)
+    axes.plot(0.0, 0.0, "s", color="#d64541", markersize=9)
+    axes.annotate("robot", (0.0, 0.0), (8, 6), textcoords="offset points", fontsize=8)
+    axes.set_aspect("equal")
+    axes.legend(fontsize=8, frameon=False)
+    label(axes, "", "to the robot's right [m]", "ahead [m]")
+    return figure
+
+
+def draw_ranges(films: Mapping[str, Sequence[Examples]]) -> Figure:
+    """Draw the mean error of the distance over the distance, by room; nobody is tested on whom it learned."""
+    figure = canvas(3.4)
+    axes = figure.subplots()
+    for (room, runs), colour in zip(films.items(), _ROOMS, strict=False):
+        distance = np.concatenate([run.distance_m for run in runs])
+        errors = np.concatenate(
+            [np.abs(told_in_turn(run, SplitTrial(split="blocks")) - run.distance_m) for run in runs]
+        )
+        middles, means, spreads = error_by_range(distance, errors)
+        axes.plot(middles, means, "o-", color=colour, markersize=4, label=room)
+        axes.fill_between(
+            middles, np.maximum(means - spreads, 0.0), means + spreads, color=colour, alpha=0.12, linewidth=0
+        )
+    axes.set_ylim(bottom=0.0)
+    axes.grid(axis="y", linewidth=0.4, alpha=0.6)
+    axes.legend(fontsize=8, frameon=False, loc="upper left")
+    label(axes, "", "true distance [m]", "error of the distance [m]")
+    return figure
+
+
+def error_by_range(distance_m: Floats, errors_m: Floats) -> tuple[Floats, Floats, Floats]:
+    """Give the middles [m] of classes of distances, and mean and deviation of the errors there, each (K,)."""
+    number = np.floor(distance_m / _CLASS_M).astype(np.int64)
+    known = [k for k in np.unique(number).tolist() if np.count_nonzero(number == k) >= _LEAST]
+    return (
+        (np.array(known, np.float64) + 0.5) * _CLASS_M,
+        np.array([errors_m[number == k].mean() for k in known]),
+        np.array([errors_m[number == k].std() for k in known]),
+    )

@@ -1,1 +1,0 @@
-"""One parameter of the thesis's tracker after the other, by area accuracy."""

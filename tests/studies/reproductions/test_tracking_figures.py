@@ -1,0 +1,52 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from peopleboy.studies.reproductions.pictures.tracking_figures import (
+    EXAMPLE,
+    fitness_grey,
+    score_error,
+    score_example,
+    shared,
+    stretches,
+)
+from peopleboy.tracker.thermal.particles import draw_prior
+from peopleboy.tracker.thermal.variants import THESIS
+
+
+@pytest.mark.parametrize(
+    ("frames", "found"),
+    [([], []), ([4], [(4, 4)]), ([1, 2, 3, 7, 8, 10], [(1, 3), (7, 8), (10, 10)])],
+)
+def test_frames_fall_into_unbroken_stretches(frames: list[int], found: list[tuple[int, int]]) -> None:
+    assert list(stretches(frames)) == found
+
+
+def test_where_nothing_differs_nothing_fits_and_no_fit_is_beyond_the_cap() -> None:
+    rng = np.random.default_rng(0)
+    samples = draw_prior(200, (240, 320), THESIS.motion, THESIS.detector, rng)
+    assert np.all(fitness_grey(np.full((240, 320), 90, np.uint8), samples) == 0.0)
+    noise = rng.integers(0, 240, (240, 320)).astype(np.uint8)
+    assert 0.0 < np.abs(fitness_grey(noise, samples)).max() <= 40.0
+
+
+def test_only_what_looks_beyond_single_frames_sees_swapped_tracks() -> None:
+    right, swapped, fetched = (score_error(name) for name in ("a) correct", "c) swapping", "d) fetching"))
+    assert swapped.thesis == right.thesis
+    assert swapped.paper.adc == right.paper.adc
+    assert right.mot.identity.idf1 == 100.0 > swapped.mot.identity.idf1
+    assert fetched.thesis.cr < right.thesis.cr == 100.0
+
+
+def test_the_example_of_metrics_is_as_the_equations_say() -> None:
+    areas = [shared(EXAMPLE.targets[one], EXAMPLE.candidates[other]) for one, other in EXAMPLE.matches]
+    both = sum(width * height for _, _, width, height in areas)
+    targets, candidates = (
+        float(np.prod(boxes[:, 2:], axis=1).sum()) for boxes in (EXAMPLE.targets, EXAMPLE.candidates)
+    )
+    found = score_example().thesis
+    assert (found.cr, found.cp, found.ca) == pytest.approx(
+        (200 / 3, 200 / 3, 200 / 3)
+    )  # equations 3.1 to 3.3
+    assert found.aa == pytest.approx(100 * 2 * both / (targets + candidates))  # equation 3.6

@@ -1,0 +1,1 @@
+"""Where the tracker by detection looks, and by what."""
