@@ -16,7 +16,6 @@ from peopleboy.tracker.attention.people.attentive_config import AS_FOUND
 from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
 from peopleboy.tracker.attention.people.colour_look import ColourLook
 from peopleboy.tracker.attention.people.recogniser import ByColour, ByFocus, Spotted
-from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
 from peopleboy.tracker.frame import Calibration, Frame
 from peopleboy.tracker.fusion.ahead_tracker import AheadTracker
 from peopleboy.tracker.fusion.fused_tracker import FusedTracker
@@ -33,6 +32,7 @@ from peopleboy.tracker.rgbd.verification.window_model import shipped_windows
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.thermal.variants import VARIANTS
 from peopleboy.tracker.track import Box, Track
+from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
 
 
 @runtime_checkable
@@ -102,8 +102,8 @@ def _contour_tracker(name: str, rng: np.random.Generator) -> PeopleTracker:
     return PeopleTracker(VARIANTS[name], rng)
 
 
-def _by_detection_tracker(rng: np.random.Generator) -> ByDetectionTracker:  # noqa: ARG001
-    return ByDetectionTracker()
+def _by_detection_tracker(rng: np.random.Generator) -> DetectionTracker:  # noqa: ARG001
+    return DetectionTracker()
 
 
 def _panoramic_paper_tracker(rng: np.random.Generator) -> PanoramicPaperTracker:  # noqa: ARG001

@@ -1,4 +1,4 @@
-"""The detector as it is, or as far as one of its looks, or an absolute threshold in its place."""
+"""The detector up to one of its stages, or an absolute threshold in its place."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from typing import Final
 import numpy as np
 
 from benchmarks.peers.detectors import Blobs
-from peopleboy.tracker.by_detection.config import ByDetectionConfig
-from peopleboy.tracker.by_detection.looking.finder import Finder, ThermalFinder
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, Grey, PeopleDetector, look
 from peopleboy.tracker.proposals.looks.second_look import look_again, shipped_network
 from peopleboy.tracker.proposals.model import shipped_model
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.thermal.mount import Mount
+from peopleboy.tracker.tracking.config import DetectionTrackerConfig
+from peopleboy.tracker.tracking.people_finder import Finder, ThermalFinder
 
-LEAST: Final = ByDetectionConfig().existence.weakest
+LEAST: Final = DetectionTrackerConfig().existence.weakest
 _SURE: Final = 3.0  # log odds of a warm blob
 
 

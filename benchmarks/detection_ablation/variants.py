@@ -9,11 +9,11 @@ from typing import Final
 
 from benchmarks.detection_ablation.film import Film
 from benchmarks.detection_ablation.stages import Stage, thermal_finder
-from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
-from peopleboy.tracker.by_detection.config import ByDetectionConfig, ExistenceConfig, RecognitionConfig
 from peopleboy.tracker.track import Track
+from peopleboy.tracker.tracking.config import DetectionTrackerConfig, ExistenceConfig, ReidentificationConfig
+from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
 
-_ALL: Final = ByDetectionConfig()
+_ALL: Final = DetectionTrackerConfig()
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,18 +22,18 @@ class Variant:
 
     Attributes:
         config: its settings.
-        stage: how far its detector looks, at the thermal image alone; None for all of it, at colours, too.
+        stage: the last stage of its detector, on the thermal image; None for all, and the colour image.
         is_calibrated: whether it is known how cameras sit.
     """
 
-    config: ByDetectionConfig = _ALL
+    config: DetectionTrackerConfig = _ALL
     stage: Stage | None = None
     is_calibrated: bool = True
 
     def tracked(self, film: Film) -> list[tuple[Track, ...]]:
         """Follow people in all frames."""
         find = None if self.stage is None else thermal_finder(self.stage)
-        tracker = ByDetectionTracker(self.config, find)
+        tracker = DetectionTracker(self.config, find)
         return [
             tracker.update(frame) for frame in (film if self.is_calibrated else film.uncalibrated()).frames
         ]
@@ -43,18 +43,22 @@ def _without_doubt(old: ExistenceConfig) -> ExistenceConfig:
     return replace(old, shared_doubt=0.0)
 
 
-def _without_revision(old: RecognitionConfig) -> RecognitionConfig:
-    return replace(old, parted_s=math.inf, gone_s=math.inf)
+def _without_revision(old: ReidentificationConfig) -> ReidentificationConfig:
+    return replace(old, parted_s=math.inf, lost_s=math.inf)
 
 
-_EVERYBODY: Final = replace(_ALL, gaze=replace(_ALL.gaze, look_s=0.0, anew_s=0.0))
-_OFTEN: Final = replace(_EVERYBODY, gaze=replace(_EVERYBODY.gaze, settled_s=_ALL.gaze.unsettled_s))
-_EVERYWHERE: Final = replace(_ALL, gaze=replace(_ALL.gaze, unsettled_s=0.0, settled_s=0.0, anew_s=0.0))
+_EVERYBODY: Final = replace(_ALL, schedule=replace(_ALL.schedule, rescore_s=0.0, anew_s=0.0))
+_OFTEN: Final = replace(
+    _EVERYBODY, schedule=replace(_EVERYBODY.schedule, settled_s=_ALL.schedule.unsettled_s)
+)
+_EVERYWHERE: Final = replace(
+    _ALL, schedule=replace(_ALL.schedule, unsettled_s=0.0, settled_s=0.0, anew_s=0.0)
+)
 
 VARIANTS: Final[Mapping[str, Variant]] = {
     "as it is": Variant(),
     "nothing is known of the cameras": Variant(is_calibrated=False),
-    "everybody is 1.72 m tall": Variant(replace(_ALL, path=replace(_ALL.path, build=1e-3, posture=0.0))),
+    "everybody is 1.72 m tall": Variant(replace(_ALL, motion=replace(_ALL.motion, build=1e-3, posture=0.0))),
     "the detector looks at everybody in each image": Variant(_EVERYBODY),
     "and every third image is searched everywhere": Variant(_OFTEN),
     "every image is searched everywhere": Variant(_EVERYWHERE),
@@ -72,8 +76,8 @@ VARIANTS: Final[Mapping[str, Variant]] = {
     "no late decisions": Variant(
         replace(
             _ALL,
-            identity=_without_revision(_ALL.identity),
-            identity_uncalibrated=_without_revision(_ALL.identity_uncalibrated),
+            reidentification=_without_revision(_ALL.reidentification),
+            reidentification_uncalibrated=_without_revision(_ALL.reidentification_uncalibrated),
         )
     ),
 }

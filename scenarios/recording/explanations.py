@@ -13,7 +13,6 @@ from peopleboy.scenarios.drawing.palette import Rgb, track_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.recording.marks import Lines, Points, colours_of, lines_of, particle_points
 from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
-from peopleboy.tracker.by_detection.explanation import DetectionExplanation
 from peopleboy.tracker.fusion.fused_explanation import FusedExplanation
 from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.thermal.contour.contour import FEET, SECTIONS
@@ -21,6 +20,7 @@ from peopleboy.tracker.thermal.contour.outline import section_lines
 from peopleboy.tracker.thermal.contour.section_evidence import Evidence, evidence_of
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.track import Track
+from peopleboy.tracker.tracking.association import DetectionExplanation
 
 # ColorBrewer's RdYlBu without its dark ends: against a person, undecided, for one; in thresholds.
 _STEPS = (0.0, 1.0, 2.0)

@@ -16,9 +16,9 @@ from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
 from peopleboy.scenarios.scores.same_scenes import Scene, check_same_scenes
 from peopleboy.scenarios.scores.yardstick import Yardstick
+from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.evaluation.table import FIGURES, spread, to_json
-from peopleboy.tracker.evaluation.uncounted import MIN_VISIBLE
 from peopleboy.tracker.footage.box_kinds import BoxKind
 
 

@@ -11,10 +11,10 @@ from peopleboy.scenarios.run_folder.finished_run import read_run
 from peopleboy.scenarios.run_folder.run_files import check_end, check_whole
 from peopleboy.scenarios.scores.people_scores import ScoredPeople, score_people
 from peopleboy.scenarios.scores.yardstick import Yardstick, boxes_held, kind_of_boxes, own_camera
+from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
-from peopleboy.tracker.evaluation.uncounted import MIN_VISIBLE
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.footage.truth_files import GivenTruth, find_truth, load_truth
 from peopleboy.tracker.frame import THERMAL

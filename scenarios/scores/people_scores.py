@@ -19,9 +19,9 @@ from peopleboy.scenarios.run_folder.run_files import read_table
 from peopleboy.scenarios.run_folder.tables import ROBOT, TRACKS, TRUTH
 from peopleboy.scenarios.scores.yardstick import Yardstick, notes_on
 from peopleboy.sim.config import CONTROL_HZ
+from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from peopleboy.tracker.evaluation.uncounted import MIN_VISIBLE
 from peopleboy.tracker.frame import THERMAL
 
 

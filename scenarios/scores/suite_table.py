@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.run_folder.tables import is_in_image
 from peopleboy.sim.truth.events import OCCLUSION_STARTS
-from peopleboy.tracker.evaluation.uncounted import counts
+from peopleboy.tracker.evaluation.box_matching import counts
 
 GAP_S = 0.5
 

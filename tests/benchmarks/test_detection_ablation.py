@@ -13,10 +13,10 @@ from benchmarks.detection_ablation.stages import LEAST, DetectorOfStage, Stage, 
 from benchmarks.detection_ablation.variants import VARIANTS
 from benchmarks.tracker_ablation import recorded
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.tracker.by_detection.by_detection_tracker import ByDetectionTracker
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import NOBODY
+from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,7 @@ def test_all_looks_together_are_those_of_the_detector(film: Film) -> None:
 
 
 def test_as_it_is_it_is_the_tracker(film: Film) -> None:
-    tracker = ByDetectionTracker()
+    tracker = DetectionTracker()
     expected = [tracker.update(frame) for frame in film.frames]
     assert VARIANTS["as it is"].tracked(film) == expected
     assert expected[-1]

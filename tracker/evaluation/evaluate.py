@@ -6,14 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.evaluation.association import associate, pair_up
+from peopleboy.tracker.evaluation.area_metrics import (
+    PaperMetrics,
+    ThesisMetrics,
+    measure_paper,
+    measure_thesis,
+)
+from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE, Rule, associate, pair_up, settle_uncounted
 from peopleboy.tracker.evaluation.floor import NOWHERE, FloorErrors, Places, measure_floor
-from peopleboy.tracker.evaluation.metrics.mot_metrics import MotMetrics, measure_mot
-from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics, measure_paper
-from peopleboy.tracker.evaluation.metrics.sums import Sums
-from peopleboy.tracker.evaluation.metrics.thesis_metrics import ThesisMetrics, measure_thesis
+from peopleboy.tracker.evaluation.mot_metrics import MotMetrics, Sums, measure_mot
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from peopleboy.tracker.evaluation.uncounted import MIN_VISIBLE, Rule, settle_uncounted
 
 
 @dataclass(frozen=True, slots=True)

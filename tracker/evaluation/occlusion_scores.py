@@ -15,7 +15,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.evaluation.association import associate, pair_up
+from peopleboy.tracker.evaluation.box_matching import associate, pair_up
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
 Floats = NDArray[np.float64]

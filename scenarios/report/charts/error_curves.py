@@ -15,7 +15,7 @@ from peopleboy.scenarios.report.charts.svg import LINE, SERIES, inline, lettered
 from peopleboy.scenarios.report.columns import Column
 from peopleboy.scenarios.report.findings.spans import Floats
 from peopleboy.scenarios.report.findings.summary import RunFindings
-from peopleboy.tracker.evaluation.uncounted import counts
+from peopleboy.tracker.evaluation.box_matching import counts
 
 VISIBLE = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
 _FEWEST = 5  # boxes in a bin, below which a figure says nothing

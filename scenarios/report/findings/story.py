@@ -34,7 +34,7 @@ from peopleboy.sim.truth.events import (
     TOTAL_STARTS,
 )
 from peopleboy.sim.truth.truth import BORDER, counted_m
-from peopleboy.tracker.evaluation.association import associate, pair_up
+from peopleboy.tracker.evaluation.box_matching import associate, pair_up
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.frame import THERMAL

@@ -15,8 +15,7 @@ from peopleboy.studies.reproductions.measuring.delay_units import DelayUnit
 from peopleboy.studies.reproductions.measuring.tracker_settings import Setting
 from peopleboy.studies.reproductions.measuring.units import FilmUnit, Unit, restored
 from peopleboy.studies.reproductions.measuring.workload import Plan
-from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics
-from peopleboy.tracker.evaluation.metrics.thesis_metrics import ThesisMetrics
+from peopleboy.tracker.evaluation.area_metrics import PaperMetrics, ThesisMetrics
 
 RATE_HZ = 15
 COLUMNS = ("frames", "s", "found in 2 s [%]")

@@ -13,11 +13,9 @@ from peopleboy.scenarios.running.frame_cache import Film, film
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import COUNTED_FARTHEST_M, COUNTED_NEAREST_M
 from peopleboy.studies.reproductions.measuring.units import Showing, track_film
-from peopleboy.tracker.evaluation.association import associate, pair_up
-from peopleboy.tracker.evaluation.metrics.paper_metrics import measure_paper
-from peopleboy.tracker.evaluation.metrics.thesis_metrics import measure_thesis
+from peopleboy.tracker.evaluation.area_metrics import measure_paper, measure_thesis
+from peopleboy.tracker.evaluation.box_matching import associate, counts, ignore_uncounted, pair_up
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from peopleboy.tracker.evaluation.uncounted import counts, ignore_uncounted
 
 Flags = NDArray[np.bool_]
 

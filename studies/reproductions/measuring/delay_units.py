@@ -12,7 +12,7 @@ from peopleboy.scenarios.running.frame_cache import film, frames_of
 from peopleboy.sim.random_streams import stream
 from peopleboy.studies.reproductions.measuring.units import Showing
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.evaluation.association import GATE
+from peopleboy.tracker.evaluation.box_matching import GATE
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import confirmed

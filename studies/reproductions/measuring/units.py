@@ -18,12 +18,11 @@ from peopleboy.scenarios.scores.suite_table import count
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import COUNTED_FARTHEST_M, COUNTED_NEAREST_M
 from peopleboy.studies.reproductions.measuring.tracker_settings import Setting
+from peopleboy.tracker.evaluation.area_metrics import PaperMetrics, ThesisMetrics
+from peopleboy.tracker.evaluation.box_matching import Rule
 from peopleboy.tracker.evaluation.evaluate import Counts, evaluate
-from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics
-from peopleboy.tracker.evaluation.metrics.sums import Sums
-from peopleboy.tracker.evaluation.metrics.thesis_metrics import ThesisMetrics
+from peopleboy.tracker.evaluation.mot_metrics import Sums
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
-from peopleboy.tracker.evaluation.uncounted import Rule
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.track import Track, confirmed
 from peopleboy.tracker.trackers import Tracker

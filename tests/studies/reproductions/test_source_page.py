@@ -51,7 +51,7 @@ from peopleboy.studies.reproductions.showing.source_page import (
     write_page,
 )
 from peopleboy.studies.training.distance_learning.image_errors import ImageErrors
-from peopleboy.tracker.evaluation.metrics.paper_metrics import PaperMetrics
+from peopleboy.tracker.evaluation.area_metrics import PaperMetrics
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import refused
 from tests.helpers.some_of import some_of

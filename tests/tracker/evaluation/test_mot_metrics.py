@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 from trackeval.datasets._base_dataset import _BaseDataset
 from trackeval.metrics import CLEAR, HOTA, Identity
 
-from peopleboy.tracker.evaluation.association import pair_up
-from peopleboy.tracker.evaluation.metrics.mot_metrics import MotMetrics, measure_mot
+from peopleboy.tracker.evaluation.box_matching import pair_up
+from peopleboy.tracker.evaluation.mot_metrics import MotMetrics, measure_mot
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from tests.helpers.images.random_sequences import as_tracks, sequences, tracks_of, truth_of
 

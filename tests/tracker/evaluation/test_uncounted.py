@@ -4,8 +4,8 @@ from hypothesis import given
 from trackeval.datasets import MotChallenge2DBox
 
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.evaluation.box_matching import ignore_uncounted, settle_uncounted
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from peopleboy.tracker.evaluation.uncounted import ignore_uncounted, settle_uncounted
 from tests.helpers.images.random_sequences import sequences, tracks_of, truth_of
 
 NEAR, FAR = (1, 1, 0, 0, 40, 100), (1, 2, 200, 0, 20, 50)

@@ -1,0 +1,164 @@
+"""Where an image is looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from peopleboy.tracker.frame import Floats
+from peopleboy.tracker.proposals.suppression import Proposals
+from peopleboy.tracker.tracking.appearance import FEATURES
+from peopleboy.tracker.tracking.config import DetectionScheduleConfig
+from peopleboy.tracker.tracking.detection_schedule import DetectionSchedule, Schedule
+from peopleboy.tracker.tracking.template import Template
+from peopleboy.tracker.tracking.track_state import TrackState
+
+CONFIG = DetectionScheduleConfig()
+DT_S = 1.0 / 15.0
+GREY = np.random.default_rng(0).integers(0, 256, (240, 320)).astype(np.uint8)
+BOXES = np.array([[40.0, 60.0, 27.0, 100.0], [200.0, 60.0, 27.0, 100.0]])
+
+
+def targets(boxes: Floats = BOXES) -> list[TrackState]:
+    return [
+        TrackState(
+            born_s=-9.0,
+            seen_s=0.0,
+            pattern=np.zeros(4, np.float32),
+            colours=np.zeros(FEATURES, np.float32),
+            ratio=0.27,
+            shown=box,
+            log_odds=8.0,
+            id=number,
+            trees=float(number),
+            score=2.0,
+            rescored_s=0.0,
+            template=Template.of(GREY, box),
+        )
+        for number, box in enumerate(boxes, 1)
+    ]
+
+
+def aims(
+    who: list[TrackState],
+    images: int,
+    boxes: Floats = BOXES,
+    config: DetectionScheduleConfig = CONFIG,
+    breadth: float = CONFIG.breadth,
+) -> list[Schedule]:
+    """Look at images that are all the same, in which everybody is found who was found before."""
+    gaze, found = DetectionSchedule(), []
+    for image in range(images):
+        time_s = image * DT_S
+        last_s = max(image - 1, 0) * DT_S
+        found.append(gaze.schedule_next(GREY, who, boxes, time_s, breadth, config))
+        for row, target in enumerate(who):
+            if target.seen_s == last_s:
+                target.seen_s = time_s
+                target.rescored_s = target.rescored_s if row in found[-1].followed else time_s
+                is_anew = found[-1].everywhere and row not in found[-1].expected
+                target.searched_s = time_s if is_anew else target.searched_s
+    return found
+
+
+def everywhere(told: list[Schedule]) -> list[int]:
+    return [image for image, aim in enumerate(told) if aim.everywhere]
+
+
+def test_five_of_six_images_are_not_searched_where_it_is_clear_who_is_there() -> None:
+    assert everywhere(aims(targets(), 19)) == [0, 6, 12, 18]
+
+
+@pytest.mark.parametrize(("breadth", "searched"), [(2.0, 6), (1.0, 6), (0.7, 4), (0.5, 3), (0.1, 3)])
+def test_a_narrower_camera_is_searched_more_often_but_no_more_than_where_it_is_open_who_is_there(
+    breadth: float, searched: int
+) -> None:
+    told = aims(targets(), 19, breadth=breadth * CONFIG.breadth)
+    assert everywhere(told) == list(range(0, 19, searched))
+
+
+@pytest.mark.parametrize("open_", ["nobody", "untold", "lost"])
+def test_two_of_three_are_not_where_that_is_open(open_: str) -> None:
+    who = [] if open_ == "nobody" else targets()
+    if open_ == "untold":
+        who[1].id = 0
+    if open_ == "lost":
+        who[1].seen_s = -0.1
+    assert everywhere(aims(who, 10, BOXES[: len(who)])) == [0, 3, 6, 9]
+
+
+def test_who_is_lost_outside_the_image_or_for_long_leaves_nothing_open() -> None:
+    who, boxes = targets(), BOXES.copy()
+    who[1].seen_s = -0.1
+    boxes[1, 0] = 330.0
+    assert everywhere(aims(who, 10, boxes)) == [0, 6]
+    who = targets()
+    who[1].seen_s = -CONFIG.lost_s
+    assert everywhere(aims(who, 10)) == [0, 6]
+
+
+def test_who_stands_apart_is_followed_by_his_portrait_for_a_while() -> None:
+    told = aims(targets(), 6)
+    for image in (1, 2, 4, 5):
+        assert list(told[image].followed) == [0, 1]
+        np.testing.assert_allclose(list(told[image].followed.values()), BOXES, atol=0.5)
+        assert not told[image].expected
+    aim = told[3]  # 0.2 s after the last look
+    assert list(aim.expected) == [0, 1]
+    assert aim.proposed(targets()).trees.tolist() == [2.0, 1.0]
+
+
+def close() -> list[TrackState]:
+    return targets(BOXES + np.array([[140.0], [0.0]]) * [1.0, 0.0, 0.0, 0.0])
+
+
+def untold() -> list[TrackState]:
+    first, second = targets()
+    return [replace(first, id=0), replace(second, log_odds=-0.1)]
+
+
+def unlike() -> list[TrackState]:
+    return [replace(target, template=Template.of(GREY.T.copy(), target.shown)) for target in targets()]
+
+
+@pytest.mark.parametrize("make", [close, untold, unlike])
+def test_the_detector_looks_at_who_is_near_others_or_unsure_or_looks_different(
+    make: Callable[[], list[TrackState]],
+) -> None:
+    who = make()
+    aim = aims(who, 2, np.array([target.shown for target in who]))[1]
+    assert not aim.followed
+    assert sorted(aim.expected) == [0, 1]
+
+
+def test_who_is_partly_outside_the_image_is_looked_at() -> None:
+    boxes = BOXES + np.array([[-50.0], [0.0]]) * [1.0, 0.0, 0.0, 0.0]
+    assert list(aims(targets(boxes), 2, boxes)[1].followed) == [1]
+
+
+def test_who_is_followed_is_as_sure_as_when_looked_at() -> None:
+    who = targets()
+    aim = Schedule(True, {}, {1: BOXES[1] + 1.0})
+    seen = aim.with_followed(Proposals.of_trees(BOXES[:1], np.array([0.5])), who)
+    np.testing.assert_array_equal(seen.box, [BOXES[0], BOXES[1] + 1.0])
+    assert (seen.score.tolist(), seen.trees.tolist()) == ([0.5, 2.0], [0.5, 2.0])
+
+
+def test_every_image_is_searched_everywhere_where_no_pause_is_asked_for() -> None:
+    config = DetectionScheduleConfig(unsettled_s=0.0, settled_s=0.0, anew_s=0.0)
+    assert everywhere(aims(targets(), 5, config=config)) == [0, 1, 2, 3, 4]
+
+
+def test_two_of_three_searches_pass_by_who_stands_apart() -> None:
+    told = aims(targets(), 25)
+    assert [list(told[image].expected) for image in (0, 6, 12, 18, 24)] == [[], [0, 1], [0, 1], [], [0, 1]]
+
+
+@pytest.mark.parametrize("make", [close, untold])
+def test_no_search_passes_by_who_is_near_others_or_unsure(make: Callable[[], list[TrackState]]) -> None:
+    who = make()
+    told = aims(who, 13, np.array([target.shown for target in who]))
+    assert not any(aim.expected for aim in told if aim.everywhere)

@@ -1,0 +1,122 @@
+"""Whether somebody is told, as evidence adds up."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from peopleboy.tracker.tracking.appearance import FEATURES
+from peopleboy.tracker.tracking.config import ExistenceConfig
+from peopleboy.tracker.tracking.track_state import DetectionEvidence, TrackState
+
+CONFIG = ExistenceConfig()
+DT_S = 1.0 / 15.0
+
+
+def known() -> TrackState:
+    return TrackState(
+        born_s=0.0,
+        seen_s=0.0,
+        pattern=np.zeros(4, np.float32),
+        colours=np.zeros(FEATURES, np.float32),
+        ratio=0.3,
+        shown=np.array([0.0, 0.0, 10.0, 40.0]),
+        log_odds=CONFIG.confirmed,
+        id=1,
+        confirmed_s=0.0,
+    )
+
+
+def seen(target: TrackState, score: float, images: int, since_s: float, speed_m_s: float = 1.5) -> float:
+    for image in range(1, images + 1):
+        time_s = since_s + image * DT_S
+        target.update_seen(DetectionEvidence(score, 0.0, speed_m_s), time_s, DT_S, CONFIG)
+    return time_s
+
+
+def test_who_goes_on_to_look_like_nobody_is_told_no_more() -> None:
+    target = known()
+    images = round((CONFIG.confirmed - CONFIG.deletion_log_odds) * CONFIG.independent_s / DT_S)
+    time_s = seen(target, -1.0, images - 1, 0.0)
+    assert target.is_output(time_s, CONFIG)
+    time_s = seen(target, -1.0, 2, time_s)
+    assert not target.is_output(time_s, CONFIG)
+
+
+@pytest.mark.parametrize("hider", [None, 2])
+def test_who_was_away_is_told_with_the_first_image_that_shows_him(hider: int | None) -> None:
+    target = known()
+    for _ in range(200):
+        target.update_missed(hider, DT_S, CONFIG)
+    assert target.log_odds == CONFIG.deletion_log_odds
+    time_s = seen(target, 0.5, 1, 200 * DT_S)
+    assert target.is_output(time_s, CONFIG)
+
+
+def test_a_clear_image_counts_at_once_though_those_before_said_little() -> None:
+    target = known()
+    target.id, target.log_odds = 0, CONFIG.deletion_log_odds
+    seen(target, CONFIG.highest_score, 3, 0.0, speed_m_s=0.0)
+    left = (1.0 - CONFIG.evidence_gain) ** 3 * (CONFIG.highest_score - CONFIG.deletion_log_odds)
+    assert target.log_odds == pytest.approx(CONFIG.highest_score - left)
+    assert target.has_enough_evidence(CONFIG)
+
+
+@given(st.floats(0.0, 8.0), st.floats(-8.0, 8.0))
+def test_an_image_that_says_less_than_those_before_adds_its_own_part(before: float, score: float) -> None:
+    target = known()
+    target.log_odds = before
+    seen(target, min(score, before), 1, 0.0, speed_m_s=0.0)
+    own = min(score, before, CONFIG.highest_score) * DT_S / CONFIG.still_s
+    assert target.log_odds == pytest.approx(min(before + own, CONFIG.highest))
+
+
+def test_who_was_never_told_fades_when_not_found() -> None:
+    target = known()
+    target.id, target.log_odds = 0, CONFIG.deletion_log_odds
+    target.update_missed(None, DT_S, CONFIG)
+    assert target.is_deleted(DT_S, CONFIG)
+
+
+def images_until_told(score: float, speed_m_s: float) -> int:
+    target = known()
+    target.id, target.log_odds = 0, score
+    for image in range(1, 1000):
+        seen(target, score, 1, image * DT_S, speed_m_s)
+        if target.has_enough_evidence(CONFIG):
+            return image
+    raise AssertionError("never told")
+
+
+@given(st.floats(0.0, 10.0), st.floats(0.0, 3.0))
+def test_hidden_people_are_told_for_a_share_of_how_long_they_were_watched(
+    watched_s: float, gone_s: float
+) -> None:
+    hidden, away = known(), known()
+    for one in (hidden, away):
+        one.watched_s, one.log_odds = watched_s, CONFIG.highest
+    hidden.occluder = 2
+    longest_s = max(
+        min(CONFIG.coast_occluded_share * watched_s, CONFIG.max_coast_occluded_s), CONFIG.max_coast_s
+    )
+    assert hidden.is_output(gone_s, CONFIG) == (gone_s <= longest_s)
+    assert away.is_output(gone_s, CONFIG) == (gone_s <= CONFIG.max_coast_s)
+
+
+def test_who_stands_still_is_no_new_sight_in_every_image() -> None:
+    walks, stands = images_until_told(0.5, 1.0), images_until_told(0.5, 0.0)
+    sights = (CONFIG.confirmed - 0.5) / 0.5
+    assert walks == pytest.approx(sights * CONFIG.independent_s / DT_S, abs=1.0)
+    assert stands == pytest.approx(sights * CONFIG.still_s / DT_S, abs=1.0)
+
+
+@given(st.floats(0.0, 5.0), st.floats(0.0, 5.0))
+def test_the_faster_the_sooner_up_to_a_limit(one: float, other: float) -> None:
+    slower, faster = sorted((one, other))
+    assert images_until_told(0.9, faster) <= images_until_told(0.9, slower)
+
+
+def test_whoever_is_surely_somebody_is_told_standing_too() -> None:
+    assert images_until_told(3.0 + CONFIG.confirmed, 0.0) <= 3

@@ -1,1 +1,0 @@
-"""Where the tracker by detection looks, and by what."""

@@ -1,0 +1,166 @@
+"""Which candidate is which target, each frame on its own."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.boxes import Floats, intersection, iou
+from peopleboy.tracker.evaluation.sequence import Ints, TrackBoxes, TrueBoxes
+
+GATE = 0.5  # a pair must overlap by more than this (thesis, section 3.4)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pairs:
+    """Every target with every candidate of its frame.
+
+    Ordered by frame, target, candidate, so that the pairs of one frame are a matrix in row-major order.
+
+    Attributes:
+        target: (P,) row of the truth.
+        candidate: (P,) row of the tracks.
+        shared: (P,) area that both cover [px^2].
+        iou: (P,) their intersection over union.
+        start: (F + 1,) first pair of each of the F frames that have both targets and candidates, and P.
+        width: (F,) how many candidates each of these frames has.
+    """
+
+    target: Ints
+    candidate: Ints
+    shared: Floats
+    iou: Floats
+    start: Ints
+    width: Ints
+
+    def frames(self) -> Iterator[tuple[slice, int]]:
+        """Yield for each frame its pairs and its number of candidates."""
+        start = self.start.tolist()
+        for first, last, width in zip(start[:-1], start[1:], self.width.tolist(), strict=True):
+            yield slice(first, last), width
+
+
+def pair_up(truth: TrueBoxes, tracks: TrackBoxes) -> Pairs:
+    """Pair every target with every candidate of its frame."""
+    frames = np.intersect1d(truth.frame, tracks.frame)
+    first_target, targets = _span(truth.frame, frames)
+    first_candidate, candidates = _span(tracks.frame, frames)
+    start = np.concatenate([[0], np.cumsum(targets * candidates)])
+    frame = np.repeat(np.arange(len(frames)), targets * candidates)  # (P,)
+    row, column = np.divmod(np.arange(start[-1]) - start[frame], candidates[frame])
+    target, candidate = first_target[frame] + row, first_candidate[frame] + column
+    boxes = truth.box[target], tracks.box[candidate]
+    shared, overlap = (measure(*boxes, truth.around_px) for measure in (intersection, iou))
+    return Pairs(target, candidate, shared, overlap, start, candidates)
+
+
+def associate(pairs: Pairs, gate: float = GATE) -> Ints:
+    """Choose pairs (M,), at most one per target and per candidate, each with more IoU than the gate.
+
+    In each frame the sum of the chosen IoUs is the largest possible. Identity over time plays no part.
+
+    Source: thesis, section 3.4; its "overlap ratio" is read as intersection over union.
+    """
+    score = np.where(pairs.iou > gate, pairs.iou, 0.0)
+    chosen = assign(pairs, score)
+    return chosen[score[chosen] > 0.0]
+
+
+def assign(pairs: Pairs, score: Floats) -> Ints:
+    """Choose pairs (M,), at most one per target and candidate, with the largest sum of scores (P,) per frame.
+
+    As many pairs as possible are chosen: pairs of score 0 may be among them.
+    """
+    chosen = [np.zeros(0, dtype=np.int64)]
+    for frame, width in pairs.frames():
+        row, column = linear_sum_assignment(score[frame].reshape(-1, width), maximize=True)
+        chosen.append(frame.start + row * width + column)
+    return np.concatenate(chosen)
+
+
+def _span(frame: Ints, frames: Ints) -> tuple[Ints, Ints]:
+    """Find each of the frames in the sorted column: its first row, and its number of rows."""
+    first = np.searchsorted(frame, frames, side="left")
+    return first, np.searchsorted(frame, frames, side="right") - first
+
+
+# What to do about people whom nobody asked the tracker to find.
+#
+# A truth row is uncounted if the person is nearer than 3 m or farther than 10 m (`counted` is False), or
+# so hidden that the visible fraction is at most `min_visible` (by default: totally hidden). Uncounted
+# people are never misses. A tracker may find them all the same, and there are two rules for that:
+#
+# - `ignore` (default, as the distractors of MOTChallenge): a candidate on an uncounted person is neither
+# right nor wrong and leaves the evaluation. - `absent` (the sources to the letter): such people are
+# simply not in the truth, so a candidate on one is a false alarm.
+#
+# Either rule is applied once, before any metric, so that all metrics see the same data.
+
+Flags = NDArray[np.bool_]
+Rule = Literal["ignore", "absent"]
+MIN_VISIBLE = 0.0  # a target counts if more than this fraction of the person is visible
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Judged:
+    """The rows that count.
+
+    Attributes:
+        truth: the counted targets.
+        tracks: the candidates to judge.
+        ignored: the candidates that were taken out, because they lie on uncounted people.
+    """
+
+    truth: TrueBoxes
+    tracks: TrackBoxes
+    ignored: TrackBoxes
+
+
+def counts(counted: Flags, visible: Floats, min_visible: float = MIN_VISIBLE) -> Flags:
+    """Tell who is a target: near enough to be counted, and more than a share of the person visible.
+
+    Args:
+        counted: (N,) whether the truth counts the person.
+        visible: (N,) visible fraction, 0..1.
+        min_visible: that share.
+    """
+    return np.asarray(counted & (visible > min_visible))
+
+
+def settle_uncounted(
+    truth: TrueBoxes, tracks: TrackBoxes, *, rule: Rule = "ignore", min_visible: float = MIN_VISIBLE
+) -> Judged:
+    """Take out the uncounted people by the named rule.
+
+    Raises:
+        BadInput: there is no such rule, or `min_visible` is not in 0..1.
+    """
+    if rule not in get_args(Rule):
+        raise BadInput(f"uncounted must be one of {', '.join(get_args(Rule))}, got {rule!r}")
+    if not 0.0 <= min_visible <= 1.0:
+        raise BadInput(f"min_visible must be 0 to 1, got {min_visible}")
+    counted = counts(truth.counted, truth.visible, min_visible)
+    truth = replace(truth, counted=counted)
+    if rule == "ignore":
+        return ignore_uncounted(truth, tracks)
+    return Judged(truth.take(counted), tracks, tracks.take(np.zeros(len(tracks), dtype=np.bool_)))
+
+
+def ignore_uncounted(truth: TrueBoxes, tracks: TrackBoxes, gate: float = GATE) -> Judged:
+    """Take out the uncounted people, and the candidates on them.
+
+    All people choose together, so that the sum of overlaps is largest: where somebody uncounted and a target
+    stand at one place, a candidate is on the one whom it overlaps more. Each uncounted person takes out at
+    most one; two candidates on one uncounted person leave one false alarm.
+
+    Source: TrackEval 1.0, `MotChallenge2DBox.get_preprocessed_seq_data`, of distractors.
+    """
+    pairs = pair_up(truth, tracks)
+    chosen = associate(pairs, gate)
+    is_ignored = np.zeros(len(tracks), dtype=np.bool_)
+    is_ignored[pairs.candidate[chosen][~truth.counted[pairs.target[chosen]]]] = True
+    return Judged(truth.take(truth.counted), tracks.take(~is_ignored), tracks.take(is_ignored))

@@ -1,1 +1,0 @@
-"""The metrics by family: thesis, paper, CLEAR MOT, identity, HOTA."""

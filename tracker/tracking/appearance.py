@@ -1,0 +1,239 @@
+"""What people wear: the colours of torso and legs, where a colour camera sees them."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+import cv2
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.tracker.frame import COLOUR, THERMAL, Floats, Frame, PinholeCalibration
+from peopleboy.tracker.tracking.viewpoint import Viewpoint
+
+# From the image of one camera to that of another one beside it, on the same robot.
+
+
+def transfer_boxes(
+    boxes: Floats, view: Viewpoint, here: PinholeCalibration, there: PinholeCalibration
+) -> Floats:
+    """Tell where people who have boxes (M, 4) [px] in one image are in the other, if all are equally tall.
+
+    Args:
+        boxes: in the image of the first camera.
+        view: of that camera.
+        here: its calibration.
+        there: that of the other camera.
+
+    Returns:
+        (M, 4) [px], 0 of whom the other camera cannot see.
+    """
+    feet = view.feet(boxes)
+    left, top, width, height = boxes.T
+    ends = [np.stack([left + width / 2.0, row], axis=1) for row in (top, top + height)]
+    # Points of the person are as far ahead as the feet.
+    points = [here.rays(end) for end in ends]
+    level = [ray / np.maximum(ray[:, :1], 1e-3) * feet[:, 2:] + np.array(here.position_m) for ray in points]
+    above, below = (there.project(end) for end in level)
+    tall = below[:, 1] - above[:, 1]
+    wide = tall * width / height
+    boxed = np.stack([(above[:, 0] + below[:, 0] - wide) / 2.0, above[:, 1], wide, tall], axis=1)
+    return np.asarray(np.nan_to_num(boxed))
+
+
+Colours = NDArray[np.float32]
+
+_PARTS: Final = ((0.18, 0.5), (0.55, 0.9))  # of torso and legs, from the top, in heights
+_WIDE: Final = 0.6  # of the box
+_BINS: Final = (4, 8, 8)  # of brightness and of both opponent colours
+_SPREAD: Final = 60.0  # of the opponent colours that the bins cover
+_DARK: Final = 24.0  # grey up to which nothing is told of colours
+_LEAST_PX: Final = 12
+_LEAST_INSIDE: Final = 0.6
+"""Share of a part's height in the image: hips are no legs.
+
+Where the floor is not known nobody knows how far legs go on below the image, and what is seen counts.
+"""
+
+PARTS: Final = len(_PARTS)
+FEATURES: Final = PARTS * _BINS[0] * _BINS[1] * _BINS[2]
+
+
+def describe_colours(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
+    """Describe who has boxes (M, 4) in the thermal image by colours (M, FEATURES).
+
+    The product of two rows is Bhattacharyya's coefficient: 1 for the same colours, 0 for none in common. Of
+    whose torso is not seen a row is 0, and so is the half of legs that are mostly outside the image of a
+    camera that is known.
+    """
+    told = np.zeros((len(boxes), FEATURES), np.float32)
+    if COLOUR not in frame.images or len(boxes) == 0:
+        return told
+    image = frame.rgb(COLOUR)
+    there = _seen_there(frame, boxes, view, (image.shape[0], image.shape[1]))
+    least = -np.inf if view.floor_m is None else _LEAST_INSIDE
+    _describe(image, there, np.array(_PARTS), least, *_BIN_OF, told)
+    return told
+
+
+def colour_similarity(one: Colours, other: Colours) -> float:
+    """Give Bhattacharyya's coefficient of colours: of the same clothes above 0.8, of others below 0.4."""
+    return float(one @ other) * PARTS / max(_common_parts(one, other), 1)
+
+
+def colour_similarities(some: Colours, others: Colours) -> tuple[Colours, NDArray[np.bool_]]:
+    """Compare colours (K, FEATURES) and (M, FEATURES) by the parts that are seen of both.
+
+    Returns:
+        (K, M) Bhattacharyya's colour_similarities, 0 where nothing is, and whether something is (K, M).
+    """
+    ours, theirs = (_are_seen(rows).astype(np.float32) for rows in (some, others))
+    seen = ours @ theirs.T
+    return some @ others.T * (PARTS / np.maximum(seen, np.float32(1.0))), seen > 0.0
+
+
+def blend_colours(before: Colours, now: Colours, share: float) -> Colours:
+    """Give the colours that are remembered after others are seen, by the parts that are."""
+    told = np.empty_like(before)
+    _blend(before, now, np.float32(share), told)
+    return told
+
+
+def _are_seen(colours: Colours) -> NDArray[np.bool_]:
+    """Tell of colours (K, FEATURES) of which parts (K, PARTS) something is seen."""
+    return np.asarray(colours.reshape(len(colours), PARTS, -1).max(axis=2) > 0.0)
+
+
+def _seen_there(frame: Frame, boxes: Floats, view: Viewpoint, shape: tuple[int, int]) -> Floats:
+    """Carry boxes (M, 4) over to the colour image; one of unknown cameras shows what the thermal one does."""
+    thermal, colour = frame.calibrations.get(THERMAL), frame.calibrations.get(COLOUR)
+    if not (isinstance(thermal, PinholeCalibration) and isinstance(colour, PinholeCalibration)):
+        rows, columns = frame.grey(THERMAL).shape
+        return np.asarray(boxes * np.tile([shape[1] / columns, shape[0] / rows], 2))
+    return transfer_boxes(boxes, view, thermal, colour)
+
+
+def _bins_of(values: Floats, bins: int) -> NDArray[np.uint8]:
+    """Tell in which of so many bins values are; what is beyond -_SPREAD to _SPREAD is in the outer ones."""
+    return np.clip(np.floor((values + _SPREAD) * bins / (2.0 * _SPREAD)), 0, bins - 1).astype(np.uint8)
+
+
+# Of red + green + blue from 0 on, red - green from -255 on, and 2 blue - red - green from -510 on.
+_BIN_OF: Final = (
+    _bins_of(np.arange(766.0) / 3.0 * (_SPREAD / 128.0) - _SPREAD, _BINS[0]),
+    _bins_of(np.arange(-255.0, 256.0), _BINS[1]),
+    _bins_of(np.arange(-510.0, 511.0) / 2.0, _BINS[2]),
+)
+
+
+@njit(cache=True, nogil=True)
+def _describe(
+    image: NDArray[np.uint8],
+    boxes: Floats,
+    parts: Floats,
+    least: float,
+    of_light: NDArray[np.uint8],
+    of_red: NDArray[np.uint8],
+    of_blue: NDArray[np.uint8],
+    told: Colours,
+) -> None:  # pragma: no cover
+    """Describe boxes (M, 4) of an image (H, W, 3) by parts (2, 2), of which so much must be in the image."""
+    rows = float(image.shape[0])
+    size = told.shape[1] // len(parts)
+    for number, (left, top, width, height) in enumerate(boxes):
+        inset = (1.0 - _WIDE) / 2.0 * width
+        begin, end = max(round(left + inset), 0), max(round(left + width - inset), 0)
+        for part, (first, last) in enumerate(parts):
+            upper, lower = top + first * height, top + last * height
+            pixels = image[max(round(upper), 0) : max(round(lower), 0), begin:end]
+            bins = told[number, part * size : (part + 1) * size]
+            is_seen = _histogram(pixels, of_light, of_red, of_blue, bins)
+            if part == 0 and not is_seen:
+                break
+            if is_seen and (min(lower, rows) - max(upper, 0.0)) / (lower - upper) < least:
+                bins[:] = np.float32(0.0)
+
+
+@njit(cache=True, nogil=True)
+def _histogram(
+    pixels: NDArray[np.uint8],
+    of_light: NDArray[np.uint8],
+    of_red: NDArray[np.uint8],
+    of_blue: NDArray[np.uint8],
+    bins: Colours,
+) -> bool:  # pragma: no cover
+    """Give the roots of shares of pixels (h, w, 3) by brightness and opponent colours, if they are enough.
+
+    Of all parts together squares add up to 1.
+    """
+    count, total = pixels.shape[0] * pixels.shape[1], 0
+    if count < _LEAST_PX:
+        return False
+    for row in pixels:
+        for one in row:
+            red, green, blue = int(one[0]), int(one[1]), int(one[2])
+            light = red + green + blue
+            at = of_light[light] * _BINS[1] * _BINS[2] + of_red[red - green + 255] * _BINS[2]
+            bins[at + of_blue[2 * blue - red - green + 510]] += np.float32(1.0)
+            total += light
+    is_light = bool(total / (3 * count) >= _DARK)
+    for k in range(len(bins)):
+        bins[k] = math.sqrt(bins[k] / np.float32(count)) / math.sqrt(PARTS) if is_light else 0.0
+    return is_light
+
+
+@njit(cache=True, nogil=True)
+def _common_parts(one: Colours, other: Colours) -> int:  # pragma: no cover
+    """Count the parts that are seen of both."""
+    count, size = 0, len(one) // PARTS
+    for first in range(0, len(one), size):
+        if one[first : first + size].any() and other[first : first + size].any():
+            count += 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _blend(before: Colours, now: Colours, share: np.float32, told: Colours) -> None:  # pragma: no cover
+    size = len(before) // PARTS
+    for first in range(0, len(before), size):
+        part = slice(first, first + size)
+        was, seen, put = before[part], now[part], told[part]
+        gain = np.float32(0.0)
+        if seen.any():
+            gain = share if was.any() else np.float32(1.0)
+        for k in range(size):
+            put[k] = was[k] + gain * (seen[k] - was[k])
+
+
+# How people look in the thermal image: a small pattern of warm and cold.
+
+Pattern = NDArray[np.float32]
+
+ROWS: Final = 12
+COLUMNS: Final = 6
+SAMPLES: Final = ROWS * COLUMNS
+_FAINT_GREY: Final = 4.0  # contrast below which a pattern is mostly noise
+
+
+def describe_patterns(image: NDArray[np.float32], boxes: NDArray[np.float64]) -> Pattern:
+    """Describe what is in boxes (M, 4) of an image (H, W): (M, SAMPLES), mean 0 and length up to 1.
+
+    Neither the brightness of the image nor its contrast matters.
+    """
+    across = (np.arange(COLUMNS) + 0.5) / COLUMNS
+    down = (np.arange(ROWS) + 0.5) / ROWS
+    x = boxes[:, 0, None, None] + boxes[:, 2, None, None] * across[None, None, :]
+    y = boxes[:, 1, None, None] + boxes[:, 3, None, None] * down[None, :, None]
+    if len(boxes) == 0:
+        return np.empty((0, SAMPLES), np.float32)
+    at_x, at_y = (
+        np.broadcast_to(grid, (len(boxes), ROWS, COLUMNS)).reshape(-1, COLUMNS).astype(np.float32)
+        for grid in (x, y)
+    )
+    seen = cv2.remap(image, at_x, at_y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    flat = seen.reshape(len(boxes), -1)
+    flat = flat - flat.mean(axis=1, keepdims=True)
+    contrast = np.sqrt(np.mean(flat * flat, axis=1, keepdims=True))
+    return np.asarray(flat / (contrast + _FAINT_GREY) / np.sqrt(np.float32(flat.shape[1])), np.float32)

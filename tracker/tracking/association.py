@@ -1,0 +1,194 @@
+"""Who is whom: proposals are given to those who are expected there and look so, who was seen last first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from peopleboy.tracker.boxes import area, cover, intersection, iou, shared_of_smaller
+from peopleboy.tracker.frame import THERMAL, Floats, Frame
+from peopleboy.tracker.proposals.suppression import Proposals
+from peopleboy.tracker.tracking.appearance import (
+    FEATURES,
+    SAMPLES,
+    Colours,
+    Pattern,
+    colour_similarities,
+    describe_colours,
+    describe_patterns,
+)
+from peopleboy.tracker.tracking.config import AssociationConfig
+from peopleboy.tracker.tracking.track_state import TrackState
+from peopleboy.tracker.tracking.viewpoint import Viewpoint
+
+_NEVER: Final = 1e6
+_SEEN, _TENTATIVE, _LOST = range(3)
+
+
+def associate(
+    targets: Sequence[TrackState],
+    distance: Floats,
+    overlap: Floats,
+    likeness: Floats,
+    is_coloured: NDArray[np.bool_],
+    score: Floats,
+    known: Mapping[int, int],
+    time_s: float,
+    config: AssociationConfig,
+) -> dict[int, int]:
+    """Give the number of the proposal that is each target's, by the target's number.
+
+    Args:
+        targets: K of them.
+        distance: (K, M) Mahalanobis.
+        overlap: (K, M) of boxes.
+        likeness: (K, M) of pattern, -1 to 1.
+        is_coloured: (K, M) whether that is by colours, which tell somebody who was lost wherever he is.
+        score: (M,) of proposals.
+        known: whose proposals are known.
+        time_s: now.
+        config: what things cost.
+    """
+    ranks = np.array([_rank(target, time_s, config) for target in targets], int)
+    is_lost = ranks[:, None] == _LOST
+    is_same = is_coloured & (likeness > config.colours_of_same)
+    distance = np.where(is_lost & is_same, np.minimum(distance, config.gate), distance)
+    cost = (
+        config.motion * distance
+        + config.overlap * (1.0 - overlap)
+        + config.appearance * (1.0 - likeness)
+        - config.score * np.minimum(score, 4.0)[None]
+    )
+    cost[(distance > config.gate) | (cost > config.highest)] = _NEVER
+    cost[is_lost & ~np.where(is_coloured, is_same, likeness > config.pattern_of_lost)] = _NEVER
+    found = dict(known)
+    for rank in (_SEEN, _TENTATIVE, _LOST):
+        rows = np.array([i for i in np.flatnonzero(ranks == rank) if i not in known], int)
+        columns = np.array([j for j in range(len(score)) if j not in found.values()], int)
+        if len(rows) and len(columns):
+            some = cost[np.ix_(rows, columns)]
+            pairs = zip(*linear_sum_assignment(some), strict=True)
+            found |= {int(rows[i]): int(columns[j]) for i, j in pairs if some[i, j] < _NEVER}
+    return found
+
+
+def _rank(target: TrackState, time_s: float, config: AssociationConfig) -> int:
+    """Tell whose turn it is: those who are seen, those who may be somebody, and those who were lost."""
+    if not target.is_confirmed:
+        return _TENTATIVE
+    return _SEEN if time_s - target.seen_s < config.lost_s else _LOST
+
+
+# Who overlaps whom in the image, and who is in front.
+
+Flags = NDArray[np.bool_]
+
+_COVERED: Final = 0.35  # share of a box that is hidden by who stands in front
+_LOWER: Final = 0.03  # who stands so much lower in the image, in heights, is in front
+CLEAR: Final = 0.2
+"""Overlap up to which somebody is seen apart from another one."""
+
+
+def are_overlapped(expected: Floats, is_confirmed: Flags) -> Flags:
+    """Tell of K people with boxes (K, 4) who is not seen apart from somebody else who is told."""
+    mutual = iou(expected[:, None], expected[None]) * ~np.eye(len(expected), dtype=bool)
+    return np.asarray((is_confirmed[None] & (mutual > CLEAR)).any(axis=1))
+
+
+def find_occluders(expected: Floats, is_confirmed: Flags, found: Iterable[int]) -> list[int | None]:
+    """Tell for each of K people with boxes (K, 4) who of those who were found may hide it."""
+    covered = cover(intersection(expected[:, None], expected[None]), area(expected)[:, None])
+    foot = expected[:, 1] + expected[:, 3]
+    hides = (
+        (covered > _COVERED) & (foot[None] > (foot - _LOWER * expected[:, 3])[:, None]) & is_confirmed[None]
+    )
+    is_found = np.zeros(len(expected), np.bool_)
+    is_found[list(found)] = True
+    hides &= is_found[None] & ~np.eye(len(expected), dtype=bool)
+    return [
+        int(np.argmax(covered[row] * hides[row])) if hides[row].any() else None for row in range(len(hides))
+    ]
+
+
+def shared_area(boxes: Floats, theirs: Sequence[int]) -> Floats:
+    """Tell what share of the smaller box each of (M, 4) has in common with one of some others, at most."""
+    share = shared_of_smaller(boxes[:, None], boxes[None, theirs])
+    share[theirs, np.arange(len(theirs))] = 0.0
+    return np.asarray(share.max(axis=1, initial=0.0))
+
+
+# What is proposed in one image, and how it looks.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DescribedDetections:
+    """M proposals.
+
+    Attributes:
+        boxes: (M, 4) [px].
+        scores: (M,) log odds.
+        trees: (M,) likewise, as the detector's trees see it alone.
+        pattern: (M, 72) in the thermal image; 0 of those who are followed.
+        colours: (M, 512) of clothes; 0 of those, too, and where nobody knows.
+    """
+
+    boxes: Floats
+    scores: Floats
+    trees: Floats
+    pattern: Pattern
+    colours: Colours
+
+    @classmethod
+    def of(cls, frame: Frame, found: Proposals, view: Viewpoint, followed: int = 0) -> DescribedDetections:
+        """Look at what is proposed in a frame, but for the last few, who are followed."""
+        count = len(found.box)
+        pattern, colours = np.zeros((count, SAMPLES), np.float32), np.zeros((count, FEATURES), np.float32)
+        new = slice(count - followed)
+        if followed < count:
+            pattern[new] = describe_patterns(frame.grey(THERMAL).astype(np.float32), found.box[new])
+            colours[new] = describe_colours(frame, found.box[new], view)
+        return cls(*found, pattern, colours)
+
+    def __len__(self) -> int:
+        return len(self.boxes)
+
+    def without_colours(self, rows: NDArray[np.bool_]) -> DescribedDetections:
+        """Give these, nothing told of the colours of some (M,), which may be another one's."""
+        return replace(self, colours=np.where(rows[:, None], np.float32(0.0), self.colours))
+
+    def likeness(self, targets: list[TrackState]) -> tuple[Floats, NDArray[np.bool_]]:
+        """Tell how colour_similarity K targets and these are.
+
+        Returns:
+            (K, M) -1 to 1, by colours where they are known, else by warmth, and whether they are (K, M).
+            Colours of the same clothes are mostly above 0.6, and of others below -0.2; warmth tells little.
+        """
+        warm = np.stack([target.pattern for target in targets]) @ self.pattern.T
+        worn = np.stack([target.colours for target in targets])
+        same, is_known = colour_similarities(worn, self.colours)
+        return np.where(is_known, 2.0 * same - 1.0, warm).astype(np.float64), is_known
+
+    def ratio(self, row: int) -> float:
+        """Give the width of a box over its height."""
+        return float(self.boxes[row, 2] / self.boxes[row, 3])
+
+
+# What the tracker by detection believes beyond its tracks.
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class DetectionExplanation:
+    """What was proposed in the last frame.
+
+    Attributes:
+        boxes: (M, 4) [px] in the thermal image.
+        scores: (M,) log odds that they are people.
+    """
+
+    boxes: Floats
+    scores: Floats

@@ -1,0 +1,238 @@
+"""Settings of the detection tracker. Lengths are metres, times seconds, scores log-odds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Final
+
+STATURE_M: Final = 1.72
+"""Assumed stature of a person, by which the height of a box gives the distance."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KalmanConfig:
+    """Motion and measurement noise of the Kalman filter.
+
+    Attributes:
+        acceleration_m_s2: standard deviation of the acceleration to the right, down and away.
+        speed_m_s: standard deviation of the velocity of a new track, along the same axes.
+        column: standard deviation of a box's middle column, in box heights.
+        head: standard deviation of its upper end, in box heights.
+        foot: standard deviation of its lower end, in box heights.
+        build: standard deviation of the log stature.
+        posture: change of the log stature in a second, as people sit down or bend.
+        floor_m: standard deviation of the feet from the floor, where the floor is known.
+        shown: weight of the detected box in the output box; the rest is the prediction.
+    """
+
+    acceleration_m_s2: tuple[float, float, float] = (0.6, 0.2, 0.6)
+    speed_m_s: tuple[float, float, float] = (1.0, 0.2, 1.0)
+    column: float = 0.05
+    head: float = 0.07
+    foot: float = 0.07
+    build: float = 0.04
+    posture: float = 0.02
+    floor_m: float = 0.08
+    shown: float = 0.5
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DetectionScheduleConfig:
+    """When the detector searches a whole image, rescores predicted boxes, or relies on templates.
+
+    Attributes:
+        unsettled_s: least time between two searches of a whole image in an unsettled scene. In between, only
+            predicted boxes of tracks seen just before are rescored: two of three images at 15 Hz.
+        settled_s: the same while every track is confirmed and was just seen: five of six images.
+        breadth: tangent of half the horizontal field of view for which `settled_s` holds; a narrower camera,
+            which people cross sooner, is searched more often in proportion.
+        lost_s: how long a track that was missed keeps the scene unsettled.
+        rescore_s: an isolated track that was rescored more recently is followed by its template only.
+        min_correlation: least correlation of the template.
+        anew_s: a search passes over an isolated track that the cascade found more recently, if its template
+            matches: the networks rescore it there.
+    """
+
+    unsettled_s: float = 0.14
+    settled_s: float = 0.34
+    breadth: float = 0.53
+    lost_s: float = 1.0
+    rescore_s: float = 0.19
+    min_correlation: float = 0.8
+    anew_s: float = 1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AssociationConfig:
+    """Cost of assigning a detection to a track.
+
+    Attributes:
+        gate: greatest Mahalanobis distance.
+        motion: cost of a unit of Mahalanobis distance.
+        overlap: cost of boxes that do not overlap.
+        appearance: cost of opposite appearance.
+        score: discount for a unit of the detection's score.
+        highest: greatest cost of an assignment.
+        lost_s: tracks unseen for longer are assigned after all others.
+        pattern_of_lost: least similarity of the thermal pattern, -1 to 1, of a lost track of unknown colours.
+        colours_of_same: least similarity of colours for a lost track, however far from its prediction.
+    """
+
+    gate: float = 3.5
+    motion: float = 0.35
+    overlap: float = 1.5
+    appearance: float = 1.3
+    score: float = 0.05
+    highest: float = 2.6
+    lost_s: float = 1.0
+    pattern_of_lost: float = 0.35
+    colours_of_same: float = 0.3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReidentificationConfig:
+    """When tracks are recognised again, and when exchanged identities are resolved.
+
+    Attributes:
+        lost_s: a track unseen for so long may be a new one's earlier self.
+        revised_s: how long after its confirmation a new track may still be reidentified.
+        parted_s: how long people who met must be seen apart before swapped identities are resolved.
+        margin: gain in summed Bhattacharyya coefficients that a swap needs.
+        same: Bhattacharyya coefficient from which a new track is a lost one.
+    """
+
+    lost_s: float = 0.2
+    revised_s: float = 3.0
+    parted_s: float = 0.5
+    margin: float = 0.2
+    same: float = 0.8
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExistenceConfig:
+    """When a track exists, by log-odds that add up over images.
+
+    Attributes:
+        weakest: least score of detections that are used.
+        trust: weight of a score: the detector is overconfident on cameras unlike those it was trained on.
+        lasting: added to each score: a faint detection that repeats is wrong more often
+            than single images say.
+        birth: least score of a detection that initiates a track.
+        independent_s: time after which two images of a moving person are independent evidence.
+        still_s: the same for a stationary person, whose images repeat.
+        look_m: distance after which the appearance is new evidence.
+        evidence_gain: weight of how much surer an image is than all before, counted at once: a person who
+            appears from behind a door looks different in the next image.
+        highest_score: greatest evidence of one image.
+        shared_doubt: taken off the score of a new track whose box lies within that of another, from its
+            second image on.
+        highest: greatest log-odds.
+        sightings: detections needed for confirmation.
+        at_once: score of a single detection that suffices instead.
+        confirmed: log-odds at which a track is confirmed.
+        deletion_log_odds: log-odds below which a track is deleted.
+        missed: loss for an image without a detection of a visible track.
+        missed_hidden: the same for an occluded track.
+        max_coast_s: how long an unoccluded track is output without a detection.
+        max_coast_occluded_s: the same for an occluded track.
+        coast_occluded_share: the same, as a share of its observed time: a false track next to a person seems
+            to be occluded by the person in the end.
+        forget_s: a track unseen for so long is deleted.
+        brief_s: a track observed for less time is brief.
+        brief_forget_s: a brief track is deleted sooner.
+    """
+
+    weakest: float = -2.0
+    trust: float = 0.8
+    lasting: float = -0.2
+    birth: float = -0.5
+    independent_s: float = 0.25
+    still_s: float = 4.0
+    look_m: float = 0.25
+    evidence_gain: float = 0.4
+    highest_score: float = 3.0
+    shared_doubt: float = 2.0
+    highest: float = 8.0
+    sightings: int = 2
+    at_once: float = 3.0
+    confirmed: float = 2.0
+    deletion_log_odds: float = -0.5
+    missed: float = 1.0
+    missed_hidden: float = 0.3
+    max_coast_s: float = 0.25
+    max_coast_occluded_s: float = 1.0
+    coast_occluded_share: float = 0.5
+    forget_s: float = 10.0
+    brief_s: float = 1.0
+    brief_forget_s: float = 2.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ColourDetectionConfig:
+    """Use of the detector, which was trained on thermal images, on the colour image.
+
+    Attributes:
+        every_s: least time between two searches of the colour image.
+        beside_s: the same while the thermal image shows people.
+        alone_every_s: the same while only the colour image shows some person.
+        believed: weight of its log-odds.
+        same: IoU from which detections of both cameras are one person.
+        shared: greatest overlap, in shares of the smaller box, of a separate person in the colour image.
+        alone: least score of a person in the colour image alone.
+    """
+
+    every_s: float = 0.79
+    beside_s: float = 1.59
+    alone_every_s: float = 0.19
+    believed: float = 0.85
+    same: float = 0.45
+    shared: float = 0.65
+    alone: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DetectionTrackerConfig:
+    """All settings of the detection tracker.
+
+    Attributes:
+        motion: motion and measurement noise.
+        schedule: when the detector runs.
+        association: cost of an assignment.
+        existence: confirmation and deletion.
+        reidentification: recognition and identity swaps.
+        schedule_uncalibrated: schedule without calibration: every image is searched.
+        existence_uncalibrated: existence without calibration, where detections are less reliable and no floor
+            constrains them.
+        association_uncalibrated: association without calibration, where colours do not tell people apart.
+        reidentification_uncalibrated: reidentification without calibration, where boxes fit the colour
+            image less well.
+        colour: use of the colour image.
+    """
+
+    motion: KalmanConfig = field(default_factory=KalmanConfig)
+    schedule: DetectionScheduleConfig = field(default_factory=DetectionScheduleConfig)
+    association: AssociationConfig = field(default_factory=AssociationConfig)
+    existence: ExistenceConfig = field(default_factory=ExistenceConfig)
+    reidentification: ReidentificationConfig = field(default_factory=ReidentificationConfig)
+    schedule_uncalibrated: DetectionScheduleConfig = field(
+        default_factory=lambda: DetectionScheduleConfig(unsettled_s=0.0, settled_s=0.0, anew_s=0.0)
+    )
+    existence_uncalibrated: ExistenceConfig = field(
+        default_factory=lambda: ExistenceConfig(
+            birth=0.5,
+            sightings=4,
+            at_once=math.inf,
+            confirmed=2.3,
+            shared_doubt=4.0,
+            max_coast_occluded_s=0.5,
+            coast_occluded_share=math.inf,
+        )
+    )
+    association_uncalibrated: AssociationConfig = field(
+        default_factory=lambda: AssociationConfig(highest=2.3, lost_s=4.0)
+    )
+    reidentification_uncalibrated: ReidentificationConfig = field(
+        default_factory=lambda: ReidentificationConfig(same=0.65)
+    )
+    colour: ColourDetectionConfig = field(default_factory=ColourDetectionConfig)

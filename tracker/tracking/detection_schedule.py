@@ -1,0 +1,123 @@
+"""Where an image is looked at, and how closely: everywhere, where somebody should be, or hardly."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.boxes import area, cover, intersection, outline
+from peopleboy.tracker.frame import Floats
+from peopleboy.tracker.proposals.suppression import Proposals
+from peopleboy.tracker.tracking.config import DetectionScheduleConfig
+from peopleboy.tracker.tracking.template import Grey
+from peopleboy.tracker.tracking.track_state import TrackState
+
+_WHOLE: Final = 0.99  # share of a box that must be inside the image
+
+
+class Schedule(NamedTuple):
+    """What is looked at in one image.
+
+    Attributes:
+        everywhere: whether the detector looks for anybody.
+        expected: boxes (4,) [px] in which the detector's networks look at who is known, by their row; where
+            it looks for anybody its trees pass them by.
+        followed: boxes of those whom their portraits show, at whom nobody pattern, likewise.
+    """
+
+    everywhere: bool
+    expected: Mapping[int, Floats]
+    followed: Mapping[int, Floats]
+
+    def proposed(self, targets: Sequence[TrackState]) -> Proposals:
+        """Propose who is expected, as sure as trees were when they last found them, the surest first."""
+        trees = np.array([targets[row].trees for row in self.expected], np.float64)
+        found = Proposals.of_trees(np.array(list(self.expected.values())).reshape(-1, 4), trees)
+        return found.taken(np.argsort(-trees, kind="stable"))
+
+    def with_followed(self, found: Proposals, targets: Sequence[TrackState]) -> Proposals:
+        """Give who was found by the detector, and then who is followed, as sure as when last looked at."""
+        if not self.followed:
+            return found
+        who = [targets[row] for row in self.followed]
+        return Proposals(
+            np.concatenate([found.box, np.array(list(self.followed.values()))]),
+            np.concatenate([found.score, [target.score for target in who]]),
+            np.concatenate([found.trees, [target.trees for target in who]]),
+        )
+
+
+class DetectionSchedule:
+    """Decides where to look, image by image."""
+
+    def __init__(self) -> None:
+        self._everywhere_s = self._last_s = -math.inf
+
+    def schedule_next(
+        self,
+        grey: Grey,
+        targets: Sequence[TrackState],
+        expected: Floats,
+        time_s: float,
+        breadth: float,
+        config: DetectionScheduleConfig,
+    ) -> Schedule:
+        """Decide it for the next image.
+
+        Args:
+            grey: (H, W) the image.
+            targets: whoever is known, K.
+            expected: (K, 4) where they should be [px].
+            time_s: when the image was taken.
+            breadth: how wide the camera pattern, as `Viewpoint` has it.
+            config: what it takes.
+        """
+        last_s, self._last_s = self._last_s, time_s
+        seen_s = np.array([target.seen_s for target in targets])
+        was_seen, is_recent = seen_s == last_s, seen_s > time_s - config.lost_s
+        share = cover(intersection(expected, outline(grey)), area(expected))
+        is_missed = ~was_seen & (share > 0.0) & is_recent
+        is_easy = was_seen & (share > _WHOLE) & _are_apart(expected, is_recent) & _are_sure(targets)
+        is_settled = bool(targets) and all(target.is_confirmed for target in targets) and not is_missed.any()
+        settled_s = max(config.settled_s * min(breadth / config.breadth, 1.0), config.unsettled_s)
+        if time_s - self._everywhere_s > (settled_s if is_settled else config.unsettled_s):
+            self._everywhere_s = time_s
+            since_s = time_s - np.array([target.searched_s for target in targets])
+            return Schedule(
+                True, _shown(is_easy & (since_s < config.anew_s), targets, grey, expected, config), {}
+            )
+        since_s = time_s - np.array([target.rescored_s for target in targets])
+        followed = _shown(is_easy & (since_s < config.rescore_s), targets, grey, expected, config)
+        looked = [row for row in np.flatnonzero(was_seen & (share > 0.0)).tolist() if row not in followed]
+        return Schedule(False, {row: expected[row] for row in looked}, followed)
+
+
+def _shown(
+    these: NDArray[np.bool_],
+    targets: Sequence[TrackState],
+    grey: Grey,
+    expected: Floats,
+    config: DetectionScheduleConfig,
+) -> dict[int, Floats]:
+    """Give the boxes (4,) of some (K,) of those whom their portraits show, by their row."""
+    shown = {}
+    for row in np.flatnonzero(these).tolist():
+        template = targets[row].template
+        box = None if template is None else template.found(grey, expected[row], config.min_correlation)
+        if box is not None:
+            shown[row] = box
+    return shown
+
+
+def _are_sure(targets: Sequence[TrackState]) -> NDArray[np.bool_]:
+    return np.array([target.is_confirmed and target.log_odds >= 0.0 for target in targets], np.bool_)
+
+
+def _are_apart(expected: Floats, counts: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Tell whose boxes (K, 4) touch no other one that counts, (K,)."""
+    common = intersection(expected[:, None], expected[None]) * ~np.eye(len(expected), dtype=bool)
+    return np.asarray(~(counts[None] & (common > 0.0)).any(axis=1))

@@ -1,0 +1,280 @@
+"""Where people are in metres and where they go: an extended Kalman filter for each, all at once."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.tracker.frame import Odometry
+from peopleboy.tracker.track import FloorPlace
+from peopleboy.tracker.tracking.config import KalmanConfig
+from peopleboy.tracker.tracking.viewpoint import NEAREST_M, Viewpoint
+
+Floats = NDArray[np.float64]
+
+
+STATE: Final = 7
+_LEAST_SPREAD: Final = 1e-9  # px^2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StateEstimates:
+    """What is believed of K people's feet.
+
+    Attributes:
+        mean: (K, 7) place [m] and velocity [m/s] in the level frame of the camera, and build, the
+            logarithm of the stature over the usual one.
+        covariance: (K, 7, 7) of the same.
+    """
+
+    mean: Floats
+    covariance: Floats
+
+    def __len__(self) -> int:
+        return len(self.mean)
+
+    def take(self, rows: NDArray[np.intp]) -> StateEstimates:
+        """Give some of them."""
+        return StateEstimates(self.mean[rows], self.covariance[rows])
+
+    def joined(self, others: StateEstimates) -> StateEstimates:
+        """Give these and others."""
+        return StateEstimates(
+            np.concatenate([self.mean, others.mean]), np.concatenate([self.covariance, others.covariance])
+        )
+
+    def replaced(self, rows: NDArray[np.intp], others: StateEstimates) -> StateEstimates:
+        """Give these, with others in some rows."""
+        mean, covariance = self.mean.copy(), self.covariance.copy()
+        mean[rows], covariance[rows] = others.mean, others.covariance
+        return StateEstimates(mean, covariance)
+
+
+NOBODY = StateEstimates(np.empty((0, STATE)), np.empty((0, STATE, STATE)))
+
+
+def initiate(boxes: Floats, view: Viewpoint, config: KalmanConfig) -> StateEstimates:
+    """Begin paths where people are proposed (K, 4); nobody knows where they go."""
+    feet = view.feet(boxes)
+    build = np.zeros(len(feet))
+    slope = view.slopes(feet, build)
+    back = np.linalg.inv(slope[:, :, :3])
+    grown = back @ slope[:, :, 3:]
+    covariance = np.zeros((len(feet), STATE, STATE))
+    noise = np.square(boxes[:, 3:] * _deviations(config))[:, :, None] * np.eye(3)
+    noise = noise + slope[:, :, 3:] @ slope[:, :, 3:].transpose(0, 2, 1) * config.build**2
+    covariance[:, :3, :3] = back @ noise @ back.transpose(0, 2, 1)
+    covariance[:, 3:6, 3:6] = np.diag(np.square(config.speed_m_s))
+    covariance[:, 6, 6] = config.build**2
+    covariance[:, :3, 6] = -grown[:, :, 0] * config.build**2
+    covariance[:, 6, :3] = covariance[:, :3, 6]
+    begun_at = StateEstimates(np.concatenate([feet, np.zeros((len(feet), 4))], axis=1), covariance)
+    return begun_at if view.floor_m is None else _on_floor(begun_at, view.floor_m, config.floor_m)
+
+
+def predict(paths: StateEstimates, dt_s: float, moved: Odometry, config: KalmanConfig) -> StateEstimates:
+    """Carry paths on to the next frame, by white acceleration, and into the frame of a robot that moved."""
+    mean, covariance = np.empty_like(paths.mean), np.empty_like(paths.covariance)
+    pushed = np.square(config.acceleration_m_s2)
+    _walk_on(paths.mean, paths.covariance, dt_s, _turn(moved), pushed, config.posture**2, mean, covariance)
+    mean[:, :3] = move_points(mean[:, :3], moved)
+    mean[:, 2] = np.maximum(mean[:, 2], NEAREST_M)
+    return StateEstimates(mean, covariance)
+
+
+def move_points(points_m: Floats, moved: Odometry) -> Floats:
+    """Give points (K, 3) of the level frame before the robot moved in that after it."""
+    return np.asarray((points_m - (-moved.aside_m, 0.0, moved.advance_m)) @ _turn(moved).T)
+
+
+def mahalanobis_distances(
+    paths: StateEstimates, boxes: Floats, view: Viewpoint, config: KalmanConfig
+) -> Floats:
+    """Give the Mahalanobis distances (K, M) of proposals (M, 4) from where people are expected."""
+    expected, slope = _expected(paths, view)
+    deviation = np.maximum(expected[:, 2:] - expected[:, 1:2], 1.0) * _deviations(config)
+    told = np.empty((len(paths), len(boxes)))
+    _measure(paths.covariance, slope, np.square(deviation), expected, _ends(boxes), told)
+    return told
+
+
+def update_states(
+    paths: StateEstimates, boxes: Floats, view: Viewpoint, config: KalmanConfig
+) -> StateEstimates:
+    """Take in a box (K, 4) for each, and that feet are on the floor, where it is known."""
+    if len(paths) == 0:
+        return paths
+    expected, slope = _expected(paths, view)
+    later = StateEstimates(paths.mean.copy(), paths.covariance.copy())
+    noise = np.square(boxes[:, 3:] * _deviations(config))
+    _learn(later.mean, later.covariance, slope, noise, _ends(boxes) - expected)
+    return later if view.floor_m is None else _on_floor(later, view.floor_m, config.floor_m)
+
+
+def predicted_boxes(paths: StateEstimates, view: Viewpoint, ratio: Floats) -> Floats:
+    """Give the boxes (K, 4) [px] of people who are so wide (K,), in heights."""
+    column, head, foot = view.seen(paths.mean[:, :3], paths.mean[:, 6]).T
+    height = np.maximum(foot - head, 1.0)
+    width = ratio * height
+    boxes = np.stack([column - width / 2.0, foot - height, width, height], axis=1)
+    return np.asarray(boxes, np.float64)
+
+
+def floor_positions(paths: StateEstimates, camera_m: tuple[float, float, float]) -> list[FloorPlace]:
+    """Tell where on the floor people stand in the frame of the robot whose camera is there [m]."""
+    forward, left, _ = camera_m
+    return [
+        FloorPlace(
+            position_m=(forward + float(mean[2]), left - float(mean[0])),
+            covariance_m2=(float(spread[2, 2]), -float(spread[0, 2]), float(spread[0, 0])),
+        )
+        for mean, spread in zip(paths.mean, paths.covariance, strict=True)
+    ]
+
+
+def _turn(moved: Odometry) -> Floats:
+    """Give the rotation (3, 3) of the level frame into that of a robot that turned."""
+    cosine, sine = math.cos(moved.turn_rad), math.sin(moved.turn_rad)
+    return np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]])
+
+
+def _expected(paths: StateEstimates, view: Viewpoint) -> tuple[Floats, Floats]:
+    """Give what is expected to be seen (K, 3), and its slopes (K, 3, 7)."""
+    feet, build = paths.mean[:, :3], paths.mean[:, 6]
+    slope = np.zeros((len(paths), 3, STATE))
+    slope[:, :, (0, 1, 2, 6)] = view.slopes(feet, build)
+    return view.seen(feet, build), slope
+
+
+def _ends(boxes: Floats) -> Floats:
+    """Give middle column, rows of head and feet (M, 3) of boxes (M, 4)."""
+    left, top, width, height = boxes.T
+    return np.stack([left + width / 2.0, top, top + height], axis=1)
+
+
+def _deviations(config: KalmanConfig) -> Floats:
+    """Give the deviations (3,) of the ends of boxes, in their heights."""
+    return np.array([config.column, config.head, config.foot])
+
+
+def _on_floor(paths: StateEstimates, floor_m: float, deviation_m: float) -> StateEstimates:
+    covariance = paths.covariance
+    gain = covariance[:, :, 1] / (covariance[:, 1, 1] + deviation_m**2)[:, None]
+    return StateEstimates(
+        paths.mean + gain * (floor_m - paths.mean[:, 1])[:, None],
+        covariance - gain[:, :, None] * covariance[:, 1, None, :],
+    )
+
+
+@njit(cache=True, nogil=True)
+def _walk_on(
+    mean: Floats,
+    covariance: Floats,
+    dt_s: float,
+    turn: Floats,
+    pushed: Floats,
+    grown: float,
+    later: Floats,
+    later_covariance: Floats,
+) -> None:  # pragma: no cover
+    """Carry means (K, 7) and covariances on by a time step; velocities are turned, and places are not."""
+    way, once = np.zeros((STATE, STATE)), np.zeros((STATE, STATE))
+    way[6, 6], once[6, 6] = 1.0, grown * dt_s
+    for i in range(3):
+        for j in range(3):
+            way[i, j] = way[3 + i, 3 + j] = turn[i, j]
+            way[i, 3 + j] = dt_s * turn[i, j]
+            spread = 0.0
+            for axis in range(3):
+                spread += turn[i, axis] * pushed[axis] * turn[j, axis]
+            once[i, j], once[3 + i, 3 + j] = dt_s**3 / 3.0 * spread, dt_s * spread
+            once[i, 3 + j] = once[3 + i, j] = dt_s**2 / 2.0 * spread
+    half = np.empty((STATE, STATE))
+    for number in range(len(mean)):
+        before, after = mean[number], later[number]
+        after[6] = before[6]
+        for i in range(3):
+            after[i] = before[i] + dt_s * before[3 + i]
+            after[3 + i] = turn[i, 0] * before[3] + turn[i, 1] * before[4] + turn[i, 2] * before[5]
+        _multiply(way, covariance[number], half)
+        _multiply(half, way.T, later_covariance[number])
+        later_covariance[number] += once
+        for i in range(STATE):
+            for j in range(i):  # what is not symmetric would grow
+                later_covariance[number, i, j] = later_covariance[number, j, i]
+
+
+@njit(cache=True, nogil=True)
+def _multiply(one: Floats, other: Floats, product: Floats) -> None:  # pragma: no cover
+    for i in range(product.shape[0]):
+        for j in range(product.shape[1]):
+            total = 0.0
+            for k in range(one.shape[1]):
+                total += one[i, k] * other[k, j]
+            product[i, j] = total
+
+
+@njit(cache=True, nogil=True)
+def _measure(
+    covariance: Floats, slope: Floats, noise: Floats, expected: Floats, seen: Floats, told: Floats
+) -> None:  # pragma: no cover
+    """Tell the Mahalanobis distances (K, M) of what is seen (M, 3) from what is expected (K, 3)."""
+    across, root = np.empty((STATE, 3)), np.zeros((3, 3))
+    gap = np.empty(3)
+    for number in range(len(told)):
+        _root_of_spread(covariance[number], slope[number], noise[number], across, root)
+        for column in range(len(seen)):
+            for axis in range(3):
+                gap[axis] = seen[column, axis] - expected[number, axis]
+            _solve(root, gap)
+            told[number, column] = math.sqrt(gap[0] ** 2 + gap[1] ** 2 + gap[2] ** 2)
+
+
+@njit(cache=True, nogil=True)
+def _learn(
+    mean: Floats, covariance: Floats, slope: Floats, noise: Floats, gap: Floats
+) -> None:  # pragma: no cover
+    """Take in by how much what is seen (K, 3) is aside of what was expected.
+
+    By the root of the spread: with its inverse, covariances of those who were lost for long go astray.
+    """
+    across, root = np.empty((STATE, 3)), np.zeros((3, 3))
+    for number in range(len(mean)):
+        _root_of_spread(covariance[number], slope[number], noise[number], across, root)
+        _solve(root, gap[number])
+        for i in range(STATE):
+            _solve(root, across[i])
+        for i in range(STATE):
+            for axis in range(3):
+                mean[number, i] += across[i, axis] * gap[number, axis]
+                for j in range(STATE):
+                    covariance[number, i, j] -= across[i, axis] * across[j, axis]
+
+
+@njit(cache=True, nogil=True)
+def _root_of_spread(
+    covariance: Floats, slope: Floats, noise: Floats, across: Floats, root: Floats
+) -> None:  # pragma: no cover
+    """Give P H' (7, 3), and the lower root (3, 3) of H P H' + noise (Cholesky)."""
+    _multiply(covariance, slope.T, across)
+    _multiply(slope, across, root)
+    for i in range(3):
+        root[i, i] += noise[i]
+        for j in range(i + 1):
+            for k in range(j):
+                root[i, j] -= root[i, k] * root[j, k]
+            root[i, j] = math.sqrt(max(root[i, i], _LEAST_SPREAD)) if i == j else root[i, j] / root[j, j]
+
+
+@njit(cache=True, nogil=True)
+def _solve(root: Floats, told: Floats) -> None:  # pragma: no cover
+    """Divide three numbers by a lower root (3, 3)."""
+    for i in range(3):
+        for j in range(i):
+            told[i] -= root[i, j] * told[j]
+        told[i] /= root[i, i]
