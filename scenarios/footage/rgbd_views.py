@@ -10,12 +10,11 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.overlay import Picture
 from peopleboy.scenarios.footage.checks import check_first, colour_picture
 from peopleboy.scenarios.footage.options import DEFAULT_RATE_HZ, RgbdOptions, TrackOptions
-from peopleboy.tracker.footage.depth_counts import DepthCounts
+from peopleboy.tracker.footage.depth_pictures import DepthCounts, pair_up
 from peopleboy.tracker.footage.grey import Radiometry
-from peopleboy.tracker.footage.odometry_file import load_odometry
-from peopleboy.tracker.footage.picture_pairs import pair_up
 from peopleboy.tracker.footage.pictures import PictureFolder
 from peopleboy.tracker.footage.read_picture import read_picture, read_row, size_of
+from peopleboy.tracker.footage.sequence_info import load_odometry
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame, Odometry, PinholeCalibration
 
 

@@ -13,9 +13,8 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.overlay import Picture, show_thermal
 from peopleboy.scenarios.footage.checks import check_first, colour_picture
 from peopleboy.scenarios.footage.options import DEFAULT_RATE_HZ, TrackOptions
-from peopleboy.tracker.footage.grey import grey_maker
+from peopleboy.tracker.footage.grey import check_plausible, grey_maker
 from peopleboy.tracker.footage.pictures import open_footage
-from peopleboy.tracker.footage.plausible import check_plausible
 from peopleboy.tracker.footage.sequence_info import find_info, rate_in
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.trackers import BY_CONTRAST

@@ -12,8 +12,63 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.footage.local_grey import local_grey, noise_of
 from peopleboy.tracker.footage.read_picture import Raw
+
+# Trackers that use contrast alone get each pixel in standard deviations of its neighbourhood.
+
+Values = NDArray[np.float32]
+
+AROUND: Final = 0.4
+"""Deviation of the Gaussian that says what is around, in heights of the picture."""
+
+GREYS: Final = 50.0
+"""How many greys a deviation makes."""
+
+NOISE: Final = 20.0
+"""Standard deviations of the noise in the least deviation, so that a bare wall stays one."""
+
+LEAST: Final = 0.01
+"""The same, in spans of the whole picture, as pictures of few steps seem to have no noise."""
+
+OUTLIERS: Final = 0.05
+"""Share of the pixels, of lamps and heaters, which differ no more than the others do."""
+
+
+def local_grey(values: Values) -> Grey:
+    """Tell by how much each pixel differs from those around it, in what they differ by among each other.
+
+    What is hardly warmer or colder than a wall stands out though a lamp in the picture is far hotter, which
+    a single gain for all of it cannot give. Greys depend neither on the unit nor on the temperature.
+
+    Args:
+        values: (H, W) of any unit, 0 being no special one; warm is more.
+
+    Returns:
+        (H, W), 128 being as warm as what is around.
+    """
+    values = values - np.float32(np.median(values))  # so that rounding does not grow with the offset
+    away = values - _around(values)
+    square = np.square(away)
+    square = np.minimum(square, np.float32(np.percentile(square, 100.0 * (1.0 - OUTLIERS))))
+    deviation = np.maximum(np.sqrt(_around(square)), np.float32(_least_deviation(values)))
+    grey = 128.0 + np.float32(GREYS) * away / deviation
+    return np.asarray(np.clip(np.rint(grey), 0, 255), np.uint8)
+
+
+def noise_of(values: Values) -> float:
+    """Give the standard deviation of the noise of a picture (H, W), by how much rows bend."""
+    bend = values[:, 2:] + values[:, :-2] - 2.0 * values[:, 1:-1]
+    return float(np.median(np.abs(bend)) / 0.6745 / np.sqrt(6.0))
+
+
+def _least_deviation(values: Values) -> float:
+    low, high = np.percentile(values, [1, 99])
+    return max(NOISE * noise_of(values), LEAST * float(high - low), 1e-6)
+
+
+def _around(values: Values) -> NDArray[Any]:
+    return cv2.GaussianBlur(values, (0, 0), AROUND * values.shape[0])
+
 
 Grey = NDArray[np.uint8]
 
@@ -169,3 +224,57 @@ def grey_maker(
     if by_contrast:
         return partial(spanned, span=radiometry.span_c or (0.0, 255.0)) if is_grey else local_grey
     return spanned if radiometry.is_known else AutomaticGrey()
+
+
+# Temperatures that no place with people has mean a wrong scale, which would silently ruin the tracking.
+
+PLAUSIBLE_C: Final = (-100.0, 200.0)
+"""Half of a picture is within: cameras see no sky colder, and nobody stands where half of it is hotter."""
+
+_ZERO_K_C: Final = CENTIKELVIN[1]
+_COUNTS_PER_K: Final = (100, 25, 10, 1)  # in which cameras write kelvin
+
+
+def check_plausible(radiometry: Radiometry, values: NDArray[np.float32]) -> None:
+    """Refuse temperatures that no place with people has, such as those of pixels in another unit.
+
+    The median decides, so that dead pixels and empty borders do not count.
+
+    Args:
+        radiometry: what is known of the pixels.
+        values: (H, W) what it makes of a picture; degC if they are known.
+
+    Raises:
+        BadInput: half of the pixels are colder, or hotter, than `PLAUSIBLE_C`.
+    """
+    if not radiometry.is_known or _is_plausible(values):
+        return
+    low, high = PLAUSIBLE_C
+    raise BadInput(
+        f"{_option(radiometry)}: pictures then hold {values.min():.0f}..{values.max():.0f} degC, and half of "
+        f"each should be within {low:.0f}..{high:.0f}; {_advice(radiometry, values)}"
+    )
+
+
+def _is_plausible(values_c: NDArray[np.float32]) -> bool:
+    low, high = PLAUSIBLE_C
+    return low <= float(np.median(values_c)) <= high
+
+
+def _option(radiometry: Radiometry) -> str:
+    if radiometry.scale is not None:
+        return "--scale {:g},{:g}".format(*radiometry.scale)
+    return "--temperature-range {:g} {:g}".format(*(radiometry.span_c or ()))
+
+
+def _advice(radiometry: Radiometry, values: NDArray[np.float32]) -> str:
+    """Say which option would make these (H, W) plausible."""
+    if radiometry.scale is None:
+        return "is it kelvin? give degC" if _is_plausible(values + np.float32(_ZERO_K_C)) else "give degC"
+    gain, offset = radiometry.scale
+    counts = (values - np.float32(offset)) / np.float32(gain)
+    for per_k in _COUNTS_PER_K:
+        if _is_plausible(counts / np.float32(per_k) + np.float32(_ZERO_K_C)):
+            scale = "centikelvin" if per_k == 100 else f"{1 / per_k:g},{_ZERO_K_C:g}"
+            return f"is it --scale {scale}?"
+    return "degC must be GAIN counts + OFFSET; without --scale, grey follows the scene's contrast"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -70,3 +70,59 @@ def _numbers(paths: Sequence[Path]) -> list[int] | None:
     if len(differing) != 1 or not differing[0][0].isdecimal():
         return None
     return [int(number) for number in differing[0]]
+
+
+# A folder may hold a few images beside those of its sequence: masks, covers, images of another camera.
+
+Pattern = tuple[str, ...]
+"""What stands round the numbers of a name."""
+
+_LEAST_SEQUENCE: Final = 3  # pictures, and thrice the others: fewer names tell no pattern
+_MOST_OTHERS: Final = 10  # of as many pictures, one may be another, or one in all
+
+
+def split_sequence(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
+    """Divide the pictures of a folder into those of the sequence and a few others.
+
+    If nearly all have names of one pattern with numbers, such as frame1.png, the rest are others.
+
+    Args:
+        paths: the pictures, in order.
+
+    Raises:
+        BadInput: two patterns have the same numbers, as those of two cameras have.
+    """
+    groups: dict[Pattern, list[Path]] = defaultdict(list)
+    for path in paths:
+        groups[_pattern(path)].append(path)
+    largest, *smaller = sorted(groups.values(), key=len, reverse=True) or [[]]
+    others = len(paths) - len(largest)
+    if not others or len(_pattern(largest[0])) < 2:
+        return list(paths), []
+    if len(largest) >= _LEAST_SEQUENCE * others and others <= max(1, len(paths) // _MOST_OTHERS):
+        return largest, [path for path in paths if path not in set(largest)]
+    _check_one_sequence(largest, smaller[0])
+    return list(paths), []
+
+
+def describe_left_out(film: Sequence[Path], others: Sequence[Path]) -> str:
+    """Say which pictures are left out, and why."""
+    more = f" and {len(others) - 1} more" if len(others) > 1 else ""
+    return f"{others[0]}{more}: left out, as not called like the others, such as {film[0].name}"
+
+
+def _check_one_sequence(one: Sequence[Path], other: Sequence[Path]) -> None:
+    common = set(map(_numbers_in, one)) & set(map(_numbers_in, other))
+    if len(other) >= _LEAST_SEQUENCE and 2 * len(common) >= len(other):
+        raise BadInput(
+            f"{one[0].parent}: has pictures of two kinds, such as {one[0].name} and {other[0].name}; "
+            "give each kind a folder of its own"
+        )
+
+
+def _pattern(path: Path) -> Pattern:
+    return tuple(re.split(r"\d+", path.stem))
+
+
+def _numbers_in(path: Path) -> tuple[int, ...]:
+    return tuple(int(number) for number in re.findall(r"\d+", path.stem))

@@ -11,8 +11,14 @@ import cv2
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.footage.other_pictures import film_of, told_left_out
-from peopleboy.tracker.footage.picture_names import SUFFIXES, jumps, numbers_in_a_row, pictures_in
+from peopleboy.tracker.footage.picture_names import (
+    SUFFIXES,
+    describe_left_out,
+    jumps,
+    numbers_in_a_row,
+    pictures_in,
+    split_sequence,
+)
 from peopleboy.tracker.footage.read_picture import Raw, count_pages, read_pages, read_row
 from peopleboy.wording import counted
 
@@ -106,13 +112,13 @@ class PictureFolder:
         self.name = name
         self.rate_hz: float | None = None
         self.notes: list[str] = []
-        self.paths, others = film_of(pictures_in(folder))
+        self.paths, others = split_sequence(pictures_in(folder))
         self.expected = len(self.paths)
         if not self.paths:
             raise BadInput(f"{folder}: there are no pictures here, {_where_else(folder)}")
         self.numbers = numbers_in_a_row(self.paths)
         if others:
-            self.notes.append(told_left_out(self.paths, others))
+            self.notes.append(describe_left_out(self.paths, others))
         if gaps := [f"{before} to {after}" for before, after in jumps(self.paths)]:
             more = f" and {counted(len(gaps) - 3, 'time')} more" if len(gaps) > 3 else ""
             self.notes.append(

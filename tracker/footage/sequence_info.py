@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import math
 from configparser import ConfigParser
 from configparser import Error as ConfigError
 from pathlib import Path
@@ -9,6 +11,7 @@ from typing import Final
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.footage.pictures import beside
+from peopleboy.tracker.frame import Odometry
 
 NAME: Final = "seqinfo.ini"
 RATES_HZ: Final = (0.1, 1000.0)
@@ -45,3 +48,42 @@ def rate_in(path: Path) -> float | None:
             "mend it, or give --rate-hz"
         )
     return rate
+
+
+# Odometry from a text file.
+
+COLUMNS: Final = ("advance_m", "aside_m", "turn_deg")
+
+
+def load_odometry(path: Path, pictures: int) -> list[Odometry]:
+    """Read a CSV file whose first line is `COLUMNS`, then a line for each picture.
+
+    Each line tells how the camera moved since the picture before; that of the first moves nobody.
+
+    Args:
+        path: the file.
+        pictures: how many there are.
+
+    Raises:
+        BadInput: the file cannot be read, has other columns or another length, or a number is not finite.
+    """
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            head, *rows = [row for row in csv.reader(file) if row] or [[]]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise BadInput(f"{path}: cannot be read as odometry; give a CSV file") from error
+    if tuple(name.strip() for name in head) != COLUMNS:
+        raise BadInput(f"{path}: the first line must be {','.join(COLUMNS)}, got {','.join(head)[:60]!r}")
+    if len(rows) != pictures:
+        raise BadInput(f"{path}: must have a line for each of the {pictures} pictures, got {len(rows)}")
+    return [_moved(row, f"{path}: picture {number}") for number, row in enumerate(rows, start=1)]
+
+
+def _moved(row: list[str], where: str) -> Odometry:
+    try:
+        advance, aside, turn = (float(cell) for cell in row)
+    except ValueError:
+        raise BadInput(f"{where}: must be three numbers, got {','.join(row)[:60]!r}") from None
+    if not all(math.isfinite(number) for number in (advance, aside, turn)):
+        raise BadInput(f"{where}: numbers must be finite, got {','.join(row)!r}")
+    return Odometry(advance_m=advance, aside_m=aside, turn_rad=math.radians(turn))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -10,11 +12,133 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.evaluation.mot_files import read_rows, truth_of
+from peopleboy.tracker.boxes import Floats
+from peopleboy.tracker.evaluation.mot_files import WIDTHS, read_rows, truth_of
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.footage.pictures import beside
-from peopleboy.tracker.footage.truth_doubts import frames_before
-from peopleboy.tracker.footage.truth_lines import cells_of, is_motchallenge
+
+# Implausible truth gives a note rather than an error: it may still be right.
+
+_MOST_OUTSIDE: Final = 0.1  # share of boxes that are wholly beyond the pictures' right or lower edge
+_LEAST_SPREAD: Final = 0.25  # of the width: boxes that spread less may well be in one corner
+
+
+def frames_before(frame: Floats, numbers: range | None, path: Path, notes: list[str]) -> int:
+    """Tell how much less the frames of the truth must be, so that 1 is the first picture.
+
+    Args:
+        frame: (N,) frames of the truth.
+        numbers: those in the pictures' names, in a row; None if they tell none.
+        path: of the truth.
+        notes: gets a line if the numbers do not begin with 1.
+    """
+    if numbers is None or numbers[0] == 1 or not len(frame):
+        return 0
+    first, last = numbers[0], numbers[-1]
+    is_among = np.isin(frame, np.asarray(numbers)).all() and (first > 1 or frame.min() == first)
+    if not is_among:
+        notes.append(f"{path}: frame 1 is taken for the first picture, which has number {first}")
+        return 0
+    notes.append(
+        f"{path}: frames are taken for the pictures' numbers, {first} to {last}; ours are counted from 1"
+    )
+    return first - 1
+
+
+def doubts(truth: TrueBoxes, width: int, height: int) -> list[str]:
+    """Say if boxes look like those of pictures of another size.
+
+    People partly outside do not count, be most of them outside as of those near the camera; and nor do boxes
+    that are all in a small part of the upper left.
+    """
+    if not len(truth):
+        return []
+    left, top, wide, high = truth.box.T
+    right, bottom = float((left + wide).max()), float((top + high).max())
+    is_outside = (left > width) | (top > height)
+    spread = right - float(left.min())
+    if is_outside.mean() > _MOST_OUTSIDE:
+        what = f"{is_outside.mean():.0%} of the boxes are outside"
+    elif right <= width / 2.0 and bottom <= height / 2.0 and spread >= _LEAST_SPREAD * width:
+        what = "all boxes are in the upper left quarter"
+    else:
+        return []
+    return [
+        f"truth: {what} of the pictures, which are {width}x{height}: they reach to "
+        f"{right:.0f}, {bottom:.0f}; are they of pictures of another size?"
+    ]
+
+
+# Formats are recognised by the shape of their lines: MOTChallenge, or one box or polygon an image.
+
+_AS_POLYGON: Final = (8, 10)  # how many numbers can be either format's
+
+
+def cells_of(line: str) -> list[str]:
+    """Split a line at commas, semicolons and white space."""
+    return [cell for cell in re.split(r"[,;\s]+", line.strip()) if cell]
+
+
+def is_motchallenge(lines: Sequence[str], path: Path) -> bool:
+    """Tell whether a file, by its lines, is MOTChallenge's; one without any is.
+
+    Lines of 6, 7 and 9 numbers can be nothing else. Those of 8 and 10 can be corners of a polygon; they are
+    MOTChallenge's if all begin with two whole numbers, frame and id, and have 0, 1 or a share as the seventh,
+    and are no upright rectangles.
+
+    Raises:
+        BadInput: they may well be either: frames rise from 0 or 1 on for each id, with another seventh.
+    """
+    count = len(cells_of(lines[0])) if lines else WIDTHS[0]
+    if count not in _AS_POLYGON:
+        return count in WIDTHS
+    table = _numbers(lines, count)
+    if table is None or not _are_keys(table[:, :2]) or _are_upright(table):
+        return False
+    if (np.abs(table[:, 6]) <= 1.0).all():
+        return True
+    if _rise(table[:, :2]):
+        raise BadInput(
+            f"{path}: lines of {count} numbers that begin with whole ones may be MOTChallenge's or polygons; "
+            "give the former's first six (frame, id, left, top, width, height), or x,y,w,h of one person"
+        )
+    return False
+
+
+def _numbers(lines: Sequence[str], count: int) -> Floats | None:
+    """Read all lines (N, count); None if one has another count, or is none of numbers."""
+    rows = [cells_of(line) for line in lines]
+    if any(len(row) != count for row in rows):
+        return None
+    try:
+        return np.array(rows, dtype=np.float64)
+    except ValueError:
+        return None
+
+
+def _are_keys(keys: Floats) -> bool:
+    """Tell whether rows (N, 2) can be frame and id; those of detections are -1."""
+    return bool((keys == np.floor(keys)).all() and (keys >= (0.0, -1.0)).all())
+
+
+def _are_upright(table: Floats) -> bool:
+    """Tell whether rows (N, count) are four corners of upright rectangles, from whichever on."""
+    if table.shape[1] != 8:
+        return False
+    # How far it is to the next corner: one of both is 0 along an edge, the other one along the next edge.
+    corners = table.reshape(-1, 4, 2)
+    still = np.roll(corners, -1, axis=1) == corners  # (N, 4, 2)
+    first_across = still[:, ::2, 1].all(axis=1) & still[:, 1::2, 0].all(axis=1)
+    first_down = still[:, ::2, 0].all(axis=1) & still[:, 1::2, 1].all(axis=1)
+    return bool((first_across | first_down).all())
+
+
+def _rise(keys: Floats) -> bool:
+    """Tell whether the frames of each id rise, from 0 or 1 on in all."""
+    frame, identity = keys[np.argsort(keys[:, 1], kind="stable")].T
+    is_same = np.diff(identity) == 0.0
+    return bool(frame.min() <= 1.0 and (np.diff(frame)[is_same] > 0.0).all())
+
 
 KEPT_SINGLE: Final = Path("truth") / "groundtruth.txt"
 """Where a run of ours keeps truth of a single person, as it was given: the format says that it is one."""

@@ -3,8 +3,7 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import OwnCodeFailed
-from peopleboy.tracker.footage.grey import CENTIKELVIN, Radiometry
-from peopleboy.tracker.footage.plausible import check_plausible
+from peopleboy.tracker.footage.grey import CENTIKELVIN, Radiometry, check_plausible
 from tests.helpers.calls.footage_calls import call, call_afresh, refusal
 from tests.helpers.calls.refused import assert_names, refused
 from tests.helpers.images.footage_files import write_counts, write_folder

@@ -6,8 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.ndimage import gaussian_filter
 
-from peopleboy.tracker.footage.grey import AutomaticGrey
-from peopleboy.tracker.footage.local_grey import AROUND, GREYS, NOISE, local_grey, noise_of
+from peopleboy.tracker.footage.grey import AROUND, GREYS, NOISE, AutomaticGrey, local_grey, noise_of
 
 NOISE_K = 0.05
 

@@ -33,7 +33,7 @@ def _plain_eyes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(place_examples, "Foreground", CardboardEyes)
 
 
-def film_of(*people: Cardboard, images: int = 24, absent: int = 0) -> MaskedFilm:
+def split_sequence(*people: Cardboard, images: int = 24, absent: int = 0) -> MaskedFilm:
     """People who stand; beside them so many who are not there."""
     who = np.zeros((120, 480), np.uint8)
     for number, one in sorted(enumerate(people, start=1), key=lambda pair: -pair[1].distance_m):
@@ -50,7 +50,7 @@ def film_of(*people: Cardboard, images: int = 24, absent: int = 0) -> MaskedFilm
 
 
 def test_an_examples_offset_leads_from_where_is_looked_to_the_person() -> None:
-    told = examples_of(film_of(ANNA), CAMERA, 0)
+    told = examples_of(split_sequence(ANNA), CAMERA, 0)
     people = told.is_person
     assert people.sum() > 10 < (~people).sum()
     assert told.patches.shape == (len(people), PATCH)
@@ -67,7 +67,7 @@ def test_an_examples_offset_leads_from_where_is_looked_to_the_person() -> None:
 
 
 def test_where_nobody_is_near_nobody_is_told_to_be() -> None:
-    told = examples_of(film_of(ANNA, BERT, absent=1), CAMERA, 1)
+    told = examples_of(split_sequence(ANNA, BERT, absent=1), CAMERA, 1)
     assert np.hypot(*told.offset_m[told.is_person].T).max() < 0.45
     assert np.isnan(told.offset_m[~told.is_person]).all()
     away = [told.distance_m + told.offset_m[:, 0]]
@@ -75,27 +75,31 @@ def test_where_nobody_is_near_nobody_is_told_to_be() -> None:
 
 
 def test_of_an_empty_hall_and_of_people_out_of_reach_no_example_shows_a_person() -> None:
-    for film in (film_of(absent=1), film_of(Cardboard(9.0, 1.0)), film_of(Cardboard(0.7, 1.0))):
+    for film in (
+        split_sequence(absent=1),
+        split_sequence(Cardboard(9.0, 1.0)),
+        split_sequence(Cardboard(0.7, 1.0)),
+    ):
         assert not examples_of(film, CAMERA, 0).is_person.any()
 
 
 def test_who_is_hidden_is_neither_there_nor_not() -> None:
     behind = Cardboard(4.5, ANNA.bearing_rad)
-    told = examples_of(film_of(ANNA, behind, images=40), CAMERA, 0)
+    told = examples_of(split_sequence(ANNA, behind, images=40), CAMERA, 0)
     # Sometimes the one in front is not taken out of the picture, as a tracker does not always find it.
     seen = told.distance_m[told.is_person] + told.offset_m[told.is_person, 0]
     assert np.mean(np.isclose(seen, ANNA.distance_m)) > 0.8
 
 
 def test_the_same_seed_gives_the_same_examples_and_another_one_others() -> None:
-    one, two, other = (examples_of(film_of(ANNA, BERT), CAMERA, seed) for seed in (3, 3, 4))
+    one, two, other = (examples_of(split_sequence(ANNA, BERT), CAMERA, seed) for seed in (3, 3, 4))
     assert np.array_equal(one.patches, two.patches)
     assert np.array_equal(one.offset_m, two.offset_m, equal_nan=True)
     assert not np.array_equal(one.distance_m, other.distance_m)
 
 
 def test_examples_are_read_back_as_they_were_written(tmp_path: Path) -> None:
-    told = examples_of(film_of(ANNA), CAMERA, 0)
+    told = examples_of(split_sequence(ANNA), CAMERA, 0)
     told.save(tmp_path / "examples.npz")
     read = PlaceExamples.load(tmp_path / "examples.npz")
     for name in ("patches", "distance_m", "offset_m"):

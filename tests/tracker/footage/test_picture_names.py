@@ -3,7 +3,7 @@ from pathlib import Path
 import cv2
 import pytest
 
-from peopleboy.tracker.footage.other_pictures import film_of
+from peopleboy.tracker.footage.picture_names import split_sequence
 from peopleboy.tracker.footage.pictures import open_footage
 from tests.helpers.calls.footage_calls import call, refusal
 from tests.helpers.calls.refused import assert_names
@@ -35,7 +35,7 @@ def test_a_mask_beside_the_pictures_is_left_out_and_it_is_said(tmp_path):
     ],
 )
 def test_few_others_are_left_out(paths, others):
-    film, left_out = film_of(paths)
+    film, left_out = split_sequence(paths)
     assert [path.stem for path in left_out] == others
     assert film == paths[: -len(others)]
 
@@ -53,7 +53,7 @@ def test_few_others_are_left_out(paths, others):
     ],
 )
 def test_names_without_one_pattern_are_all_a_film(paths):
-    assert film_of(paths) == (paths, [])
+    assert split_sequence(paths) == (paths, [])
 
 
 @pytest.mark.parametrize("other", ["right{}", "left{}_mask"])
