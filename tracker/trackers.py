@@ -17,11 +17,10 @@ from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracke
 from peopleboy.tracker.attention.people.colour_look import ColourLook
 from peopleboy.tracker.attention.people.recogniser import ByColour, ByFocus, Spotted
 from peopleboy.tracker.frame import Calibration, Frame
-from peopleboy.tracker.fusion.ahead_tracker import AheadTracker
-from peopleboy.tracker.fusion.fused_tracker import FusedTracker
+from peopleboy.tracker.fusion.fused_tracker import FusedTracker, ThermalDepthTracker
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
-from peopleboy.tracker.fusion.warmth import is_warm
-from peopleboy.tracker.handover.handover_tracker import HandoverTracker
+from peopleboy.tracker.fusion.handover_tracker import HandoverTracker
+from peopleboy.tracker.fusion.visibility import is_warm
 from peopleboy.tracker.panoramic.paper.appearance_file import shipped_models
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicPaperTracker
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
@@ -126,7 +125,7 @@ def _fused_tracker(rng: np.random.Generator) -> FusedTracker:
     by_heat, by_depth = rng.spawn(2)
     thermal = _contour_tracker(CONTOUR_TRACKER, by_heat)
     rgbd = RgbdTracker(RgbdConfig(), shipped_windows(sees_depth=True), by_depth, is_warm)
-    return FusedTracker(AheadTracker(thermal, rgbd, FusionConfig()), _panoramic_tracker(rng))
+    return FusedTracker(ThermalDepthTracker(thermal, rgbd, FusionConfig()), _panoramic_tracker(rng))
 
 
 def _attentive_tracker(rng: np.random.Generator) -> AttentiveTracker[ColourLook, ColourLook]:

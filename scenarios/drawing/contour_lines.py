@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
-from peopleboy.tracker.handover.both_explanations import BothExplanations
+from peopleboy.tracker.fusion.explanations import BothExplanations
 from peopleboy.tracker.thermal.contour.outline import outline
 from peopleboy.tracker.thermal.explanation import ContourExplanation
 

@@ -13,8 +13,7 @@ from peopleboy.scenarios.drawing.palette import Rgb, track_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.recording.marks import Lines, Points, colours_of, lines_of, particle_points
 from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
-from peopleboy.tracker.fusion.fused_explanation import FusedExplanation
-from peopleboy.tracker.handover.both_explanations import BothExplanations
+from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplanation
 from peopleboy.tracker.thermal.contour.contour import FEET, SECTIONS
 from peopleboy.tracker.thermal.contour.outline import section_lines
 from peopleboy.tracker.thermal.contour.section_evidence import Evidence, evidence_of

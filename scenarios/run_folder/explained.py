@@ -8,8 +8,7 @@ from functools import singledispatch
 from typing import Any
 
 from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
-from peopleboy.tracker.fusion.fused_explanation import FusedExplanation
-from peopleboy.tracker.handover.both_explanations import BothExplanations
+from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplanation
 from peopleboy.tracker.thermal.ellipse import Ellipse
 from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.thermal.variants import VARIANTS

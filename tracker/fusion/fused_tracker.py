@@ -2,16 +2,263 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from itertools import count
+from typing import Final
 
-from peopleboy.tracker.frame import DEPTH, PANORAMA, Calibration, Frame
-from peopleboy.tracker.fusion.ahead_tracker import AheadTracker
-from peopleboy.tracker.fusion.fused_explanation import FusedExplanation
-from peopleboy.tracker.handover.both_explanations import BothExplanations
-from peopleboy.tracker.handover.handover_tracker import HandoverTracker
+import numpy as np
+
+from peopleboy.tracker.frame import DEPTH, PANORAMA, THERMAL, Calibration, Frame
+from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplanation
+from peopleboy.tracker.fusion.fused_person import (
+    Person,
+    SensorTrack,
+    initiate_person,
+    outline,
+    standing_box,
+    to_room,
+    with_width,
+)
+from peopleboy.tracker.fusion.fusion_config import FusionConfig
+from peopleboy.tracker.fusion.guided_search import search_near
+from peopleboy.tracker.fusion.handover_tracker import HandoverTracker
+from peopleboy.tracker.fusion.identity_resolution import IdentityResolution
+from peopleboy.tracker.fusion.sensors import Depth, Heat
+from peopleboy.tracker.fusion.track_to_track import distance2, is_contradicted, pairs
+from peopleboy.tracker.fusion.visibility import depth_visibility
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
+from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.rgbd.detection.depth_view import DepthView
-from peopleboy.tracker.track import Track
+from peopleboy.tracker.rgbd.rgbd_explanation import RgbdExplanation
+from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
+from peopleboy.tracker.thermal.explanation import ContourExplanation
+from peopleboy.tracker.thermal.people_tracker import PeopleTracker
+from peopleboy.tracker.track import Box, Status, Track
+
+# One track for one person ahead of the robot: by heat, and by depth with colour.
+
+_LONGEST_STEP_S: Final = 0.5
+_CROWDED_M: Final = (0.5, 0.7)  # in depth and to the side, within which two people's shoulders are mixed up
+_NOBODYS: Final = -1  # the id of no track
+_UNSURE: Final = 0.1  # confidence in who is not told of
+
+Own = Callable[[Person], int | None]
+Take = Callable[[Person, SensorTrack], Person]
+
+
+class ThermalDepthTracker:
+    """People of whom a thermal tracker and one by depth tell, each with one number.
+
+    Both go on by themselves. A person is told of by at most one track of each, has one place in the room, by
+    a Kalman filter over what both say, and is looked for in the depth image while it is hidden in part.
+
+    Args:
+        thermal: tracks people in the thermal image.
+        rgbd: tracks them by depth and colour.
+        config: settings.
+    """
+
+    def __init__(self, thermal: PeopleTracker, rgbd: RgbdTracker, config: FusionConfig) -> None:
+        self._config = config
+        self._heat, self._depth = Heat(thermal, config), Depth(rgbd, config)
+        self._pose = RobotPose()
+        self._people: tuple[Person, ...] = ()
+        self._time_s = -math.inf
+        self._numbers, self._guests = count(1), count(-1, -1)
+
+    @property
+    def cameras(self) -> tuple[str, ...]:
+        """Those of both trackers."""
+        return (*self._heat.tracker.cameras, *self._depth.tracker.cameras)
+
+    @property
+    def explanation(self) -> ContourExplanation:
+        """What the thermal tracker believes, by the numbers of the people."""
+        number = {one.warm.id: one.id for one in self._known if one.warm is not None}
+        return BothExplanations.of(self._heat.tracker.explanation, None, number).thermal
+
+    @property
+    def by_depth(self) -> RgbdExplanation | None:
+        """What the tracker by depth believes; None before its first image."""
+        return self._depth.tracker.explanation
+
+    def introduce(self, box: Box) -> None:
+        """Tell that a person is at this box [px] of the thermal image in the next frame."""
+        self._heat.tracker.introduce(box)
+
+    def update(self, frame: Frame) -> tuple[Track, ...]:
+        """Take in the next frame, whichever images it has, and tell who is where.
+
+        Raises:
+            BadInput: as both trackers say of images that are there.
+        """
+        if frame.odometry is not None:
+            self._pose = self._pose.moved(frame.odometry)
+        dt_s, self._time_s = min(frame.time_s - self._time_s, _LONGEST_STEP_S), frame.time_s
+        deep, warm = self._depth.reported(frame, self._pose), self._heat.reported(frame, self._pose)
+        people = [one.later(dt_s, self._config) for one in self._people]
+        people = self._joined(people, deep, _depth, self._with_depth)
+        people = self._joined(people, warm, _heat, self._with_heat)
+        people = self._single([self._peeked(one, people, frame) for one in people])
+        recognition = IdentityResolution(self._config, frame.time_s, self._depth.is_lit)
+        people = recognition.resolve_swaps(recognition.settled(people, self._numbers))
+        self._people = tuple(
+            with_width(one, frame, self._pose, self._config.learned_width)
+            for one in people
+            if not self._is_forgotten(one)
+        )
+        shown = [one for one in self._known if self._is_shown(one, frame)]
+        return tuple(self._track(one, frame) for one in sorted(shown, key=lambda one: one.id))
+
+    @property
+    def _known(self) -> list[Person]:
+        return [one for one in self._people if not one.is_guest]
+
+    def _with_depth(self, person: Person, reported: SensorTrack) -> Person:
+        return person.with_depth(reported, self._time_s, self._config)
+
+    def _with_heat(self, person: Person, reported: SensorTrack) -> Person:
+        if is_contradicted(person, reported, self._config):
+            reported = replace(reported, status=Status.TOTALLY_OCCLUDED)
+        return person.with_heat(reported, self._time_s, self._config)
+
+    def _joined(
+        self, people: Sequence[Person], reported: Sequence[SensorTrack], own: Own, take: Take
+    ) -> list[Person]:
+        """Tell people what a tracker knows of them; whose track is nobody's is a guest."""
+        found = pairs(people, reported, [own(one) for one in people], self._time_s, self._config)
+        joined = [take(one, reported[found[k]]) if k in found else one for k, one in enumerate(people)]
+        owners = {reported[m].id: people[k].id for k, m in found.items()}
+        joined = [_without(one, own, owners) for one in joined]
+        taken = set(found.values())
+        for k, one in enumerate(reported):
+            if k not in taken and one.is_seen and not self._is_double(one, joined):
+                joined.append(take(initiate_person(next(self._guests), one, self._time_s), one))
+        return joined
+
+    def _is_double(self, reported: SensorTrack, people: Sequence[Person]) -> bool:
+        """Tell whether a thermal track is likely somebody who has another one."""
+        gate, floor_m = self._config.own_gate, self._config.floor_m
+        return reported.box is not None and any(
+            one.is_seen and distance2(one, reported, floor_m) < gate for one in people
+        )
+
+    def _peeked(self, person: Person, people: Sequence[Person], frame: Frame) -> Person:
+        """Look for somebody where it is expected if nobody sees it whole."""
+        config = self._config
+        is_due = person.depth is not None and self._time_s - person.seen_s <= config.peek_s
+        if not is_due or any(one.is_clear for one in person.reported) or self._is_crowded(person, people):
+            return person
+        here = self._pose.locate(person.motion.place_m)
+        found = search_near(here, person.span_m, person.tall_m, frame)
+        if found is None or (found.warm is not None and found.warm < config.peek_warm):
+            return person
+        place, error = to_room(found.place_m, self._pose), np.eye(2) * config.peek_m**2
+        motion = person.motion.corrected(place, error)
+        return replace(person, motion=motion, is_guided=True, seen_s=self._time_s)
+
+    def _is_crowded(self, person: Person, people: Sequence[Person]) -> bool:
+        here, (deep_m, aside_m) = self._pose.locate(person.motion.place_m), _CROWDED_M
+        others = (
+            self._pose.locate(one.motion.place_m) for one in people if one is not person and one.is_seen
+        )
+        return any(abs(x - here[0]) < deep_m and abs(y - here[1]) < aside_m for x, y in others)
+
+    def _single(self, people: Sequence[Person]) -> list[Person]:
+        """Make one of two at one place of whom one is seen by heat alone, and the other by depth alone.
+
+        Two who are both known by their looks stay two: heat has taken one for the other.
+        """
+        kept = list(people)
+        for person in people:
+            if (
+                person not in kept
+                or person.deep is None
+                or (person.warm is not None and person.warm.is_seen)
+                or not person.deep.is_seen
+            ):
+                continue
+            double = next((one for one in kept if self._is_same(person, one)), None)
+            if double is not None:
+                kept = [part for one in kept for part in self._settled(one, person, double)]
+        return kept
+
+    def _settled(self, one: Person, deep: Person, double: Person) -> tuple[Person, ...]:
+        """Give a thermal track to whom depth sees there; who else had it, and is known by looks, is away."""
+        if one is double:
+            return () if double.appearance is None else (replace(double, warm=None, heat=None),)
+        if one is not deep:
+            return (one,)
+        both = replace(deep, warm=double.warm, heat=double.heat)
+        if double.appearance is None and not double.is_guest and (deep.is_guest or double.id < deep.id):
+            return (replace(both, id=double.id, born_s=double.born_s),)
+        return (both,)
+
+    def _is_same(self, deep: Person, other: Person) -> bool:
+        warm = other.warm
+        if other.deep is not None or warm is None or not warm.is_seen:
+            return False
+        return distance2(deep, warm, self._config.floor_m) < self._config.gate
+
+    def _is_forgotten(self, person: Person) -> bool:
+        limit_s = self._config.away_s if person.is_guest else self._config.remembered_s
+        return self._time_s - person.seen_s > limit_s
+
+    def _is_shown(self, person: Person, frame: Frame) -> bool:
+        """Tell whether somebody is said to be there: who is hidden for a while, others for a blink."""
+        config, late_s = self._config, self._time_s - person.seen_s
+        if person.is_seen or late_s > config.hidden_s:
+            return person.is_seen
+        found = depth_visibility(
+            self._pose.locate(person.motion.place_m), person.wide_m, person.tall_m, frame
+        )
+        if found is not None:
+            return found.nearer > config.hidden_share
+        return person.warm is not None or late_s <= config.blink_s
+
+    def _track(self, person: Person, frame: Frame) -> Track:
+        boxes = {
+            THERMAL: outline(person, frame, self._pose),
+            DEPTH: standing_box(person, DEPTH, frame, self._pose),
+        }
+        return Track(
+            id=person.id,
+            boxes={camera: box for camera, box in boxes.items() if box is not None},
+            place=person.floor_place(self._pose, self._config.shared_m),
+            confidence=max((one.confidence for one in person.reported), default=_UNSURE),
+            status=person.status,
+            age_s=self._time_s - person.born_s,
+            occluder=self._occluder_of(person),
+        )
+
+    def _occluder_of(self, person: Person) -> int | None:
+        """Name who hides a person, by either tracker; None for nobody."""
+        for reported, own in ((person.deep, _depth), (person.warm, _heat)):
+            if reported is not None and reported.occluder is not None:
+                found = [
+                    one.id for one in self._known if own(one) == reported.occluder and one.id != person.id
+                ]
+                if found:
+                    return found[0]
+        return None
+
+
+def _heat(person: Person) -> int | None:
+    return person.heat
+
+
+def _depth(person: Person) -> int | None:
+    return person.depth
+
+
+def _without(person: Person, own: Own, owners: Mapping[int, int]) -> Person:
+    """Take a track from who had it before, if it is somebody else's now: it must not go back and forth."""
+    mine = own(person)
+    if mine is None or owners.get(mine, person.id) == person.id:
+        return person
+    return replace(person, heat=_NOBODYS) if own is _heat else replace(person, depth=_NOBODYS)
 
 
 class FusedTracker:
@@ -22,7 +269,7 @@ class FusedTracker:
         panoramic: tracks them in the panorama, if the robot carries a camera for it.
     """
 
-    def __init__(self, ahead: AheadTracker, panoramic: PanoramicTracker) -> None:
+    def __init__(self, ahead: ThermalDepthTracker, panoramic: PanoramicTracker) -> None:
         self._ahead, self._panoramic = ahead, panoramic
         self._round: HandoverTracker | None = None
 

@@ -125,7 +125,7 @@ class RgbdTracker:
             width_m=found.width_m,
             head_m=head,
             low_m=max(head - found.height_m, 0.0),
-            looks=looks_in(view, found.box),
+            appearance=looks_in(view, found.box),
         )
         return Detection(
             found=found, place_m=_place(found, view), body=body, score=score, is_verified=is_verified

@@ -37,7 +37,7 @@ from peopleboy.tracker.thermal.particle_filter import (
     weigh,
 )
 from peopleboy.tracker.thermal.particles import Floats, draw_around
-from peopleboy.tracker.thermal.tracked_person import FORGET_S, Streak, TrackedPerson, newborn
+from peopleboy.tracker.thermal.tracked_person import FORGET_S, Streak, TrackedPerson, initiate_person
 from peopleboy.tracker.thermal.whereabouts import (
     Regions,
     box_of,
@@ -213,7 +213,7 @@ class PeopleTracker:
         self._streak = self._streak.after(self._detector, known, view, config)
         if not self._streak.is_some:
             return ()
-        found = newborn(self._born + 1, self._detector, view, time_s, config)
+        found = initiate_person(self._born + 1, self._detector, view, time_s, config)
         if not self._streak.is_enough(config):
             return (replace(found, status=Status.TENTATIVE),)
         self._streak, self._detector = Streak(), None
@@ -256,7 +256,7 @@ class PeopleTracker:
         """Start a filter on samples around a person who is pointed out."""
         state = draw_around(box, self._config, self._rng)
         belief = weigh(state, view, self._config.person, self._config)
-        found = newborn(self._born + 1, belief, view, time_s, self._config)
+        found = initiate_person(self._born + 1, belief, view, time_s, self._config)
         self._born = found.id
         self._persons = (*self._persons, found)
 

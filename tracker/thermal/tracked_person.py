@@ -166,7 +166,7 @@ def _is_beside(
     return bool((shared_parts(regions_of([found], config), around) > 0).any())
 
 
-def newborn(
+def initiate_person(
     number: int, belief: Belief, view: FrameView, time_s: float, config: TrackerConfig
 ) -> TrackedPerson:
     """Make a person of what a filter has settled on."""

@@ -9,8 +9,7 @@ import cv2
 import numpy as np
 
 from peopleboy.tracker.boxes import area, iou, shared_of_smaller
-from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry, PinholeCalibration
-from peopleboy.tracker.fusion.fresh_images import FreshImages, joined
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, FreshImages, Odometry, PinholeCalibration, joined
 from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import NOBODY, Proposals
 from peopleboy.tracker.thermal.mount import mount_of

@@ -1,5 +1,5 @@
 from peopleboy.scenarios.drawing.contour_lines import lines_of
-from peopleboy.tracker.handover.both_explanations import BothExplanations
+from peopleboy.tracker.fusion.explanations import BothExplanations
 from tests.helpers.runs import synthetic_ticks as made
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.recording.explanations import LIKELY, UNLIKELY, explained_lines, explained_points
-from peopleboy.tracker.handover.both_explanations import BothExplanations
+from peopleboy.tracker.fusion.explanations import BothExplanations
 from peopleboy.tracker.tracking.association import DetectionExplanation
 from tests.helpers.runs import synthetic_ticks as made
 from tests.helpers.runs.hand_made_tracks import track

@@ -24,7 +24,7 @@ from peopleboy.tracker.attention.people.attended import Attended
 from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.attention.people.views import View
 from peopleboy.tracker.frame import COLOUR
-from peopleboy.tracker.handover.both_explanations import BothExplanations
+from peopleboy.tracker.fusion.explanations import BothExplanations
 from peopleboy.tracker.panoramic.paper.depth_cues import measure
 from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
 from peopleboy.tracker.track import FloorPlace

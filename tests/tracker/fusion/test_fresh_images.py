@@ -7,8 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from peopleboy.tracker.frame import Frame, Odometry
-from peopleboy.tracker.fusion.fresh_images import FreshImages, joined
+from peopleboy.tracker.frame import Frame, FreshImages, Odometry, joined
 
 
 def frame(k: int, image: int | None, odometry: Odometry | None = None) -> Frame:

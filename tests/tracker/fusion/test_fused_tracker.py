@@ -13,12 +13,11 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, PANORAMA, THERMAL, Frame, Odometry
-from peopleboy.tracker.fusion.ahead_tracker import AheadTracker
-from peopleboy.tracker.fusion.fused_tracker import FusedTracker
+from peopleboy.tracker.fusion.fused_tracker import FusedTracker, ThermalDepthTracker
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
+from peopleboy.tracker.rgbd.people.colour_histogram import BINS
 from peopleboy.tracker.rgbd.people.look_at import Body
-from peopleboy.tracker.rgbd.people.looks import BINS
 from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
@@ -34,7 +33,7 @@ PAINT = {RED: (230, 20, 20), BLUE: (20, 20, 230), GREEN: (20, 230, 20)}
 HIDDEN = Status.TOTALLY_OCCLUDED
 
 
-def looks(colour: int) -> np.ndarray:
+def appearance(colour: int) -> np.ndarray:
     found = np.zeros(BINS)
     found[colour] = 1.0
     return found
@@ -79,22 +78,22 @@ class Depth:
                 SimpleNamespace(
                     id=one.id, place_m=np.array(one.place.position_m), seen_s=frame.time_s, body=body(colour)
                 )
-                for one, colour in self.told
+                for one, colour in self.reported
                 if one.place is not None
             ],
             detections=[
                 SimpleNamespace(place_m=np.array(one.place.position_m), body=body(colour))
-                for one, colour in self.told
+                for one, colour in self.reported
                 if one.place is not None and one.status is not HIDDEN
             ],
         )
-        return tuple(one for one, _ in self.told)
+        return tuple(one for one, _ in self.reported)
 
-    told: Sequence[tuple[Track, int]] = ()
+    reported: Sequence[tuple[Track, int]] = ()
 
 
 def body(colour: int) -> Body:
-    return Body(width_m=0.45, head_m=TALL_M, low_m=0.0, looks=looks(colour))
+    return Body(width_m=0.45, head_m=TALL_M, low_m=0.0, appearance=appearance(colour))
 
 
 def is_at(one: Track, block: Block) -> bool:
@@ -128,7 +127,7 @@ class Scene:
 
     def __init__(self) -> None:
         self.heat, self.depth, self.around = Heat(), Depth(), Around()
-        ahead = AheadTracker(self.heat, self.depth, FusionConfig())  # type: ignore[arg-type]
+        ahead = ThermalDepthTracker(self.heat, self.depth, FusionConfig())  # type: ignore[arg-type]
         self.tracker = FusedTracker(ahead, self.around)  # type: ignore[arg-type]
         self.k = 0
         self.clothes: dict[Block, int] = {}
@@ -143,7 +142,7 @@ class Scene:
         has_panorama: bool = False,
     ) -> dict[int, Track]:
         self.k += 1
-        self.heat.tracks, self.depth.told = tuple(warm), tuple(deep)
+        self.heat.tracks, self.depth.reported = tuple(warm), tuple(deep)
         self.clothes = {block: colour for block in blocks for one, colour in deep if is_at(one, block)}
         images: dict[str, Any] = {
             THERMAL: np.full((HEIGHT, WIDTH), grey, np.uint8),
@@ -337,8 +336,8 @@ def test_whose_track_drifted_away_keeps_the_number_where_the_looks_are() -> None
         scene.see(someone, deep=[by_depth(1, someone, RED)])
     for k in range(12):
         beside = replace(thing, x_m=min(0.12 * k, 0.7))
-        told = [by_depth(1, beside, GREEN)] + ([by_depth(7, someone, RED)] if k > 8 else [])
-        seen = scene.see(someone, beside, deep=told)
+        reported = [by_depth(1, beside, GREEN)] + ([by_depth(7, someone, RED)] if k > 8 else [])
+        seen = scene.see(someone, beside, deep=reported)
     assert seen[1].place is not None
     assert seen[1].place.position_m == pytest.approx((5.1, 0.0), abs=0.1)
 

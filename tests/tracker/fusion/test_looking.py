@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.frame import DEPTH, THERMAL, Frame
-from peopleboy.tracker.fusion.glance import glance
-from peopleboy.tracker.fusion.peek import peek
-from peopleboy.tracker.fusion.warmth import is_warm
+from peopleboy.tracker.fusion.guided_search import search_near
+from peopleboy.tracker.fusion.visibility import depth_visibility, is_warm
 from peopleboy.tracker.rgbd.detection.human_size import HumanSize
 from peopleboy.tracker.rgbd.detection.pre_detection import PreDetection, PreDetector
 from peopleboy.tracker.rgbd.detection.u_depth import UDepthConfig
@@ -32,13 +31,13 @@ def at(block: Block) -> np.ndarray:
 
 def test_what_stands_before_and_behind_somebody_is_told() -> None:
     someone = Block(0.0, 5.0)
-    seen = glance(at(someone), 0.45, 1.65, make_frame(someone))
-    hidden = glance(at(someone), 0.45, 1.65, make_frame(Block(0.0, 3.0, width_m=1.0), someone))
-    gone = glance(at(someone), 0.45, 1.65, make_frame())
+    seen = depth_visibility(at(someone), 0.45, 1.65, make_frame(someone))
+    hidden = depth_visibility(at(someone), 0.45, 1.65, make_frame(Block(0.0, 3.0, width_m=1.0), someone))
+    gone = depth_visibility(at(someone), 0.45, 1.65, make_frame())
     assert seen is not None and hidden is not None and gone is not None  # noqa: PT018
     assert (seen.nearer, seen.beyond, seen.warm) == (0.0, 0.0, 1.0)
     assert (hidden.nearer, gone.beyond) == (1.0, 1.0)
-    assert glance(np.array([-2.0, 0.0]), 0.45, 1.65, make_frame()) is None
+    assert depth_visibility(np.array([-2.0, 0.0]), 0.45, 1.65, make_frame()) is None
 
 
 @pytest.mark.parametrize("covered_m", [0.0, 0.1, 0.2, 0.3])
@@ -46,7 +45,7 @@ def test_who_is_covered_in_part_is_found_where_it_stands(covered_m: float) -> No
     someone = Block(0.2, 5.0)
     inner_m = (0.2 - 0.225 + covered_m) / 5.0 * 3.0  # where the front one's right side ends, at its depth
     front = Block(inner_m - 0.4, 3.0, width_m=0.8)
-    found = peek(at(someone) + np.array([0.05, 0.12]), 0.45, 1.65, make_frame(front, someone))
+    found = search_near(at(someone) + np.array([0.05, 0.12]), 0.45, 1.65, make_frame(front, someone))
     assert found is not None
     assert found.place_m == pytest.approx(at(someone), abs=0.05)
     assert found.warm == 1.0
@@ -54,8 +53,8 @@ def test_who_is_covered_in_part_is_found_where_it_stands(covered_m: float) -> No
 
 def test_nobody_is_found_where_nobody_is_or_all_is_covered() -> None:
     someone = Block(0.0, 5.0)
-    assert peek(at(someone), 0.45, 1.65, make_frame()) is None
-    assert peek(at(someone), 0.45, 1.65, make_frame(Block(0.0, 3.0, width_m=1.0), someone)) is None
+    assert search_near(at(someone), 0.45, 1.65, make_frame()) is None
+    assert search_near(at(someone), 0.45, 1.65, make_frame(Block(0.0, 3.0, width_m=1.0), someone)) is None
 
 
 def detected(frame: Frame) -> PreDetection:

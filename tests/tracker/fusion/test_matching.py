@@ -9,52 +9,56 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.tracker.fusion.ahead_tracker import _depth as depth_of
-from peopleboy.tracker.fusion.ahead_tracker import _without as without
+from peopleboy.tracker.fusion.fused_person import Person, SensorTrack, initiate_person
+from peopleboy.tracker.fusion.fused_tracker import _depth as depth_of
+from peopleboy.tracker.fusion.fused_tracker import _without as without
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
-from peopleboy.tracker.fusion.matching import apart, cheapest, cost, is_beside
-from peopleboy.tracker.fusion.person import Person, newborn
-from peopleboy.tracker.fusion.told import Told
-from peopleboy.tracker.rgbd.people.looks import BINS
+from peopleboy.tracker.fusion.track_to_track import cheapest, cost, distance2, is_contradicted
+from peopleboy.tracker.rgbd.people.colour_histogram import BINS
 from peopleboy.tracker.track import Status
 
 CONFIG = FusionConfig()
 
 
-def looks(colour: int) -> np.ndarray:
+def appearance(colour: int) -> np.ndarray:
     found = np.zeros(BINS)
     found[colour] = 1.0
     return found
 
 
-def told(x: float, y: float, along_m: float = 0.05, **further: object) -> Told:
+def reported(x: float, y: float, along_m: float = 0.05, **further: object) -> SensorTrack:
     """Seen from far away along x, sure to 5 cm across."""
     error = np.diag([along_m**2, 0.05**2])
     given = {"id": 1, "status": Status.TRACKED, "confidence": 0.9} | further
-    return Told(place_m=np.array([x, y]), error_m2=error, **given)  # type: ignore[arg-type]
+    return SensorTrack(place_m=np.array([x, y]), error_m2=error, **given)  # type: ignore[arg-type]
 
 
 def person(x: float, y: float, **further: object) -> Person:
-    one = told(x, y, **further)
-    return newborn(1, one, 0.0).with_depth(one, 0.0, CONFIG)
+    one = reported(x, y, **further)
+    return initiate_person(1, one, 0.0).with_depth(one, 0.0, CONFIG)
 
 
 def test_heat_is_sure_of_the_bearing_and_depth_of_the_range_too() -> None:
     someone = person(6.0, 0.0)
-    farther, aside = told(6.8, 0.0, along_m=0.6), told(6.0, 0.8, along_m=0.6)
-    assert apart(someone, farther, CONFIG.floor_m) < 3.0 < CONFIG.gate < apart(someone, aside, CONFIG.floor_m)
-    assert apart(someone, told(6.8, 0.0), CONFIG.floor_m) > CONFIG.gate
+    farther, aside = reported(6.8, 0.0, along_m=0.6), reported(6.0, 0.8, along_m=0.6)
+    assert (
+        distance2(someone, farther, CONFIG.floor_m)
+        < 3.0
+        < CONFIG.gate
+        < distance2(someone, aside, CONFIG.floor_m)
+    )
+    assert distance2(someone, reported(6.8, 0.0), CONFIG.floor_m) > CONFIG.gate
 
 
 def test_looks_and_memory_decide_between_two_places_alike() -> None:
-    red = person(6.0, 0.0, looks=looks(1), tall_m=1.7)
-    same, other = (told(6.1, 0.0, looks=looks(colour), tall_m=1.7) for colour in (1, 2))
+    red = person(6.0, 0.0, appearance=appearance(1), tall_m=1.7)
+    same, other = (reported(6.1, 0.0, appearance=appearance(colour), tall_m=1.7) for colour in (1, 2))
     assert cost(red, same, None, 0.1, CONFIG) < cost(red, other, None, 0.1, CONFIG)
     assert cost(red, same, 1, 0.1, CONFIG) == cost(red, same, None, 0.1, CONFIG) - CONFIG.loyalty
 
 
 def test_who_is_away_is_not_followed_even_by_its_own_track() -> None:
-    someone, here = person(6.0, 0.0), told(6.0, 0.0)
+    someone, here = person(6.0, 0.0), reported(6.0, 0.0)
     assert np.isfinite(cost(someone, here, 1, CONFIG.away_s, CONFIG))
     assert np.isinf(cost(someone, here, 1, CONFIG.away_s + 0.01, CONFIG))
 
@@ -62,10 +66,10 @@ def test_who_is_away_is_not_followed_even_by_its_own_track() -> None:
 def test_a_thermal_track_is_beside_who_is_seen_whole_in_another_bearing_and_not_in_another_range() -> None:
     box = (0.0, 0.0, 20.0, 90.0)
     someone, hidden = person(6.0, 0.0), person(6.0, 0.0, status=Status.PARTLY_OCCLUDED)
-    farther = told(7.5, 0.0, along_m=0.6, box=box)
-    beside = told(6.0, CONFIG.beside_m + 0.01, along_m=0.6, box=box)
-    assert [is_beside(someone, one, CONFIG) for one in (farther, beside)] == [False, True]
-    assert not is_beside(hidden, beside, CONFIG)
+    farther = reported(7.5, 0.0, along_m=0.6, box=box)
+    beside = reported(6.0, CONFIG.beside_m + 0.01, along_m=0.6, box=box)
+    assert [is_contradicted(someone, one, CONFIG) for one in (farther, beside)] == [False, True]
+    assert not is_contradicted(hidden, beside, CONFIG)
 
 
 costs = st.integers(1, 4).flatmap(

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from functools import singledispatch
 
 from peopleboy.tracker.attention.people.attended import Attended
-from peopleboy.tracker.fusion.fused_explanation import FusedExplanation
-from peopleboy.tracker.handover.both_explanations import BothExplanations
+from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplanation
 from peopleboy.tracker.thermal.explanation import ContourExplanation
 
 

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from peopleboy.tracker.rgbd.people.colour_histogram import similarity
 from peopleboy.tracker.rgbd.people.detection import Detection
 from peopleboy.tracker.rgbd.people.hypothesis import Hypothesis
-from peopleboy.tracker.rgbd.people.looks import similarity
 from peopleboy.tracker.rgbd.rgbd_config import HypothesesConfig
 
 _NEVER = 1e6
@@ -41,7 +41,7 @@ def associate(
             apart = float(np.hypot(*(detection.place_m - person.place_m)))
             gate = _gate_m(person, detection, time_s, config)
             if apart < gate:
-                unlike = 1.0 - similarity(person.body.looks, detection.body.looks)
+                unlike = 1.0 - similarity(person.body.appearance, detection.body.appearance)
                 # Whoever is believed in goes first.
                 doubt = 0.0 if person.id else 0.5
                 cost[row, column] = apart / gate + config.looks_weight * unlike + doubt

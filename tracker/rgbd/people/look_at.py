@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.rgbd.detection.depth_view import Depth, DepthView
-from peopleboy.tracker.rgbd.people.looks import BINS, bin_at, bin_of_colour
+from peopleboy.tracker.rgbd.people.colour_histogram import BINS, bin_at, bin_of_colour
 from peopleboy.tracker.track import Box
 
 Image = NDArray[np.uint8]
@@ -55,7 +55,7 @@ class Body:
     width_m: float
     head_m: float
     low_m: float
-    looks: Floats
+    appearance: Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,7 +85,7 @@ def look_at(view: RgbdView, places_m: Floats, body: Body, foreground_m: float) -
         np.array([view.geometry.focal_px, view.geometry.centre_u, view.geometry.centre_v]),
         np.ascontiguousarray(places_m),
         np.array([body.width_m, body.head_m, body.low_m, view.body_m]),
-        body.looks,
+        body.appearance,
         foreground_m if foreground_m > 0.0 else math.inf,
         bin_of_colour(),
     )
@@ -146,7 +146,7 @@ def _glances(
     camera: Floats,
     places: Floats,
     body: Floats,
-    looks: Floats,
+    appearance: Floats,
     foreground_m: float,
     table: NDArray[np.uint8],
 ) -> Floats:
@@ -166,7 +166,7 @@ def _glances(
             continue
         found[n, 2] = (is_read & (off < -_OFF_M)).sum() / readings
         found[n, 3] = (is_read & (off > _OFF_M)).sum() / readings
-        found[n, 0] = _similarity(colour, samples[:count], off, foreground_m, looks, table)
+        found[n, 0] = _similarity(colour, samples[:count], off, foreground_m, appearance, table)
         middle = samples[:count][is_read & (samples[:count, 3] > 0.0) & (np.abs(off) < foreground_m)]
         if found[n, 0] > 0.0 and len(middle):
             x = ((middle[:, 0] - camera[1]) / camera[0] * middle[:, 2]).mean()
@@ -194,7 +194,12 @@ def _sample(depth: Depth, left: float, top: float, width: float, height: float, 
 
 @njit(cache=True, nogil=True)
 def _similarity(
-    colour: Image, samples: Floats, off: Floats, foreground_m: float, looks: Floats, table: NDArray[np.uint8]
+    colour: Image,
+    samples: Floats,
+    off: Floats,
+    foreground_m: float,
+    appearance: Floats,
+    table: NDArray[np.uint8],
 ) -> float:
     """Compare the colours of samples that are near enough; 0 for too few of them (SA eq. 4.25)."""
     counts, total = np.zeros(BINS), 0
@@ -206,7 +211,7 @@ def _similarity(
         return 0.0
     similar = 0.0
     for k in range(BINS):
-        similar += math.sqrt(looks[k] * counts[k] / total)
+        similar += math.sqrt(appearance[k] * counts[k] / total)
     return similar
 
 

@@ -151,7 +151,7 @@ class Management:
             width_m=old.width_m + _SIZE_SHARE * (new.width_m - old.width_m),
             head_m=old.head_m + _SIZE_SHARE * (new.head_m - old.head_m),
             low_m=old.low_m + _SIZE_SHARE * (new.low_m - old.low_m),
-            looks=old.looks + rate * (new.looks - old.looks),
+            appearance=old.appearance + rate * (new.appearance - old.appearance),
         )
 
     def _judged(self, person: Hypothesis, update: Update, *, is_seen: bool) -> Hypothesis:

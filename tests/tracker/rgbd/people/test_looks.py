@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from peopleboy.tracker.rgbd.people.colour_histogram import BINS, HUES, SATURATIONS, bin_of_colour, similarity
 from peopleboy.tracker.rgbd.people.look_at import RgbdView, looks_in
-from peopleboy.tracker.rgbd.people.looks import BINS, HUES, SATURATIONS, bin_of_colour, similarity
 from tests.helpers.depth_scene import HEIGHT, WIDTH, Block, depth_of, make_view
 from tests.helpers.images.as_taken import as_taken
 
@@ -41,6 +41,6 @@ def test_only_the_nearer_of_two_depths_is_looked_at() -> None:
     depth = depth_of([Block(0.0, 3.0)])
     colour = np.full((HEIGHT, WIDTH, 3), (220, 20, 20), np.uint8)
     colour[depth == 3000] = (20, 20, 220)
-    looks = looks_in(RgbdView(depth, as_taken(colour), make_view(), 0.0), (120.0, 80.0, 80.0, 70.0))
-    assert looks[bin_of(20, 20, 220)] == pytest.approx(1.0, abs=0.02)
-    assert looks.sum() == pytest.approx(1.0)
+    appearance = looks_in(RgbdView(depth, as_taken(colour), make_view(), 0.0), (120.0, 80.0, 80.0, 70.0))
+    assert appearance[bin_of(20, 20, 220)] == pytest.approx(1.0, abs=0.02)
+    assert appearance.sum() == pytest.approx(1.0)

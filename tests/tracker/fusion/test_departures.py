@@ -3,7 +3,7 @@ import math
 import pytest
 
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame, Odometry
-from peopleboy.tracker.handover.departures import DEPTH_SHARE, FASTEST_M_S, FORGET_S, REACH_M, Departures
+from peopleboy.tracker.fusion.handover_links import DEPTH_SHARE, FASTEST_M_S, FORGET_S, REACH_M, Departures
 from peopleboy.tracker.track import Status
 from tests.helpers.runs.hand_made_tracks import track
 

@@ -9,66 +9,67 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from peopleboy.tracker.frame import Floats
+from peopleboy.tracker.fusion.fused_person import Person, SensorTrack
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
-from peopleboy.tracker.fusion.person import Person
-from peopleboy.tracker.fusion.told import Told
-from peopleboy.tracker.rgbd.people.looks import similarity
+from peopleboy.tracker.rgbd.people.colour_histogram import similarity
 
 _NEVER: Final = 1e6
 
 
-def apart(person: Person, told: Told, floor_m: float) -> float:
+def distance2(person: Person, reported: SensorTrack, floor_m: float) -> float:
     """Tell by how much what is told differs from a person's place: squared, in standard deviations.
 
     A thermal track is sure of its bearing and not of its range; one by depth is sure of both.
     """
-    away = told.place_m - person.motion.place_m
-    error = told.error_m2 + person.motion.place_m2 + np.eye(2) * floor_m**2
+    away = reported.place_m - person.motion.place_m
+    error = reported.error_m2 + person.motion.place_m2 + np.eye(2) * floor_m**2
     return float(away @ np.linalg.solve(error, away))
 
 
-def cost(person: Person, told: Told, own: int | None, time_s: float, config: FusionConfig) -> float:
+def cost(
+    person: Person, reported: SensorTrack, own: int | None, time_s: float, config: FusionConfig
+) -> float:
     """Tell how unlikely it is that a person is told of; infinite if it is out of the question.
 
     Args:
         person: where it is expected.
-        told: what a tracker tells.
+        reported: what a tracker tells.
         own: id of that tracker's track that was the person's before.
         time_s: [s] now.
         config: settings.
     """
     if time_s - person.seen_s > config.away_s:
         return np.inf
-    away, unlike = apart(person, told, config.floor_m), _unlikeness(person, told, config)
-    if told.id == own:
-        loyalty = config.loyalty if told.box is None else config.loyalty_heat
+    away, unlike = distance2(person, reported, config.floor_m), _unlikeness(person, reported, config)
+    if reported.id == own:
+        loyalty = config.loyalty if reported.box is None else config.loyalty_heat
         return np.inf if away > config.own_gate else away + unlike - loyalty
     is_out = away > config.gate or away + unlike > config.unlike_gate
     return np.inf if is_out else away + unlike
 
 
-def is_beside(person: Person, told: Told, config: FusionConfig) -> bool:
+def is_contradicted(person: Person, reported: SensorTrack, config: FusionConfig) -> bool:
     """Tell whether a thermal track is in another bearing than somebody whom depth sees whole."""
     deep = person.deep
-    if told.box is None or deep is None or not deep.is_clear:
+    if reported.box is None or deep is None or not deep.is_clear:
         return False
-    across = np.linalg.eigh(told.error_m2)[1][:, 0]  # the line of sight, along which heat is unsure
-    return abs(float(across @ (told.place_m - deep.place_m))) > config.beside_m
+    across = np.linalg.eigh(reported.error_m2)[1][:, 0]  # the line of sight, along which heat is unsure
+    return abs(float(across @ (reported.place_m - deep.place_m))) > config.beside_m
 
 
-def _unlikeness(person: Person, told: Told, config: FusionConfig) -> float:
+def _unlikeness(person: Person, reported: SensorTrack, config: FusionConfig) -> float:
     """Rate how different looks and height are; 0 as far as they are not known."""
     found = 0.0
-    if told.looks is not None and person.looks is not None:
-        found += config.looks_weight * (1.0 - similarity(person.looks, told.looks))
-    if told.tall_m is not None and told.is_clear and person.depth is not None:
-        found += min(((told.tall_m - person.tall_m) / config.height_sd_m) ** 2, config.most_height)
+    if reported.appearance is not None and person.appearance is not None:
+        found += config.looks_weight * (1.0 - similarity(person.appearance, reported.appearance))
+    if reported.tall_m is not None and reported.is_clear and person.depth is not None:
+        found += min(((reported.tall_m - person.tall_m) / config.height_sd_m) ** 2, config.most_height)
     return found
 
 
 def pairs(
     people: Sequence[Person],
-    told: Sequence[Told],
+    reported: Sequence[SensorTrack],
     owns: Sequence[int | None],
     time_s: float,
     config: FusionConfig,
@@ -77,7 +78,7 @@ def pairs(
 
     Args:
         people: N.
-        told: M.
+        reported: M.
         owns: of each person the id of its track of before.
         time_s: [s] now.
         config: settings.
@@ -86,10 +87,10 @@ def pairs(
         Index of what is told by index of the person.
     """
     costs = [
-        [cost(person, one, own, time_s, config) for one in told]
+        [cost(person, one, own, time_s, config) for one in reported]
         for person, own in zip(people, owns, strict=True)
     ]
-    return cheapest(np.array(costs).reshape(len(people), len(told)))
+    return cheapest(np.array(costs).reshape(len(people), len(reported)))
 
 
 def cheapest(costs: Floats) -> dict[int, int]:

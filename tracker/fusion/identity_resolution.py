@@ -10,11 +10,10 @@ from typing import Final
 import numpy as np
 
 from peopleboy.tracker.frame import Floats
+from peopleboy.tracker.fusion.fused_person import Person, SensorTrack
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
-from peopleboy.tracker.fusion.matching import cheapest
-from peopleboy.tracker.fusion.person import Person
-from peopleboy.tracker.fusion.told import Told
-from peopleboy.tracker.rgbd.people.looks import similarity
+from peopleboy.tracker.fusion.track_to_track import cheapest
+from peopleboy.tracker.rgbd.people.colour_histogram import similarity
 
 _OWN: Final = 1.0  # what it counts that a track was the person's before
 _UNLIKE: Final = 5.0  # what entirely other looks count
@@ -24,7 +23,7 @@ _DOUBTED: Final = 2  # frames in a row in which somebody looked otherwise who ma
 
 
 @dataclass(frozen=True, slots=True)
-class Recognition:
+class IdentityResolution:
     """Compares those who are here with those who were.
 
     Attributes:
@@ -63,7 +62,9 @@ class Recognition:
 
     def _is_away(self, person: Person) -> bool:
         """Tell whether somebody may be elsewhere: who is not seen, or not known by looks of late."""
-        is_doubted = self.is_lit and person.looks is not None and self.time_s - person.looked_s > _DOUBTED_S
+        is_doubted = (
+            self.is_lit and person.appearance is not None and self.time_s - person.appearance_s > _DOUBTED_S
+        )
         return not person.is_seen or is_doubted
 
     def _is_plain(self, guest: Person, costs: Floats, chosen: int | None) -> bool:
@@ -77,14 +78,14 @@ class Recognition:
         is_late = self.time_s - guest.born_s >= self.config.settled_s
         if not self.is_lit or is_late or len(costs) == 0:
             return True
-        if guest.looks is None:
+        if guest.appearance is None:
             return False
         if chosen is None:
             return bool(np.isinf(costs).all())
         others = np.delete(costs, chosen)
         return bool((others - costs[chosen] >= self.config.plain).all())
 
-    def put_right(self, people: Sequence[Person]) -> list[Person]:
+    def resolve_swaps(self, people: Sequence[Person]) -> list[Person]:
         """Give people who look like another that one's number.
 
         Who has looked otherwise for a while changes with somebody of its looks who is away, or looks
@@ -105,7 +106,7 @@ class Recognition:
 
     def _strangeness(self, person: Person, guest: Person) -> float:
         """Rate how unlikely it is that a guest is somebody; infinite if it is out of the question."""
-        if person.is_seen and guest.looks is None:
+        if person.is_seen and guest.appearance is None:
             return math.inf
         is_own = person.depth == guest.depth if guest.depth is not None else person.heat == guest.heat
         return (
@@ -118,8 +119,8 @@ class Recognition:
         """Rate the way since somebody was last known by its looks, or seen if there are none: 1 at most."""
         config = self.config
         late_s, last_m = self.time_s - person.seen_s, person.motion.place_m
-        if guest.looks is not None and person.looked_m is not None:
-            late_s, last_m = self.time_s - person.looked_s, person.looked_m
+        if guest.appearance is not None and person.appearance_m is not None:
+            late_s, last_m = self.time_s - person.appearance_s, person.appearance_m
         slack_m = 2.0 * math.sqrt(float(np.linalg.eigvalsh(guest.motion.place_m2)[-1]))
         reach_m = config.reach_m + config.fastest_m_s * late_s + slack_m
         found = math.dist(guest.motion.place_m, last_m) / reach_m
@@ -131,8 +132,8 @@ class Recognition:
         off = 0.0
         if guest.depth is not None and person.depth is not None:
             off = abs(guest.tall_m - person.tall_m) / config.tallest_off_m
-        if guest.looks is not None and person.looks is not None:
-            alike = similarity(person.looks, guest.looks)
+        if guest.appearance is not None and person.appearance is not None:
+            alike = similarity(person.appearance, guest.appearance)
             return _UNLIKE * (1.0 - alike) + min(off, 1.0) if alike >= config.least_alike else math.inf
         is_long_ago = not is_own and self.time_s - person.seen_s > config.lookless_s
         return math.inf if is_long_ago or off > 1.0 else off
@@ -142,15 +143,15 @@ class Recognition:
 
     def _other(self, person: Person, people: Sequence[Person]) -> Person | None:
         """Find whose looks somebody has who looks otherwise, or is new."""
-        told, is_strange = person.deep, person.strange >= self.config.strange_frames
-        if told is None or told.looks is None:
+        reported, is_strange = person.deep, person.strange >= self.config.strange_frames
+        if reported is None or reported.appearance is None:
             return None
         if not is_strange and not self._is_young(person):
             return None
         alike = {
-            other.id: similarity(other.looks, told.looks)
+            other.id: similarity(other.appearance, reported.appearance)
             for other in people
-            if other.looks is not None and self._may_be(person, other, told, is_strange=is_strange)
+            if other.appearance is not None and self._may_be(person, other, reported, is_strange=is_strange)
         }
         best = max(alike, key=lambda number: alike[number], default=None)
         if best is None or alike[best] <= (
@@ -159,8 +160,8 @@ class Recognition:
             return None
         return next(other for other in people if other.id == best)
 
-    def _may_be(self, person: Person, other: Person, told: Told, *, is_strange: bool) -> bool:
-        if other.id == person.id or other.is_guest or told.tall_m is None:
+    def _may_be(self, person: Person, other: Person, reported: SensorTrack, *, is_strange: bool) -> bool:
+        if other.id == person.id or other.is_guest or reported.tall_m is None:
             return False
         if other.is_seen:
             return is_strange and other.strange >= _DOUBTED

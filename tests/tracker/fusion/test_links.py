@@ -5,7 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.tracker.handover.links import FLOOR_M2, GATE, Votes, apartness, is_same_way, pairs
+from peopleboy.tracker.fusion.handover_links import (
+    FLOOR_M2,
+    GATE,
+    LinkEvidence,
+    is_same_way,
+    mahalanobis2,
+    pairs,
+)
 from peopleboy.tracker.track import FloorPlace
 from tests.helpers.runs.hand_made_tracks import track
 
@@ -14,10 +21,10 @@ PLACES = st.lists(st.tuples(st.floats(-2, 2), st.floats(-2, 2)), max_size=4)
 
 def test_apartness_is_in_standard_deviations_of_both_and_of_what_either_may_be_off():
     one, other = track(1, (3.0, 0.0), deviation_m=0.3), track(2, (3.0, 0.8), deviation_m=0.4)
-    assert apartness(one, other) == pytest.approx(0.8**2 / (0.3**2 + 0.4**2 + FLOOR_M2[0]))
-    assert apartness(one, other) == apartness(other, one)
-    assert apartness(one, one) == 0.0
-    assert apartness(one, track(3, None)) == np.inf
+    assert mahalanobis2(one, other) == pytest.approx(0.8**2 / (0.3**2 + 0.4**2 + FLOOR_M2[0]))
+    assert mahalanobis2(one, other) == mahalanobis2(other, one)
+    assert mahalanobis2(one, one) == 0.0
+    assert mahalanobis2(one, track(3, None)) == np.inf
 
 
 def test_apartness_counts_along_the_line_of_sight_less_where_that_is_unsure():
@@ -25,7 +32,7 @@ def test_apartness_counts_along_the_line_of_sight_less_where_that_is_unsure():
     one = track(1, (2.0, 2.0))
     unsure = type(one)(id=2, place=place, confidence=1.0, status=one.status, age_s=1.0)
     along, aside = track(3, (2.5, 2.5)), track(3, (2.5, 1.5))
-    assert apartness(unsure, along) < apartness(unsure, aside) / 3
+    assert mahalanobis2(unsure, along) < mahalanobis2(unsure, aside) / 3
 
 
 @pytest.mark.parametrize(
@@ -50,13 +57,13 @@ def test_pairs_are_the_best_of_all_ways_to_pair(ours, theirs):
     ones = [track(k, at) for k, at in enumerate(ours)]
     others = [track(k, at) for k, at in enumerate(theirs)]
     found = pairs(ones, others)
-    assert all(apartness(one, other) < GATE for one, other in found)
+    assert all(mahalanobis2(one, other) < GATE for one, other in found)
     for side in zip(*found, strict=True):
         assert len({one.id for one in side}) == len(side)
 
     def cost(chosen):
         """What is left alone costs as much as a pair at twice the gate."""
-        return sum(min(apartness(one, other), 2 * GATE) for one, other in chosen)
+        return sum(min(mahalanobis2(one, other), 2 * GATE) for one, other in chosen)
 
     few, many = sorted((ones, others), key=len)
     ways = [list(zip(few, chosen, strict=True)) for chosen in itertools.permutations(many, len(few))]
@@ -74,7 +81,7 @@ def stood(*numbers):
 
 
 def test_a_link_needs_so_many_frames_and_goes_as_slowly_as_it_came():
-    votes = Votes(needed=3, most=5)
+    votes = LinkEvidence(needed=3, most=5)
     for count in range(1, 8):
         votes.count([(1, 7)], stood(1), stood(7))
         assert votes.linked == ({1: 7} if count >= 3 else {})
@@ -84,7 +91,7 @@ def test_a_link_needs_so_many_frames_and_goes_as_slowly_as_it_came():
 
 
 def test_a_single_frame_in_which_two_are_mistaken_changes_nothing():
-    votes = Votes(needed=3, most=15)
+    votes = LinkEvidence(needed=3, most=15)
     for frame in range(20):
         votes.count([(1, 8)] if frame == 10 else [(1, 7)], stood(1), stood(7, 8))
         if frame >= 2:
@@ -92,14 +99,14 @@ def test_a_single_frame_in_which_two_are_mistaken_changes_nothing():
 
 
 def test_each_track_has_one_mate_at_most():
-    votes = Votes(needed=2, most=9)
+    votes = LinkEvidence(needed=2, most=9)
     for agreed in ([(1, 7)], [(1, 7)], [(1, 7)], [(2, 7)], [(2, 7)], [(1, 8)], [(1, 8)]):
         votes.count(agreed, stood(1, 2), stood(7, 8))
         assert len(set(votes.linked.values())) == len(votes.linked)
 
 
 def test_a_link_outlives_one_of_its_tracks_but_not_both():
-    votes = Votes(needed=2, most=9)
+    votes = LinkEvidence(needed=2, most=9)
     for _ in range(3):
         votes.count([(1, 7)], stood(1), stood(7))
     votes.count([], {}, stood(7))

@@ -1,5 +1,5 @@
 from peopleboy.tracker.frame import PANORAMA, THERMAL
-from peopleboy.tracker.handover.identities import YOUNG_S, Identities
+from peopleboy.tracker.fusion.handover_links import YOUNG_S, Identities
 from tests.helpers.runs.hand_made_tracks import track
 
 OLD, YOUNG = 5.0, YOUNG_S / 2

@@ -8,13 +8,10 @@ from typing import Final
 
 import numpy as np
 
-from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Floats, Frame
-from peopleboy.tracker.fusion.colours import colours
-from peopleboy.tracker.fusion.fresh_images import FreshImages
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Floats, Frame, FreshImages
+from peopleboy.tracker.fusion.fused_person import TALL_M, WIDE_M, SensorTrack, to_room_frame
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
-from peopleboy.tracker.fusion.glance import REACH_M, glance
-from peopleboy.tracker.fusion.person import TALL_M, WIDE_M
-from peopleboy.tracker.fusion.told import Told, in_room
+from peopleboy.tracker.fusion.visibility import REACH_M, colours, depth_visibility
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.rgbd.people.detection import Detection
 from peopleboy.tracker.rgbd.people.hypothesis import Hypothesis
@@ -44,7 +41,7 @@ class Heat:
         self._config = config
         self._images = FreshImages(THERMAL)
 
-    def told(self, frame: Frame, pose: RobotPose) -> list[Told]:
+    def reported(self, frame: Frame, pose: RobotPose) -> list[SensorTrack]:
         """Tell of everybody; nobody without a new image."""
         fresh = self._images.of(frame)
         if fresh is None:
@@ -59,7 +56,7 @@ class Heat:
         if track.place is None:
             return True  # nobody can say where to look
         reach_m = REACH_M + 3.0 * math.sqrt(track.place.covariance_m2[0])
-        found = glance(np.array(track.place.position_m), WIDE_M, TALL_M, frame, reach_m)
+        found = depth_visibility(np.array(track.place.position_m), WIDE_M, TALL_M, frame, reach_m)
         return found is not None and found.beyond > self._config.seen_through
 
 
@@ -80,7 +77,7 @@ class Depth:
         self._images = FreshImages(DEPTH)
         self.is_lit = False
 
-    def told(self, frame: Frame, pose: RobotPose) -> list[Told]:
+    def reported(self, frame: Frame, pose: RobotPose) -> list[SensorTrack]:
         """Tell of everybody; nobody without a new image."""
         fresh = self._images.of(frame)
         if fresh is None:
@@ -90,27 +87,27 @@ class Depth:
         assert explanation is not None
         people = {one.id: one for one in explanation.hypotheses}
         self.is_lit = float(frame.rgb(DEPTH_COLOUR)[::_EVERY, ::_EVERY].mean()) > LIT
-        told = []
+        reported = []
         for track in tracks:
             person = people[track.id]
             is_found = frame.time_s - person.seen_s < _MISSED_S
             body = _body_of(person, explanation.detections) if is_found else None
             has_looks = self.is_lit and is_found
-            looks = colours(person.place_m, person.body.head_m, frame) if has_looks else None
+            appearance = colours(person.place_m, person.body.head_m, frame) if has_looks else None
             if not self._is_cold(track, person, frame):
-                told.append(_deep(track, person, body, looks, pose, is_found=is_found))
-        return told
+                reported.append(_deep(track, person, body, appearance, pose, is_found=is_found))
+        return reported
 
     def _is_cold(self, track: Track, person: Hypothesis, frame: Frame) -> bool:
         assert track.place is not None
         body = person.body
-        found = glance(np.array(track.place.position_m), body.width_m, body.head_m, frame)
+        found = depth_visibility(np.array(track.place.position_m), body.width_m, body.head_m, frame)
         return found is not None and found.warm is not None and found.warm < self._config.least_warm
 
 
-def _warm(track: Track, pose: RobotPose) -> Told:
-    place, error = in_room(track, pose)
-    return Told(
+def _warm(track: Track, pose: RobotPose) -> SensorTrack:
+    place, error = to_room_frame(track, pose)
+    return SensorTrack(
         id=track.id,
         place_m=place,
         error_m2=error,
@@ -125,13 +122,13 @@ def _deep(
     track: Track,
     person: Hypothesis,
     body: Body | None,
-    looks: Floats | None,
+    appearance: Floats | None,
     pose: RobotPose,
     *,
     is_found: bool,
-) -> Told:
-    place, error = in_room(track, pose)
-    return Told(
+) -> SensorTrack:
+    place, error = to_room_frame(track, pose)
+    return SensorTrack(
         id=track.id,
         place_m=place,
         error_m2=error,
@@ -140,7 +137,7 @@ def _deep(
         occluder=track.occluder,
         tall_m=(body or person.body).head_m,
         span_m=person.body.width_m,
-        looks=looks,
+        appearance=appearance,
     )
 
 

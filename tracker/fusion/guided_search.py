@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import DEPTH, Floats, Frame
-from peopleboy.tracker.fusion.glance import BODY_M, shoulders, surface_m, view_of
-from peopleboy.tracker.fusion.warmth import warm_share
+from peopleboy.tracker.fusion.visibility import BODY_M, shoulders, surface_m, view_of, warm_share
 
 _LOW_M: Final = 0.8  # above the floor, from which on legs do not spread
 _HIGH: Final = 0.92  # share of the height, up to which there are shoulders
@@ -26,7 +25,7 @@ _FARTHEST: Final = 0.8  # widths that the person may be off
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Peek:
+class GuidedMeasurement:
     """What the depth image shows of a person.
 
     Attributes:
@@ -58,7 +57,7 @@ class _Columns:
     is_near: NDArray[np.bool_]
 
 
-def peek(place_m: Floats, wide_m: float, tall_m: float, frame: Frame) -> Peek | None:
+def search_near(place_m: Floats, wide_m: float, tall_m: float, frame: Frame) -> GuidedMeasurement | None:
     """Find the middle of a person's shoulders by those of their sides that nobody covers.
 
     A side beside which something nearer stands is no side of the person: the middle is half a width from the
@@ -91,7 +90,7 @@ def peek(place_m: Floats, wide_m: float, tall_m: float, frame: Frame) -> Peek | 
     deep = float(np.median(z_m)) + BODY_M
     aside = (middle - view.centre_u) / view.focal_px * deep
     there = view.on_floor(np.array([aside]), np.array([deep]))[0]
-    return Peek(np.asarray(there), warm_share(pixels, z_m, frame))
+    return GuidedMeasurement(np.asarray(there), warm_share(pixels, z_m, frame))
 
 
 def _columns(

@@ -11,10 +11,14 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
-from peopleboy.tracker.handover.both_explanations import BothExplanations
-from peopleboy.tracker.handover.handover_tracker import NEEDED_VOTES, HandoverTracker
-from peopleboy.tracker.handover.introductions import FARTHEST_M, PAUSE_S
-from peopleboy.tracker.handover.joining import DOUBTFUL_S
+from peopleboy.tracker.fusion.explanations import BothExplanations
+from peopleboy.tracker.fusion.handover_tracker import (
+    DOUBTFUL_S,
+    FARTHEST_M,
+    NEEDED_VOTES,
+    PAUSE_S,
+    HandoverTracker,
+)
 from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
@@ -117,14 +121,14 @@ def test_from_one_image_into_the_other_and_back_a_person_keeps_its_number(first)
     if first == "thermal":
         both = Both()
         (number,) = both.see([warm(1)], [], times=20)
-    told = both.see([warm(2 if first == "panoramic" else 1)], [around(3), other], times=20)
-    assert number in told
-    assert THERMAL in told[number].boxes
+    reported = both.see([warm(2 if first == "panoramic" else 1)], [around(3), other], times=20)
+    assert number in reported
+    assert THERMAL in reported[number].boxes
     # Both names change while the other one lasts.
     for thermal, panoramic in (([warm(5)], [around(3)]), ([], [around(3)]), ([warm(6)], [around(3)])):
-        told = both.see(thermal, [*panoramic, other], times=20)
-        assert len(told) == 2
-        assert PANORAMA in told[number].boxes
+        reported = both.see(thermal, [*panoramic, other], times=20)
+        assert len(reported) == 2
+        assert PANORAMA in reported[number].boxes
 
 
 def test_a_person_keeps_its_number_though_the_panorama_begins_anew_and_the_thermal_image_tells_no_depth():
@@ -143,12 +147,12 @@ def test_whoever_is_seen_behind_a_person_whom_the_panorama_has_lost_is_another_o
     both = Both()
     behind = around(2, (6.4, 0.3))
     (number,) = both.see([warm(1)], [around(1)], times=20)
-    told = both.see([warm(1)], [behind], times=9)
-    assert len(told) == 2
-    assert told[number].boxes == warm(1).boxes
-    told = both.see([warm(1)], [behind, around(3)], times=9)
-    assert len(told) == 2
-    assert told[number].boxes == {**warm(1).boxes, **around(3).boxes}
+    reported = both.see([warm(1)], [behind], times=9)
+    assert len(reported) == 2
+    assert reported[number].boxes == warm(1).boxes
+    reported = both.see([warm(1)], [behind, around(3)], times=9)
+    assert len(reported) == 2
+    assert reported[number].boxes == {**warm(1).boxes, **around(3).boxes}
 
 
 def test_a_young_track_of_the_panorama_is_left_out_before_a_person_whom_only_the_thermal_image_shows():
@@ -173,10 +177,10 @@ def test_two_who_cross_keep_their_numbers_though_their_places_are_taken_for_each
     assert len(first) == 2
     near = (4.0, 0.05), (4.0, -0.05)
     both.see([warm(1, near[1]), warm(2, near[0])], [around(1, near[0]), around(2, near[1])], times=2)
-    told = both.see([warm(1, right), warm(2, left)], [around(1, right), around(2, left)], times=5)
+    reported = both.see([warm(1, right), warm(2, left)], [around(1, right), around(2, left)], times=5)
     for number, at in ((1, right), (2, left)):
-        assert told[number].place.position_m == at
-        assert set(told[number].boxes) == {THERMAL, PANORAMA}
+        assert reported[number].place.position_m == at
+        assert set(reported[number].boxes) == {THERMAL, PANORAMA}
 
 
 STANDS = st.dictionaries(st.integers(1, 4), st.sampled_from([SEEN_M, ASIDE_M, BEHIND_M]), max_size=3)
@@ -211,12 +215,12 @@ def test_tentative_ones_of_the_thermal_image_are_left_out():
 
 def test_whoever_is_hidden_is_hidden_by_a_number_that_there_is():
     both = Both()
-    told = both.see([], [around(5, BEHIND_M), around(8, SEEN_M, status=HIDDEN, occluder=5)], times=2)
-    hider = next(number for number, one in told.items() if one.place.position_m == BEHIND_M)
-    hidden = next(one for one in told.values() if one.status is HIDDEN)
+    reported = both.see([], [around(5, BEHIND_M), around(8, SEEN_M, status=HIDDEN, occluder=5)], times=2)
+    hider = next(number for number, one in reported.items() if one.place.position_m == BEHIND_M)
+    hidden = next(one for one in reported.values() if one.status is HIDDEN)
     assert hidden.occluder == hider != hidden.id
-    told = both.see([warm(5, status=HIDDEN, occluder=77)], [])
-    assert [one.occluder for one in told.values()] == [None]
+    reported = both.see([warm(5, status=HIDDEN, occluder=77)], [])
+    assert [one.occluder for one in reported.values()] == [None]
 
 
 def test_who_is_hidden_in_one_image_and_seen_in_the_other_is_seen():
@@ -296,12 +300,12 @@ PEOPLE = PeopleExplanation(background=np.zeros((120, 480, 3), np.uint8), foregro
 def test_explanations_have_the_numbers_of_the_tracks():
     both = Both()
     both.thermal.explanation, both.panoramic.explanation = contours(3, 5, 6), PEOPLE
-    told = both.see([warm(5), warm(3, ASIDE_M)], [around(8, BEHIND_M), around(9, SEEN_M)], times=5)
+    reported = both.see([warm(5), warm(3, ASIDE_M)], [around(8, BEHIND_M), around(9, SEEN_M)], times=5)
     explained = both.tracker.explanation
     assert explained.panoramic is PEOPLE
-    shown = {number for number, one in told.items() if THERMAL in one.boxes}
+    shown = {number for number, one in reported.items() if THERMAL in one.boxes}
     assert set(explained.thermal.ellipses) == set(explained.thermal.spread_px2) == shown
-    (seen,) = (number for number, one in told.items() if set(one.boxes) == {THERMAL, PANORAMA})
+    (seen,) = (number for number, one in reported.items() if set(one.boxes) == {THERMAL, PANORAMA})
     assert explained.thermal.ellipses[seen].x == 5.0
     assert set(explained.thermal.particles) == shown | {DETECTOR_KEY}
     assert len(explained.thermal.particles[seen]) == 5

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
+from peopleboy.tracker.rgbd.rgbd_explanation import RgbdExplanation
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 
 
@@ -37,3 +38,19 @@ class BothExplanations:
             },
         )
         return cls(shared, panoramic)
+
+
+# What the fused tracker believes beyond its tracks, by the kinds that its parts have.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FusedExplanation:
+    """What each part believes.
+
+    Attributes:
+        both: of the thermal image and, where there is one, the panorama, by the numbers of the tracks.
+        depth: of the depth image; None before the first.
+    """
+
+    both: BothExplanations
+    depth: RgbdExplanation | None

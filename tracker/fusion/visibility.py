@@ -1,0 +1,204 @@
+"""What the depth image shows where somebody may stand."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Floats, Frame, PinholeCalibration
+from peopleboy.tracker.rgbd.detection.depth_view import DepthView
+from peopleboy.tracker.rgbd.detection.pre_detection import PreDetection
+from peopleboy.tracker.rgbd.people.colour_histogram import BINS, bin_of_colour
+from peopleboy.tracker.rgbd.people.look_at import Body, box_at
+from peopleboy.tracker.track import Box
+
+# How much of what stands somewhere is as warm as people are: depth tells where the thermal one shows it.
+
+WARM: Final = 255.0 * (25.0 - 24.0) / (36.0 - 24.0)
+"""Grey from which on something is as warm as people are: 25 degC in an image of 24 to 36 degC."""
+
+LEAST_SHARE: Final = 0.3
+"""Share of warm pixels from which on something of the size of a human is one."""
+
+_WARM_COLUMNS: Final = 10
+_WARM_ROWS: Final = 20
+_REACH_M: Final = 0.5  # from the depth that was found, within which pixels belong to it
+_LEAST_PIXELS: Final = 12
+
+
+def is_warm(found: PreDetection, frame: Frame) -> bool:
+    """Tell whether what was found in the depth image is a person by its heat."""
+    pixels = grid(found.box, _WARM_COLUMNS, _WARM_ROWS, frame)
+    z_m = depths_at(pixels, frame)
+    own = (z_m > 0.0) & (np.abs(z_m - found.z_m) < _REACH_M)
+    share = warm_share(pixels[own], z_m[own], frame)
+    return share is not None and share > LEAST_SHARE
+
+
+def warm_share(pixels: NDArray[np.int64], z_m: Floats, frame: Frame) -> float | None:
+    """Give the share of surfaces that is as warm as people are.
+
+    Args:
+        pixels: (N, 2) of the depth image that show them.
+        z_m: (N,) their depths [m].
+        frame: with both images.
+
+    Returns:
+        0..1; None where the thermal image shows too few of them.
+    """
+    ours, theirs = frame.calibrations.get(DEPTH), frame.calibrations.get(THERMAL)
+    if not isinstance(ours, PinholeCalibration) or theirs is None or THERMAL not in frame.images:
+        return None
+    points = ours.robot_from_camera[:3, 3] + ours.rays(pixels.astype(np.float64)) * z_m[:, None]
+    seen, image = np.rint(theirs.project(points)), frame.grey(THERMAL)
+    inside = (seen >= 0.0).all(axis=1) & (seen < np.array(image.shape[::-1])).all(axis=1)
+    if inside.sum() < _LEAST_PIXELS:
+        return None
+    columns, rows = seen[inside].astype(np.int64).T
+    return float((image[rows, columns] > WARM).mean())
+
+
+def grid(box: Box, columns: int, rows: int, frame: Frame) -> NDArray[np.int64]:
+    """Give pixels (N, 2) spread evenly over a box [px], as far as it lies in the depth image."""
+    left, top, width, height = box
+    u = left + width * (np.arange(columns) + 0.5) / columns
+    v = top + height * (np.arange(rows) + 0.5) / rows
+    pixels = np.rint(np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)).astype(np.int64)
+    size = np.array(frame.depth(DEPTH).shape[::-1])
+    return np.asarray(pixels[((pixels >= 0) & (pixels < size)).all(axis=1)])
+
+
+def depths_at(pixels: NDArray[np.int64], frame: Frame) -> Floats:
+    """Give the depths (N,) [m] at pixels (N, 2) of the depth image; 0 where none is read."""
+    return np.asarray(frame.depth(DEPTH)[pixels[:, 1], pixels[:, 0]] / 1000.0)
+
+
+BODY_M: Final = 0.1  # from the surface that is seen to the middle of a body
+REACH_M: Final = 0.4  # from that surface, within which readings belong to it
+
+_COLUMNS: Final = 8
+_ROWS: Final = 16
+_LEAST: Final = 12  # readings from which on shares mean anything
+_NO_LOOKS: Final = np.zeros(BINS)
+
+
+@dataclass(frozen=True, slots=True)
+class DepthVisibility:
+    """What stands where somebody may be.
+
+    Attributes:
+        nearer, beyond: shares of the readings before and behind the person.
+        warm: share of its own that is as warm as people are; None where the thermal image shows too few.
+    """
+
+    nearer: float
+    beyond: float
+    warm: float | None
+
+
+def depth_visibility(
+    place_m: Floats, wide_m: float, tall_m: float, frame: Frame, reach_m: float = REACH_M
+) -> DepthVisibility | None:
+    """Look at the middle of somebody at a place (2,) in the robot's frame.
+
+    Args:
+        place_m: forward, left [m].
+        wide_m: width of the person.
+        tall_m: height likewise.
+        frame: with a depth image, if there is one.
+        reach_m: [m] by which the person may be nearer or farther.
+
+    Returns:
+        None where the depth image does not show that place, or there is none.
+    """
+    view = view_of(frame)
+    if view is None:
+        return None
+    left, top, width, height = box_at(view, place_m, _body(wide_m, tall_m, 0.0))
+    if width <= 0.0:
+        return None
+    middle = (left + 0.2 * width, top + 0.05 * height, 0.6 * width, 0.8 * height)
+    pixels = grid(middle, _COLUMNS, _ROWS, frame)
+    z_m = depths_at(pixels, frame)
+    pixels, z_m = pixels[z_m > 0.0], z_m[z_m > 0.0]
+    if len(z_m) < _LEAST:
+        return None
+    off = z_m - surface_m(view, place_m)
+    own = np.abs(off) < reach_m
+    return DepthVisibility(
+        nearer=float((off <= -reach_m).mean()),
+        beyond=float((off >= reach_m).mean()),
+        warm=warm_share(pixels[own], z_m[own], frame),
+    )
+
+
+def view_of(frame: Frame) -> DepthView | None:
+    """Give the geometry of a frame's depth image; None without one."""
+    if DEPTH not in frame.images or DEPTH not in frame.calibrations:
+        return None
+    return DepthView.of(frame.calibrations[DEPTH], DEPTH)
+
+
+def shoulders(view: DepthView, place_m: Floats, wide_m: float, low_m: float, high_m: float) -> Floats:
+    """Give left, top, width, height [px] of a body from one height above the floor to another."""
+    return np.array(box_at(view, place_m, _body(wide_m, high_m, low_m)))
+
+
+def surface_m(view: DepthView, place_m: Floats) -> float:
+    """Give the depth [m] at which the camera sees the surface of somebody at a place (2,)."""
+    pose = view.calibration.robot_from_camera
+    point = np.array([*place_m, pose[2, 3]])
+    return float((point - pose[:3, 3]) @ pose[:3, 2]) - BODY_M
+
+
+def _body(wide_m: float, high_m: float, low_m: float) -> Body:
+    return Body(width_m=wide_m, head_m=high_m, low_m=low_m, appearance=_NO_LOOKS)
+
+
+# What colours somebody has, by those readings of the depth image that are its own.
+
+_COLOUR_ROWS: Final = 24
+_COLOUR_COLUMNS: Final = 11
+_WIDE_M: Final = 0.4
+_LOW_M: Final = 0.25  # above the floor, below which there are shoes and shadows
+_COLOUR_REACH_M: Final = 0.3
+_LEAST_IN_ROW: Final = 1  # own readings
+_LEAST_ROWS: Final = 0.5  # share of the rows
+
+
+def colours(place_m: Floats, tall_m: float, frame: Frame) -> Floats | None:
+    """Give the histogram (BINS,) of the colours of somebody at a place (2,) in the robot's frame.
+
+    What is nearer or farther is left out, and so are readings beside an edge. Every row of the body counts
+    the same, however much of it something else covers, so that half a person looks like a whole one.
+
+    Returns:
+        None where too little of the person is seen, or there is no depth image.
+    """
+    view = view_of(frame)
+    if view is None:
+        return None
+    left, top, width, height = shoulders(view, place_m, _WIDE_M, _LOW_M, tall_m)
+    if width <= 0.0:
+        return None
+    depth, image = frame.depth(DEPTH), frame.rgb(DEPTH_COLOUR)
+    u = np.rint(left + width * (np.arange(_COLOUR_COLUMNS) + 0.5) / _COLOUR_COLUMNS).astype(np.int64)
+    v = np.rint(top + height * (np.arange(_COLOUR_ROWS) + 0.5) / _COLOUR_ROWS).astype(np.int64)
+    u, v = u[(u >= 0) & (u < depth.shape[1])], v[(v >= 0) & (v < depth.shape[0])]
+    own = np.abs(depth[np.ix_(v, u)] / 1000.0 - surface_m(view, place_m)) < _COLOUR_REACH_M
+    inner = own.copy()
+    inner[:, 1:] &= own[:, :-1]
+    inner[:, :-1] &= own[:, 1:]
+    counts = inner.sum(axis=1)
+    is_seen = counts >= _LEAST_IN_ROW
+    if is_seen.sum() < _LEAST_ROWS * _COLOUR_ROWS:
+        return None
+    inner &= is_seen[:, None]
+    rows, columns = np.nonzero(inner)
+    red, green, blue = (image[v[rows], u[columns]] >> 3).astype(np.int64).T
+    bins = bin_of_colour()[(red << 10) | (green << 5) | blue]
+    found = np.bincount(bins, 1.0 / counts[rows], minlength=BINS)
+    return np.asarray(found / found.sum())

@@ -1,1 +1,0 @@
-"""One identity from the thermal image through the panorama and back."""
