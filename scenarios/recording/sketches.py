@@ -22,7 +22,7 @@ from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplana
 from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure
 from peopleboy.tracker.panoramic.paper.panoramic_explanation import PanoramicExplanation
 from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
-from peopleboy.tracker.rgbd.rgbd_explanation import RgbdExplanation
+from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation
 from peopleboy.tracker.track import Box, FloorPlace, Track
 
 Line = NDArray[np.float64]

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
-from peopleboy.tracker.rgbd.rgbd_explanation import RgbdExplanation
+from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 
 

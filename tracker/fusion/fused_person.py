@@ -12,7 +12,7 @@ from peopleboy.tracker.frame import THERMAL, Floats, Frame, PinholeCalibration
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.panoramic.people.floor_motion import Motion
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
-from peopleboy.tracker.rgbd.people.colour_histogram import similarity
+from peopleboy.tracker.rgbd.observation_model import similarity
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
 # What one of the trackers tells of somebody in one frame.

@@ -30,9 +30,8 @@ from peopleboy.tracker.fusion.track_to_track import distance2, is_contradicted, 
 from peopleboy.tracker.fusion.visibility import depth_visibility
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
-from peopleboy.tracker.rgbd.detection.depth_view import DepthView
-from peopleboy.tracker.rgbd.rgbd_explanation import RgbdExplanation
-from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
+from peopleboy.tracker.rgbd.depth_view import DepthView
+from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation, RgbdTracker
 from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.track import Box, Status, Track

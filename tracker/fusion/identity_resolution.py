@@ -13,7 +13,7 @@ from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.fusion.fused_person import Person, SensorTrack
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.fusion.track_to_track import cheapest
-from peopleboy.tracker.rgbd.people.colour_histogram import similarity
+from peopleboy.tracker.rgbd.observation_model import similarity
 
 _OWN: Final = 1.0  # what it counts that a track was the person's before
 _UNLIKE: Final = 5.0  # what entirely other looks count

@@ -13,9 +13,8 @@ from peopleboy.tracker.fusion.fused_person import TALL_M, WIDE_M, SensorTrack, t
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.fusion.visibility import REACH_M, colours, depth_visibility
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
-from peopleboy.tracker.rgbd.people.detection import Detection
-from peopleboy.tracker.rgbd.people.hypothesis import Hypothesis
-from peopleboy.tracker.rgbd.people.look_at import Body
+from peopleboy.tracker.rgbd.hypothesis import Detection, Hypothesis
+from peopleboy.tracker.rgbd.observation_model import Body
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
 from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.track import Status, Track

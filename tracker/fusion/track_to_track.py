@@ -11,7 +11,7 @@ from scipy.optimize import linear_sum_assignment
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.fusion.fused_person import Person, SensorTrack
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
-from peopleboy.tracker.rgbd.people.colour_histogram import similarity
+from peopleboy.tracker.rgbd.observation_model import similarity
 
 _NEVER: Final = 1e6
 

@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Floats, Frame, PinholeCalibration
-from peopleboy.tracker.rgbd.detection.depth_view import DepthView
-from peopleboy.tracker.rgbd.detection.pre_detection import PreDetection
-from peopleboy.tracker.rgbd.people.colour_histogram import BINS, bin_of_colour
-from peopleboy.tracker.rgbd.people.look_at import Body, box_at
+from peopleboy.tracker.rgbd.depth_view import DepthView
+from peopleboy.tracker.rgbd.observation_model import BINS, Body, bin_of_colour, box_at
+from peopleboy.tracker.rgbd.pre_detection import PreDetection
 from peopleboy.tracker.track import Box
 
 # How much of what stands somewhere is as warm as people are: depth tells where the thermal one shows it.

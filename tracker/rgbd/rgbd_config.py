@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Final
 
-from peopleboy.tracker.rgbd.detection.human_size import PRINTED_SIZE, HumanSize
-from peopleboy.tracker.rgbd.detection.u_depth import UDepthConfig
+from peopleboy.tracker.rgbd.pre_detection import PRINTED_SIZE, HumanSize
+from peopleboy.tracker.rgbd.u_depth import UDepthConfig
 from peopleboy.tracker.rgbd.verification.windows import Range
 
 

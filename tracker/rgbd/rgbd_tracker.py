@@ -4,24 +4,39 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Calibration, Floats, Frame, PinholeCalibration
-from peopleboy.tracker.rgbd.detection.depth_view import DepthView
-from peopleboy.tracker.rgbd.detection.pre_detection import Layout, PreDetection, PreDetector
-from peopleboy.tracker.rgbd.people.associate import associate
-from peopleboy.tracker.rgbd.people.detection import Detection
-from peopleboy.tracker.rgbd.people.hypothesis import Hypothesis
-from peopleboy.tracker.rgbd.people.look_at import Body, RgbdView, box_at, looks_in
-from peopleboy.tracker.rgbd.people.management import Management, occluder_of
+from peopleboy.tracker.rgbd.depth_view import DepthView
+from peopleboy.tracker.rgbd.hypothesis import Detection, Hypothesis
+from peopleboy.tracker.rgbd.observation_model import Body, RgbdView, box_at, looks_in
+from peopleboy.tracker.rgbd.pre_detection import Layout, PreDetection, PreDetector
 from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
-from peopleboy.tracker.rgbd.rgbd_explanation import RgbdExplanation
+from peopleboy.tracker.rgbd.track_management import Management, associate, occluder_of
 from peopleboy.tracker.rgbd.verification.window_model import WindowModel
 from peopleboy.tracker.rgbd.verification.windows import range_of, window_of
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
+
+# What the RGB-D tracker believes beyond its tracks.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RgbdExplanation:
+    """The newest frame as the tracker sees it.
+
+    Attributes:
+        layout: the depth image sorted out.
+        detections: what has the size of a human, and whether it looks like one.
+        hypotheses: all of them, those that nobody is believed to be at, too.
+    """
+
+    layout: Layout
+    detections: tuple[Detection, ...]
+    hypotheses: tuple[Hypothesis, ...]
+
 
 _LONGEST_STEP_S = 0.5
 _DOUBLE_M = 0.3

@@ -14,11 +14,10 @@ from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.depth_image import show_depth
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
-from peopleboy.tracker.rgbd.detection.depth_view import DepthView
-from peopleboy.tracker.rgbd.detection.u_depth import FARTHEST_M, depths_m
-from peopleboy.tracker.rgbd.detection.v_disparity import BIN_PX, HeightLine, v_disparity
-from peopleboy.tracker.rgbd.rgbd_explanation import RgbdExplanation
-from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
+from peopleboy.tracker.rgbd.depth_view import DepthView
+from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation, RgbdTracker
+from peopleboy.tracker.rgbd.u_depth import FARTHEST_M, depths_m
+from peopleboy.tracker.rgbd.v_disparity import BIN_PX, HeightLine, v_disparity
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import make_tracker
 

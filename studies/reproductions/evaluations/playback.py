@@ -16,7 +16,7 @@ from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
-from peopleboy.tracker.rgbd.detection.depth_view import DepthView
+from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.track import Box
 
 FARTHEST_M = 10.0

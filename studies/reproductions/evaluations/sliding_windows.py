@@ -23,11 +23,10 @@ from peopleboy.studies.reproductions.evaluations.drive_tracking import (
 from peopleboy.studies.reproductions.evaluations.playback import DriveMoment, Stander, play_drive
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
-from peopleboy.tracker.rgbd.detection.depth_view import DepthView
-from peopleboy.tracker.rgbd.detection.human_size import HumanSize
-from peopleboy.tracker.rgbd.detection.pre_detection import Layout, PreDetection, PreDetector
-from peopleboy.tracker.rgbd.detection.u_depth import UDepthConfig
-from peopleboy.tracker.rgbd.detection.v_disparity import HeightLine
+from peopleboy.tracker.rgbd.depth_view import DepthView
+from peopleboy.tracker.rgbd.pre_detection import HumanSize, Layout, PreDetection, PreDetector
+from peopleboy.tracker.rgbd.u_depth import UDepthConfig
+from peopleboy.tracker.rgbd.v_disparity import HeightLine
 from peopleboy.tracker.rgbd.verification.window_model import people_detector, shipped_windows
 from peopleboy.tracker.rgbd.verification.windows import (
     SIZES,

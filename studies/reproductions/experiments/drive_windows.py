@@ -30,9 +30,9 @@ from peopleboy.studies.reproductions.measuring.window_units import (
 from peopleboy.studies.reproductions.measuring.workload import Plan
 from peopleboy.studies.training.window_learning.teach_windows import FALSE_ALARMS, recall_at
 from peopleboy.studies.training.window_learning.window_lesson import TESTS
-from peopleboy.tracker.rgbd.detection.human_size import HumanSize
-from peopleboy.tracker.rgbd.detection.u_depth import UDepthConfig
+from peopleboy.tracker.rgbd.pre_detection import HumanSize
 from peopleboy.tracker.rgbd.rgbd_config import FloorFilterConfig, HypothesesConfig
+from peopleboy.tracker.rgbd.u_depth import UDepthConfig
 
 _SLID: Final = (6, 7, 11)  # numbers of the sets whose images are searched
 _SWITCHED: Final = "bool"

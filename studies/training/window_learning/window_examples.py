@@ -17,10 +17,9 @@ from peopleboy.scenarios.run_folder.whole import whole
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR
-from peopleboy.tracker.rgbd.detection.depth_view import Depth, DepthView
-from peopleboy.tracker.rgbd.detection.human_size import HumanSize
-from peopleboy.tracker.rgbd.detection.pre_detection import Layout, PreDetection, PreDetector
-from peopleboy.tracker.rgbd.detection.u_depth import UDepthConfig
+from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
+from peopleboy.tracker.rgbd.pre_detection import HumanSize, Layout, PreDetection, PreDetector
+from peopleboy.tracker.rgbd.u_depth import UDepthConfig
 from peopleboy.tracker.rgbd.verification.window_model import feature_length
 from peopleboy.tracker.rgbd.verification.windows import Image, Range, cut, cut_depth, hog, range_of, window_of
 from peopleboy.tracker.track import Box

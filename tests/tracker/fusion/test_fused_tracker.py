@@ -16,8 +16,7 @@ from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, PANORAMA, THERMAL, Fram
 from peopleboy.tracker.fusion.fused_tracker import FusedTracker, ThermalDepthTracker
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
-from peopleboy.tracker.rgbd.people.colour_histogram import BINS
-from peopleboy.tracker.rgbd.people.look_at import Body
+from peopleboy.tracker.rgbd.observation_model import BINS, Body
 from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track

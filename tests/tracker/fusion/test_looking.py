@@ -8,9 +8,8 @@ import pytest
 from peopleboy.tracker.frame import DEPTH, THERMAL, Frame
 from peopleboy.tracker.fusion.guided_search import search_near
 from peopleboy.tracker.fusion.visibility import depth_visibility, is_warm
-from peopleboy.tracker.rgbd.detection.human_size import HumanSize
-from peopleboy.tracker.rgbd.detection.pre_detection import PreDetection, PreDetector
-from peopleboy.tracker.rgbd.detection.u_depth import UDepthConfig
+from peopleboy.tracker.rgbd.pre_detection import HumanSize, PreDetection, PreDetector
+from peopleboy.tracker.rgbd.u_depth import UDepthConfig
 from tests.helpers.depth_scene import HEIGHT, WIDTH, Block, depth_of, make_view
 
 BODY_M = 0.1

@@ -14,7 +14,7 @@ from peopleboy.tracker.fusion.fused_tracker import _depth as depth_of
 from peopleboy.tracker.fusion.fused_tracker import _without as without
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.fusion.track_to_track import cheapest, cost, distance2, is_contradicted
-from peopleboy.tracker.rgbd.people.colour_histogram import BINS
+from peopleboy.tracker.rgbd.observation_model import BINS
 from peopleboy.tracker.track import Status
 
 CONFIG = FusionConfig()

@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.rgbd.detection.depth_view import Depth
+from peopleboy.tracker.rgbd.depth_view import Depth
 from peopleboy.tracker.rgbd.verification.windows import (
     SIZES,
     Features,

@@ -11,9 +11,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.rgbd.detection.depth_view import Depth, DepthView
-from peopleboy.tracker.rgbd.detection.pre_detection import PreDetection
-from peopleboy.tracker.rgbd.detection.v_disparity import HeightLine
+from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
+from peopleboy.tracker.rgbd.pre_detection import PreDetection
+from peopleboy.tracker.rgbd.v_disparity import HeightLine
 from peopleboy.tracker.track import Box
 
 Image = NDArray[np.uint8]

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from peopleboy.tracker.rgbd.detection.pre_detection import PreDetection
-from peopleboy.tracker.rgbd.detection.v_disparity import HeightLine
+from peopleboy.tracker.rgbd.pre_detection import PreDetection
+from peopleboy.tracker.rgbd.v_disparity import HeightLine
 from peopleboy.tracker.rgbd.verification.window_model import feature_length
 from peopleboy.tracker.rgbd.verification.windows import (
     SIZES,

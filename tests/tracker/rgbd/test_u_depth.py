@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.tracker.rgbd.detection.u_depth import UDepthConfig, depths_m, find_pieces, gaps, u_depth
+from peopleboy.tracker.rgbd.u_depth import UDepthConfig, depths_m, find_pieces, gaps, u_depth
 
 CONFIG = UDepthConfig(trimmed=0.0)
 ROWS = len(depths_m(CONFIG.row_m))

@@ -10,8 +10,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Floats
-from peopleboy.tracker.rgbd.detection.depth_view import Depth, DepthView
-from peopleboy.tracker.rgbd.detection.u_depth import FARTHEST_M, NEAREST_M, STEP_1_M
+from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
+from peopleboy.tracker.rgbd.u_depth import FARTHEST_M, NEAREST_M, STEP_1_M
 
 _EVERY_U: Final = 4  # columns of which one is looked at
 _EVERY_V: Final = 2

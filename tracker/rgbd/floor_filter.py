@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from peopleboy.tracker.frame import Floats, Odometry
-from peopleboy.tracker.rgbd.people.look_at import Body, Glance, RgbdView, look_at
+from peopleboy.tracker.rgbd.observation_model import Body, Glance, RgbdView, look_at
 from peopleboy.tracker.rgbd.rgbd_config import FloorFilterConfig
 
 _FRAME_S = 1.0 / 15.0  # for which the spreads are given

@@ -11,7 +11,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Floats
-from peopleboy.tracker.rgbd.detection.depth_view import Depth
+from peopleboy.tracker.rgbd.depth_view import Depth
 
 Ints = NDArray[np.int32]
 

@@ -8,8 +8,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from peopleboy.tracker.rgbd.people.colour_histogram import BINS, HUES, SATURATIONS, bin_of_colour, similarity
-from peopleboy.tracker.rgbd.people.look_at import RgbdView, looks_in
+from peopleboy.tracker.rgbd.observation_model import (
+    BINS,
+    HUES,
+    SATURATIONS,
+    RgbdView,
+    bin_of_colour,
+    looks_in,
+    similarity,
+)
 from tests.helpers.depth_scene import HEIGHT, WIDTH, Block, depth_of, make_view
 from tests.helpers.images.as_taken import as_taken
 

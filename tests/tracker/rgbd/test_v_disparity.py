@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.tracker.rgbd.detection.v_disparity import BIN_PX, find_ceiling, find_floor, v_disparity
+from peopleboy.tracker.rgbd.v_disparity import BIN_PX, find_ceiling, find_floor, v_disparity
 from tests.helpers.depth_scene import HEIGHT, WIDTH, Block, depth_of, make_view
 
 

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.tracker.frame import Odometry
-from peopleboy.tracker.rgbd.people.floor_filter import FloorFilter, carried, turned
-from peopleboy.tracker.rgbd.people.look_at import Body, RgbdView, looks_in
+from peopleboy.tracker.rgbd.floor_filter import FloorFilter, carried, turned
+from peopleboy.tracker.rgbd.observation_model import Body, RgbdView, looks_in
 from peopleboy.tracker.rgbd.rgbd_config import FloorFilterConfig
 from tests.helpers.depth_scene import HEIGHT, WIDTH, Block, depth_of, make_view
 from tests.helpers.images.as_taken import as_taken

@@ -6,9 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.tracker.rgbd.detection.human_size import PRINTED_SIZE, HumanSize
-from peopleboy.tracker.rgbd.detection.pre_detection import PreDetector
-from peopleboy.tracker.rgbd.detection.u_depth import UDepthConfig
+from peopleboy.tracker.rgbd.pre_detection import PRINTED_SIZE, HumanSize, PreDetector
+from peopleboy.tracker.rgbd.u_depth import UDepthConfig
 from tests.helpers.depth_scene import Block, depth_of, make_view
 
 DETECT = PreDetector(HumanSize(), UDepthConfig())

@@ -10,11 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.tracker.rgbd.detection.human_size import HumanSize
-from peopleboy.tracker.rgbd.detection.pre_detection import PreDetector
-from peopleboy.tracker.rgbd.detection.u_depth import UDepthConfig
-from peopleboy.tracker.rgbd.detection.walls import bands_mm, find_walls, without
+from peopleboy.tracker.rgbd.pre_detection import HumanSize, PreDetector
 from peopleboy.tracker.rgbd.rgbd_config import PRINTED
+from peopleboy.tracker.rgbd.u_depth import UDepthConfig
+from peopleboy.tracker.rgbd.walls import bands_mm, find_walls, without
 from tests.helpers.depth_scene import FOCAL_PX, HEIGHT, WIDTH, depth_of, make_view
 from tests.helpers.images.as_taken import as_taken
 

@@ -1,1 +1,0 @@
-"""What in a depth image has the size of a human."""

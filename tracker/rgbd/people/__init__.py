@@ -1,1 +1,0 @@
-"""Hypotheses about people, each with a particle filter on the floor."""
