@@ -20,7 +20,7 @@ from peopleboy.studies.reproductions.evaluations.playback import (
     with_cameras,
 )
 from peopleboy.tracker.frame import Floats
-from peopleboy.tracker.rgbd.detection.human_size import PRINTED_SIZE
+from peopleboy.tracker.rgbd.pre_detection import PRINTED_SIZE
 from peopleboy.tracker.rgbd.rgbd_config import PRINTED, RgbdConfig
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
 from peopleboy.tracker.rgbd.verification.window_model import people_detector, shipped_windows
