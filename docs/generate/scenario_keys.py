@@ -9,18 +9,7 @@ from typing import Any
 from docs.generate.json_types import default_text, models_in, title, type_text
 from docs.generate.markdown import sentence, table
 from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
-
-UNITS = {
-    "_deg_s": "deg/s",
-    "_m_s": "m/s",
-    "_deg": "deg",
-    "_px": "px",
-    "_m": "m",
-    "_s": "s",
-    "_c": "°C",
-    "_hz": "Hz",
-    "_k": "K",
-}
+from peopleboy.settings import unit_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +37,7 @@ def keys_of(parts: Mapping[str, dict[str, Any]]) -> Iterator[Key]:
             yield Key(
                 part=part,
                 name=name,
-                unit=next((unit for end, unit in UNITS.items() if name.endswith(end)), ""),
+                unit=unit_of(name),
                 values=type_text(field),
                 default="**required**" if is_required else default_text(field),
                 meaning=sentence(field.get("description", "")),
