@@ -9,12 +9,12 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.vectors import Point, cross, dot, minus, turn_back
-from peopleboy.sim.physics.solids.solid_boxes import MARGIN_M, entered_at
 from peopleboy.sim.physics.solids.solids import Array, Placements, Solids
 from peopleboy.sim.shapes.rays import hit_shape
 from peopleboy.sim.shapes.shapes import ShapeKind
 
 _MESH = int(ShapeKind.MESH)
+_MARGIN_M = 1e-3  # around boxes: far more than PyBullet's rays are off
 _BLOCK = 15  # rays that are looked at together, such as those of a sonar
 
 
@@ -63,7 +63,7 @@ def cast_into(
         if body == passed or bodies.hidden[body] or not _share(whole, box, 0.0):
             continue
         for block in range(blocks):
-            if not _share(around[block], box, MARGIN_M):
+            if not _share(around[block], box, _MARGIN_M):
                 continue
             for ray in range(block * _BLOCK, min((block + 1) * _BLOCK, len(starts))):
                 if entered_at(starts[ray], ends[ray], box) < fraction[ray]:
@@ -123,3 +123,25 @@ def _hit_triangle(corners: Array, o: Point, d: Point) -> float:
     u, q = dot(s, p) / volume, cross(s, ab)
     v, t = dot(d, q) / volume, dot(ac, q) / volume
     return t if u >= 0.0 and v >= 0.0 and u + v <= 1.0 and t >= 0.0 else math.inf
+
+
+@njit(cache=True)
+def entered_at(start: Array, end: Array, box: Array) -> float:
+    """Share of its way at which a line from start to end comes into a box, or within 1 mm; inf for never.
+
+    There it is within all three pairs of faces at once.
+    """
+    enters, leaves = 0.0, 1.0
+    for axis in range(3):
+        low, high = box[0, axis] - _MARGIN_M - start[axis], box[1, axis] + _MARGIN_M - start[axis]
+        step = end[axis] - start[axis]
+        if step == 0.0:
+            if low > 0.0 or high < 0.0:
+                return np.inf
+            continue
+        if step < 0.0:
+            low, high = high, low
+        enters, leaves = max(enters, low / step), min(leaves, high / step)
+        if enters > leaves:
+            return np.inf
+    return enters

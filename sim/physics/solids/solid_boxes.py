@@ -8,12 +8,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.sim.physics.solids.cast import entered_at
 from peopleboy.sim.shapes.shapes import Vector
 
 Array = NDArray[np.float64]
 Link = tuple[int, int]
 
-MARGIN_M = 1e-3  # far more than PyBullet's rays are off
 
 
 class SolidBoxes:
@@ -69,25 +69,3 @@ def _reach(starts: Array, ends: Array, boxes: Array, passed: tuple[int, int]) ->
                 found[ray] = True
                 break
     return found
-
-
-@njit(cache=True)
-def entered_at(start: Array, end: Array, box: Array) -> float:
-    """Share of its way at which a line from start to end comes into a box, or within 1 mm; inf for never.
-
-    There it is within all three pairs of faces at once.
-    """
-    enters, leaves = 0.0, 1.0
-    for axis in range(3):
-        low, high = box[0, axis] - MARGIN_M - start[axis], box[1, axis] + MARGIN_M - start[axis]
-        step = end[axis] - start[axis]
-        if step == 0.0:
-            if low > 0.0 or high < 0.0:
-                return np.inf
-            continue
-        if step < 0.0:
-            low, high = high, low
-        enters, leaves = max(enters, low / step), min(leaves, high / step)
-        if enters > leaves:
-            return np.inf
-    return enters
