@@ -10,7 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.environments.observations import COLUMNS, MOST_TRACKS, Arrays
-from peopleboy.sim.physics.solids.solids import Array
+from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.robot.robot_config import RobotConfig
 
 AWAY_M: Final = 20.0

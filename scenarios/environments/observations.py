@@ -15,7 +15,7 @@ from peopleboy.scenarios.loop.thermal_box import thermal_box
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.fleet.instants import Instants
-from peopleboy.sim.physics.solids.solids import Array
+from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.truth.scenes import Scenes

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.physics.solids.solids import Array
+from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.tracker.boxes import image_shares

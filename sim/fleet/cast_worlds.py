@@ -6,8 +6,7 @@ import numpy as np
 from numba import njit
 
 from peopleboy.sim.fleet.side_by_side import Joined, world_in
-from peopleboy.sim.physics.solids.cast import cast_into
-from peopleboy.sim.physics.solids.solids import Array, refresh
+from peopleboy.sim.physics.solid_shapes import Array, cast_into, refresh
 from peopleboy.sim.shapes.joined_tables import Numbers
 
 

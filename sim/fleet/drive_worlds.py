@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.fleet.side_by_side import Joined, world_in
 from peopleboy.sim.geometry.angles import remainder
-from peopleboy.sim.physics.kinematic.drive import push_out, roll
-from peopleboy.sim.physics.kinematic.vehicle import Vehicle
-from peopleboy.sim.physics.solids.solids import Array, Placements, Solids, refresh
+from peopleboy.sim.physics.solid_shapes import Array, Placements, Solids, refresh
+from peopleboy.sim.physics.vehicle import Vehicle, push_out, roll
 from peopleboy.sim.robot.peoplebot import Gears, approach
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M, WHEEL_RADIUS_M, wheel_speeds
 from peopleboy.sim.shapes.joined_tables import Numbers

@@ -11,9 +11,9 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.fleet.drive_worlds import Capsules, drive_worlds
 from peopleboy.sim.fleet.side_by_side import Joined
 from peopleboy.sim.fleet.walk_worlds import Walks
-from peopleboy.sim.physics.kinematic.kinematic import Kinematic
-from peopleboy.sim.physics.kinematic.vehicle import Vehicle
-from peopleboy.sim.physics.solids.solids import Array
+from peopleboy.sim.physics.kinematic import Kinematic
+from peopleboy.sim.physics.solid_shapes import Array
+from peopleboy.sim.physics.vehicle import Vehicle
 from peopleboy.sim.robot.peoplebot import Gears
 from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.world import World

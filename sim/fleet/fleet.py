@@ -21,8 +21,8 @@ from peopleboy.sim.fleet.walk_worlds import Walks
 from peopleboy.sim.fleet.watch_people import Watch
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.physics.kinematic.kinematic import Kinematic
-from peopleboy.sim.physics.solids.solids import Array
+from peopleboy.sim.physics.kinematic import Kinematic
+from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.robot.robot_body import RADIUS_M, WHEEL_RADIUS_M
 from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.truth.scenes import SCENE, Scenes

@@ -16,8 +16,8 @@ from peopleboy.sim.people.body.placing import carry, put_on_floor
 from peopleboy.sim.people.body.stance import STANCE, Builds, Stances, hold, move_limbs
 from peopleboy.sim.people.person import Person, pace_m_s
 from peopleboy.sim.people.scripted.script import Records, join_records
-from peopleboy.sim.physics.kinematic.kinematic import Kinematic
-from peopleboy.sim.physics.solids.solids import Array
+from peopleboy.sim.physics.kinematic import Kinematic
+from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.world import World
 

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from peopleboy.sim.physics.kinematic.state import Motion, State
-from peopleboy.sim.physics.solids.solids import Array, Placements, Solids
+from peopleboy.sim.physics.solid_shapes import Array, Placements, Solids
+from peopleboy.sim.physics.vehicle import Motion, State
 from peopleboy.sim.shapes.joined_tables import JoinedTables, Numbers, ends, join_tables, table_of
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from peopleboy.sim.fleet.crew import Crew
 from peopleboy.sim.fleet.fleet import Fleet, kind_of_fleet
 from peopleboy.sim.fleet.instants import Instants, perceive
-from peopleboy.sim.physics.solids.solids import Array
+from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.world import World
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.people.scripted.script import WALK, Records, Script, Scripts, join_records, join_scripts
 from peopleboy.sim.people.scripted.walk_scripts import walk_on
-from peopleboy.sim.physics.solids.solids import Array
+from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.shapes.joined_tables import Numbers, ends
 from peopleboy.sim.world import World
 

@@ -15,13 +15,17 @@ from numpy.typing import ArrayLike, NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.physics.bodies import AT_ORIGIN, Bodies, Body, PartKey, Place, as_unit
-from peopleboy.sim.physics.bullet_shapes import shape_arguments, visual_shape
+from peopleboy.sim.physics.bullet_bodies import AT_ORIGIN, Bodies, Body, PartKey, Place, as_unit
+from peopleboy.sim.physics.bullet_formats import (
+    metric_depth,
+    projection_matrix,
+    shape_arguments,
+    view_matrix,
+    visual_shape,
+)
+from peopleboy.sim.physics.bullet_rays import GivenBodies, SolidBoxes
 from peopleboy.sim.physics.model_files import MISSING_PHYSICS, find_model
-from peopleboy.sim.physics.opengl import metric_depth, projection_matrix, view_matrix
 from peopleboy.sim.physics.quiet import quiet
-from peopleboy.sim.physics.solids.given_bodies import GivenBodies
-from peopleboy.sim.physics.solids.solid_boxes import SolidBoxes
 from peopleboy.sim.shapes.bounds import FAR_M, NEAR_M
 from peopleboy.sim.shapes.meshes import load_triangles
 from peopleboy.sim.shapes.shape_table import VisualShape, as_given

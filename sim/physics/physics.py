@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
-from peopleboy.sim.physics.bodies import PartKey
+from peopleboy.sim.physics.bullet_bodies import PartKey
 from peopleboy.sim.physics.model_files import MISSING_PHYSICS
 from peopleboy.sim.shapes.shape_table import VisualShape
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, Vector
@@ -190,7 +190,7 @@ def open_physics(name: PhysicsName, physics_hz: int) -> Physics:
         BadInput: PyBullet is asked for and not installed.
     """
     if name == "kinematic":
-        from peopleboy.sim.physics.kinematic.kinematic import Kinematic
+        from peopleboy.sim.physics.kinematic import Kinematic
 
         return Kinematic(physics_hz=physics_hz)
     from peopleboy.sim.physics.bullet import Bullet  # here, as the other one does without PyBullet

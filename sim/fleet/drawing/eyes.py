@@ -18,7 +18,7 @@ from peopleboy.sim.fleet.drawing.shots import Shot, Shots
 from peopleboy.sim.fleet.drawing.studios import Images, is_simple, open_studio
 from peopleboy.sim.fleet.side_by_side import Joined
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.physics.kinematic.kinematic import turn_wheels
+from peopleboy.sim.physics.kinematic import turn_wheels
 from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.world import World
 

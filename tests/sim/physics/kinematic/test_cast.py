@@ -6,7 +6,7 @@ import pytest
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.physics.bullet import Bullet
-from peopleboy.sim.physics.kinematic.kinematic import Kinematic
+from peopleboy.sim.physics.kinematic import Kinematic
 from peopleboy.sim.robot.robot_body import NAME
 from peopleboy.sim.robot.sonar import SonarRing
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind

@@ -9,7 +9,7 @@ import pytest
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.geometry.planar import Planar
-from peopleboy.sim.physics.kinematic.kinematic import Kinematic
+from peopleboy.sim.physics.kinematic import Kinematic
 from peopleboy.sim.robot.peoplebot import PeopleBot
 from peopleboy.sim.robot.robot_body import NAME, URDF
 from peopleboy.sim.robot.robot_config import DriveConfig, RobotConfig

@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.physics.kinematic.footprints import MOST_POINTS, footprint
-from peopleboy.sim.physics.kinematic.overlap import overlap
+from peopleboy.sim.physics.footprints import MOST_POINTS, footprint, overlap
 from peopleboy.sim.shapes.shapes import ShapeKind
 
 HALF = np.array([0.25, 0.19])

@@ -15,14 +15,19 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.geometry.products import multiply
-from peopleboy.sim.physics.bodies import PartKey
-from peopleboy.sim.physics.kinematic.drive import push_out, roll
-from peopleboy.sim.physics.kinematic.state import Motion, State
-from peopleboy.sim.physics.kinematic.vehicle import Vehicle, make_vehicle, wheels_of
+from peopleboy.sim.physics.bullet_bodies import PartKey
 from peopleboy.sim.physics.model_files import find_model
-from peopleboy.sim.physics.solids.cast import cast
-from peopleboy.sim.physics.solids.solids import Placements, Solids, make_solids, refresh
-from peopleboy.sim.physics.urdf_links import read_links
+from peopleboy.sim.physics.solid_shapes import Placements, Solids, cast, make_solids, refresh
+from peopleboy.sim.physics.urdf import read_links
+from peopleboy.sim.physics.vehicle import (
+    Motion,
+    State,
+    Vehicle,
+    make_vehicle,
+    push_out,
+    roll,
+    wheels_of,
+)
 from peopleboy.sim.shapes.shape_table import VisualShape, as_given
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
 

@@ -1,1 +1,0 @@
-"""What is solid: where it is, and where rays meet it."""
