@@ -15,17 +15,18 @@ from numpy.typing import ArrayLike, NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.physics.bullet_bodies import AT_ORIGIN, Bodies, Body, PartKey, Place, as_unit
-from peopleboy.sim.physics.bullet_formats import (
+from peopleboy.sim.physics.bullet_bodies import AT_ORIGIN, Bodies, Body, Place, as_unit
+from peopleboy.sim.physics.bullet_io import (
     metric_depth,
     projection_matrix,
+    quiet,
     shape_arguments,
     view_matrix,
     visual_shape,
 )
 from peopleboy.sim.physics.bullet_rays import GivenBodies, SolidBoxes
 from peopleboy.sim.physics.model_files import MISSING_PHYSICS, find_model
-from peopleboy.sim.physics.quiet import quiet
+from peopleboy.sim.physics.solid_shapes import PartKey
 from peopleboy.sim.shapes.bounds import FAR_M, NEAR_M
 from peopleboy.sim.shapes.meshes import load_triangles
 from peopleboy.sim.shapes.shape_table import VisualShape, as_given

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.sim.physics.solid_shapes import PartKey
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Vector
 
 Place = tuple[Vector, Quaternion]
@@ -22,15 +23,6 @@ _ROUNDING: Final = 1e-12
 # Bullet takes the bits below these for groups of its own.
 _FIRST_FREE_BIT = 6
 _LAST_BIT = 30
-
-
-@dataclass(frozen=True, slots=True)
-class PartKey:
-    """One part of the world: a link of a body, -1 being the body's base."""
-
-    name: str
-    link: int
-    link_name: str
 
 
 @dataclass(slots=True, eq=False)

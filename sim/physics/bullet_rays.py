@@ -1,4 +1,4 @@
-"""Bodies of shapes that are given, each of one part: where they are, and where rays meet them."""
+"""What rays of a PyBullet world meet without asking PyBullet: bodies of given shapes, and boxes round the rest."""
 
 from __future__ import annotations
 
@@ -107,8 +107,6 @@ class GivenBodies:
         )
         return bodies, make_solids(self._solid)
 
-
-# Which rays come near bodies of files, told from boxes: PyBullet need not be asked about the others.
 
 Link = tuple[int, int]
 

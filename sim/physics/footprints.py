@@ -1,4 +1,4 @@
-"""What lies of a shape between two heights, seen from above: a convex outline, made wider by a radius."""
+"""Footprints of shapes between two heights, convex outlines with a radius, and how deep they overlap a box."""
 
 from __future__ import annotations
 
@@ -180,8 +180,6 @@ def _turns(a: Array, b: Array, c: Array) -> float:
     """Positive if the way from a by b to c turns to the left."""
     return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
 
-
-# How deep a rectangle and a convex outline with a radius are in each other (numba kernels).
 
 _FLUSH_M = 1e-3  # corners no farther back than that bear, too
 APART = (-math.inf, 0.0, 0.0, 0.0)

@@ -1,9 +1,10 @@
-"""Where all parts and all solid shapes of a world are, as arrays for kernels."""
+"""Solid shapes of a world as arrays for kernels: where they are, and where rays meet them (numba kernels)."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +24,15 @@ _CAPSULE = int(ShapeKind.CAPSULE)
 _PLANE = int(ShapeKind.PLANE)
 _MESH = int(ShapeKind.MESH)
 _PARKED_M = -500.0
+
+
+@dataclass(frozen=True, slots=True)
+class PartKey:
+    """One part of the world: a link of a body, -1 being the body's base."""
+
+    name: str
+    link: int
+    link_name: str
 
 
 class Placements(NamedTuple):
@@ -125,8 +135,6 @@ def _box_around(kind: int, size: Array, extent: Array, pose: Array, box: Array) 
         for axis in range(3):
             box[0, axis], box[1, axis] = min(box[0, axis], point[axis]), max(box[1, axis], point[axis])
 
-
-# The nearest solid along rays, by the shapes' own geometry (numba kernels).
 
 _MARGIN_M = 1e-3  # around boxes: far more than PyBullet's rays are off
 _BLOCK = 15  # rays that are looked at together, such as those of a sonar

@@ -1,4 +1,4 @@
-"""What is to be seen of a URDF file: the shapes of all its links, in the frame of its root link."""
+"""URDF files: the visible shapes of a model, and its links with their solids, joints and masses."""
 
 from __future__ import annotations
 
@@ -190,8 +190,6 @@ def _quaternion(rotation: Rotation) -> Quaternion:
     x, y, z, w = (float(number) for number in rotation.as_quat())
     return x, y, z, w
 
-
-# The links of a URDF file as physics needs them: where they hang, what is solid of them, what they weigh.
 
 _HERE = (np.zeros(3), Rotation.identity())
 

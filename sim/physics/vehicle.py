@@ -1,4 +1,4 @@
-"""A body on two driven wheels, read from its URDF: outline, wheels, and how it resists being turned."""
+"""A body on two driven wheels: its outline, read from a URDF, and its step in a kinematic world."""
 
 from __future__ import annotations
 
@@ -97,9 +97,6 @@ def _is_round(link: UrdfLink) -> bool:
     return len(link.solid) == 1 and link.solid[0].kind == ShapeKind.CYLINDER
 
 
-# All that is in a kinematic world at an instant, as arrays.
-
-
 class Motion(NamedTuple):
     """How the vehicle stands and moves.
 
@@ -124,8 +121,6 @@ class State(NamedTuple):
     vehicle: Vehicle
     own: int
 
-
-# One step of a vehicle: it rolls as its wheels turn, and is pushed out of what it is in (numba kernels).
 
 TOUCH_M = 5e-4  # what is nearer is touched
 _PUSHES = 16

@@ -15,7 +15,7 @@ from peopleboy.sim.geometry.pinhole import Matrix, invert_pose, transform
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.people.crowd import Crowd
 from peopleboy.sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS
-from peopleboy.sim.physics.bullet_bodies import PartKey
+from peopleboy.sim.physics.solid_shapes import PartKey
 from peopleboy.sim.places.moving import Mover
 from peopleboy.sim.rendering.cover import Cover
 from peopleboy.sim.rendering.sight import Seen

@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks.speed.drone import SIZE, DroneWorld
 from benchmarks.speed.drone_mesh import drone_mesh
-from peopleboy.sim.physics.bullet_formats import metric_depth
+from peopleboy.sim.physics.bullet_io import metric_depth
 
 
 def test_the_drone_hovers_and_sees_itself_the_plane_and_a_block_a_metre_ahead() -> None:

@@ -1,8 +1,12 @@
-"""Shapes as PyBullet's functions take them and give them back."""
+"""What passes between Python and PyBullet: shapes, camera matrices, depth images, and printed noise."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import contextlib
+import ctypes
+import os
+import sys
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -54,8 +58,6 @@ def visual_shape(row: Sequence[Any], part: int) -> VisualShape:
     return VisualShape(part, kind, tuple(row[3]), pose_matrices(row[5], row[6]), mesh)
 
 
-# The pinhole camera in OpenGL's conventions, which TinyRenderer follows.
-
 # OpenGL's camera looks along -z with y up, the optical frame along z with y down.
 _EYE_FROM_OPTICAL = np.diag([1.0, -1.0, -1.0, 1.0])
 
@@ -87,3 +89,47 @@ def projection_matrix(camera: Pinhole, near_m: float, far_m: float) -> list[floa
 def metric_depth(buffer: NDArray[np.float32], near_m: float, far_m: float) -> Matrix:
     """Depth along the optical axis [m] from a depth buffer that runs from 0 (near) to 1 (far)."""
     return far_m * near_m / (far_m - (far_m - near_m) * buffer.astype(np.float64))
+
+
+# PyBullet's C code writes straight to the file descriptors, past `sys.stdout`.
+_LIBC = ctypes.CDLL(None)
+
+
+@contextlib.contextmanager
+def quiet() -> Iterator[None]:
+    """Send everything written to file descriptors 1 and 2 inside the block to the null device.
+
+    Descriptors that are closed stay closed; what was buffered before the block still appears.
+    """
+    _flush()
+    with contextlib.ExitStack() as stack:
+        for descriptor in (1, 2):
+            stack.enter_context(_muted(descriptor))
+        yield
+        # C's buffers would otherwise be written out after the descriptors are back.
+        _flush()
+
+
+@contextlib.contextmanager
+def _muted(descriptor: int) -> Iterator[None]:
+    try:
+        saved = os.dup(descriptor)
+    except OSError:
+        yield
+        return
+    null = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, descriptor)
+    os.close(null)
+    try:
+        yield
+    finally:
+        os.dup2(saved, descriptor)
+        os.close(saved)
+
+
+def _flush() -> None:
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:
+            with contextlib.suppress(OSError, ValueError):
+                stream.flush()
+    _LIBC.fflush(None)
