@@ -37,12 +37,10 @@ from peopleboy.sim.robot.robot_body import RADIUS_M
 from peopleboy.sim.robot.robot_materials import robot_material
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shape_table import ShapeTable, make_shape_table
-from peopleboy.sim.truth.boxes import Box
-from peopleboy.sim.truth.bystanders import bystanders
-from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
-from peopleboy.sim.truth.scenes import SCENE, Scenes
-from peopleboy.sim.truth.truth import BORDER, Truth
+from peopleboy.sim.truth.scenes import SCENE, ImageFreeTruth, Scenes
+from peopleboy.sim.truth.truth import BORDER, Box, Truth
 from peopleboy.sim.truth.truth_maker import TruthMaker
+from peopleboy.sim.truth.visibility import bystanders
 
 _STANDS_OUT_K = 5.0  # from the surroundings: what differs by more is seen in mirrors
 _MOST_PEOPLE = 64  # a view's cover has a bit for each

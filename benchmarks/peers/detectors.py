@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.truth.seen import SEEN
+from peopleboy.sim.truth.scenes import SEEN
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.thermal.colour_config import ROBOT_AFFINE

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from peopleboy.scenarios.loop.run_events import LogLine
-from peopleboy.sim.truth.thing_events import Move
+from peopleboy.sim.truth.events import Move
 
 _WORTH_DEG = 10.0
 

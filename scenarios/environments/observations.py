@@ -18,8 +18,7 @@ from peopleboy.sim.fleet.instants import Instants
 from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.joined_tables import Numbers
-from peopleboy.sim.truth.scenes import Scenes
-from peopleboy.sim.truth.seen import SEEN
+from peopleboy.sim.truth.scenes import SEEN, Scenes
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Status, Track
 

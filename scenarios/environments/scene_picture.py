@@ -20,7 +20,7 @@ from peopleboy.sim.observation import Observation
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.robot.robot_body import RADIUS_M
-from peopleboy.sim.truth.image_free_truth import Bystander, ImageFreeTruth
+from peopleboy.sim.truth.scenes import Bystander, ImageFreeTruth
 from peopleboy.tracker.track import Track
 
 WIDTH_PX, HEIGHT_PX = 480, 360  # of each of the three panels

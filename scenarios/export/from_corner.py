@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from peopleboy.sim.truth.boxes import Box
+from peopleboy.sim.truth.truth import Box
 
 CORNER_PX: Final = 0.5
 SEEN, HIDDEN, OUTSIDE = 2, 1, 0  # of keypoints, in both

@@ -23,7 +23,7 @@ from peopleboy.scenarios.export.one_camera import OneCamera, with_people
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.sim.geometry.panorama import around_px
-from peopleboy.sim.truth.boxes import Box
+from peopleboy.sim.truth.truth import Box
 from peopleboy.tracker.evaluation.mot_files import read_truth
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
 

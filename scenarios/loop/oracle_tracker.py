@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from peopleboy.sim.geometry.planar import Planar
-from peopleboy.sim.truth.seen import is_seen
+from peopleboy.sim.truth.scenes import is_seen
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.track import FloorPlace, Status, Track

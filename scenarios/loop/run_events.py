@@ -10,8 +10,7 @@ from peopleboy.scenarios.files.schema.robot import FaultSpec
 from peopleboy.scenarios.loop.faults import active
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.track_events import TrackEvents
-from peopleboy.sim.truth.events import EventLog
-from peopleboy.sim.truth.thing_events import Move, ThingLog
+from peopleboy.sim.truth.events import EventLog, Move, ThingLog
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,8 +9,7 @@ import numpy as np
 
 from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, track_colour
 from peopleboy.scenarios.recording.marks import Colours, Floats, colours_of
-from peopleboy.sim.truth.boxes import Box
-from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.sim.truth.truth import Box, PersonTruth
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Track
 

@@ -22,7 +22,7 @@ from peopleboy.scenarios.scores.bootstrap import bootstrap
 from peopleboy.scenarios.scores.comfort.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import FollowingScore, Row
-from peopleboy.sim.truth.thing_events import Move
+from peopleboy.sim.truth.events import Move
 from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, by_length
 from peopleboy.tracker.evaluation.table import FIGURES, FLOOR, Figure
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore, Leg, score_corridor
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.rectangle import Rectangle
-from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
+from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.sim.truth.truth import Truth
 
 

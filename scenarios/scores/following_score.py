@@ -18,9 +18,8 @@ from peopleboy.scenarios.scores.following_metrics import (
 )
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.truth.boxes import Box
-from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
-from peopleboy.sim.truth.truth import Truth
+from peopleboy.sim.truth.scenes import ImageFreeTruth
+from peopleboy.sim.truth.truth import Box, Truth
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.evaluation.floor import floor_squares
 from peopleboy.tracker.footage.box_kinds import BoxKind

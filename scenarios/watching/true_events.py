@@ -9,7 +9,7 @@ from typing import Final
 
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.sim.geometry.planar import Planar
-from peopleboy.sim.truth.thing_events import ThingEvent
+from peopleboy.sim.truth.events import ThingEvent
 from peopleboy.tracker.scene_model.scene import Happening
 
 KINDS: Final = ("thing moved", "thing appeared", "thing vanished")

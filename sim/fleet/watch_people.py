@@ -12,9 +12,8 @@ from peopleboy.sim.fleet.side_by_side import Joined
 from peopleboy.sim.fleet.walk_worlds import Walks
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.shapes.joined_tables import Numbers
-from peopleboy.sim.truth.bystanders import look_at
 from peopleboy.sim.truth.scenes import BYSTANDER, Records
-from peopleboy.sim.truth.upright import stand_before
+from peopleboy.sim.truth.visibility import look_at, stand_before
 from peopleboy.sim.world import World
 
 

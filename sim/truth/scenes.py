@@ -1,4 +1,4 @@
-"""The truth about many worlds at an instant, as far as no image is needed for it, as arrays."""
+"""The truth at an instant as far as it needs no image: as values of one world, as arrays of many."""
 
 from __future__ import annotations
 
@@ -8,7 +8,75 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.planar import Planar
-from peopleboy.sim.truth.image_free_truth import Bystander, ImageFreeTruth
+from peopleboy.sim.truth.truth import Box
+
+# Two measures say how much of a person is visible. `PersonTruth.visible_fraction` counts the pixels of an
+# image, exactly. `Bystander.free_ray_share` casts five rays at the middle of the body and needs no image; it
+# knows fifths only, and takes other people for the capsules that the robot can bump into. One threshold holds
+# for both. Over 1369 views of people in the image, in six scenarios of the library, the two agree in 96 % of
+# the views; they differ by 0.05 on average and by 0.86 at most. Where they disagree it is nearly always the
+# rays that call a person hidden, since a capsule also fills the gaps round a body.
+SEEN = 0.3
+
+
+def is_seen(share: float) -> bool:
+    """Return whether a person of whom this share is visible, by pixels or by rays, counts as seen."""
+    return share > SEEN
+
+
+class Bystander(NamedTuple):
+    """One person who is present, seen or not.
+
+    Attributes:
+        id: 1, 2, ... in the scenario's order.
+        name: as in the scenario.
+        position_m: (x, y) on the floor, world frame.
+        heading_rad: [rad] where the body faces, world frame.
+        velocity_m_s: (x, y) [m/s] world frame.
+        height_m, radius_m: [m] of the upright body that stands for the person in contacts and sonar.
+        distance_m: [m] on the floor from the robot's origin.
+        bearing_rad: [rad] from the robot's nose, positive to the left.
+        box: left, top, width, height [px] of that upright body in the thermal image, whatever the posture, as
+            if nothing hid it; None when it is not before the camera.
+        free_ray_share: share of five points up the body's middle that are inside the thermal image with
+            nothing solid before them.
+    """
+
+    id: int
+    name: str
+    position_m: tuple[float, float]
+    heading_rad: float
+    velocity_m_s: tuple[float, float]
+    height_m: float
+    radius_m: float
+    distance_m: float
+    bearing_rad: float
+    box: Box | None
+    free_ray_share: float
+
+    @property
+    def is_seen(self) -> bool:
+        """Whether the thermal camera would see enough of the person."""
+        return is_seen(self.free_ray_share)
+
+
+class ImageFreeTruth(NamedTuple):
+    """The truth about one instant without images.
+
+    Attributes:
+        time_s: [s] since the start.
+        robot: true pose of the robot.
+        robot_velocity: true forward speed [m/s] and turn rate [rad/s].
+        contacts: names of what the robot touches, the floor aside.
+        people: everybody who is present, in the scenario's order.
+    """
+
+    time_s: float
+    robot: Planar
+    robot_velocity: tuple[float, float]
+    contacts: tuple[str, ...]
+    people: tuple[Bystander, ...]
+
 
 Records = NDArray[Any]
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.places.moving import Mover
-from peopleboy.sim.truth.boxes import Box, box_of_pixels
+from peopleboy.sim.truth.truth import Box, box_of_pixels
 
 NOTHING = -1
 

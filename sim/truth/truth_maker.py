@@ -20,9 +20,18 @@ from peopleboy.sim.places.moving import Mover
 from peopleboy.sim.rendering.cover import Cover
 from peopleboy.sim.rendering.sight import Seen
 from peopleboy.sim.shapes.materials import Material
-from peopleboy.sim.truth.boxes import Box, Edges, box_between, box_of_pixels, is_cut_off
 from peopleboy.sim.truth.things import NOTHING, Owners, things_truth
-from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth, is_counted
+from peopleboy.sim.truth.truth import (
+    BORDER,
+    Box,
+    Edges,
+    PersonTruth,
+    Truth,
+    box_between,
+    box_of_pixels,
+    is_counted,
+    is_cut_off,
+)
 
 A = TypeVar("A", bound=NDArray[Any])
 Depth = NDArray[np.float32]

@@ -13,7 +13,7 @@ from peopleboy.scenarios.drawing.labels import Labels
 from peopleboy.scenarios.drawing.outlines import outlines
 from peopleboy.sim.places.moving import ActionKind, Mover, Stance
 from peopleboy.sim.places.place import Fixture, Place
-from peopleboy.sim.truth.thing_events import STANDS_S
+from peopleboy.sim.truth.events import STANDS_S
 
 COLOUR = "#8a5a00"
 _SHORTEST_M = 0.15

@@ -13,8 +13,8 @@ from peopleboy.scenarios.scores.following_metrics import FollowingTask
 from peopleboy.scenarios.scores.following_score import TARGET, Spot, score_instants, track_on
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.places.floor_plan import FloorPlan
-from peopleboy.sim.truth.boxes import Box
 from peopleboy.sim.truth.scenes import Scenes
+from peopleboy.sim.truth.truth import Box
 from peopleboy.tracker.track import Track
 
 Figures = dict[str, dict[str, float]]

@@ -16,8 +16,7 @@ from peopleboy.scenarios.scores.following_metrics import FollowingTask
 from peopleboy.sim.fleet.instants import Instants
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.shapes.joined_tables import Numbers, ends
-from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
-from peopleboy.sim.truth.scenes import Scenes
+from peopleboy.sim.truth.scenes import ImageFreeTruth, Scenes
 
 Events = tuple[tuple[str, str], ...]
 _TWO: Final = 2.0  # see `reward_worlds`

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.robot.robot_body import RADIUS_M
-from peopleboy.sim.truth.scenes import Records
-from peopleboy.sim.truth.seen import SEEN
+from peopleboy.sim.truth.scenes import SEEN, Records
 
 LOST_S: Final = 10.0
 NOBODY_M: Final = 1000.0  # stands for a distance or gap where there is nobody

@@ -11,7 +11,7 @@ from peopleboy.scenarios.report.findings.sentences import seconds, spoken
 from peopleboy.scenarios.report.findings.spans import spans
 from peopleboy.scenarios.report.findings.story import Hold, Story
 from peopleboy.scenarios.report.findings.summary import RunFindings
-from peopleboy.sim.truth.seen import SEEN
+from peopleboy.sim.truth.scenes import SEEN
 
 _APART_S = 1.0  # two moments of one person nearer than this are one
 

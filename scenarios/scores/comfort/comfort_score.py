@@ -16,7 +16,7 @@ from peopleboy.scenarios.scores.comfort.comfort_metrics import (
 )
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.robot.robot_body import RADIUS_M, outline_gap
-from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
+from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.sim.truth.truth import Truth
 
 _BODY_M: Final = 0.25  # radius of the disc that stands for a person

@@ -14,7 +14,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
+from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.tracker.frame import PANORAMA, Frame
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
 from peopleboy.tracker.panoramic.paper.background import EMPTY_IMAGES, learn_background

@@ -15,7 +15,7 @@ from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.scenarios.report.attention_strip import attention_strip
 from peopleboy.scenarios.report.charts.thing_timelines import draw_things, thing_rows
 from peopleboy.sim.cameras.camera_config import ColourConfig
-from peopleboy.sim.truth.thing_events import Move
+from peopleboy.sim.truth.events import Move
 from peopleboy.tracker.frame import COLOUR
 from tests.helpers.runs.hand_made_tracks import track
 

@@ -4,7 +4,7 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.sim.truth.seen import is_seen
+from peopleboy.sim.truth.scenes import is_seen
 from peopleboy.sim.world import World
 
 

@@ -14,7 +14,7 @@ from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.places.things import Thing, build_thing
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.backgrounds import Backgrounds
-from peopleboy.sim.truth.thing_events import STANDS_S, ThingLog
+from peopleboy.sim.truth.events import STANDS_S, ThingLog
 from peopleboy.sim.world import World
 from tests.helpers.calls.refused import refused
 

@@ -17,7 +17,7 @@ from peopleboy.scenarios.environments.written_controller import WrittenControlle
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.run import RunOptions, run
 from peopleboy.sim.robot.robot_config import DriveConfig
-from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
+from peopleboy.sim.truth.scenes import ImageFreeTruth
 
 SEED = 2
 LIMITS = DriveConfig()

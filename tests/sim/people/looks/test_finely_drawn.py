@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.truth.boxes import Box
+from peopleboy.sim.truth.truth import Box
 from peopleboy.sim.world import World
 from tests.helpers.worlds.small_worlds import config, person
 
