@@ -38,8 +38,8 @@ from peopleboy.scenarios.loop.tracker_by_name import camera_names, make_checked_
 from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.scores.following_score import TARGET, following_task
+from peopleboy.sim.batch.snapshot import Instants, perceive
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.fleet.instants import Instants, perceive
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.random_streams import stream

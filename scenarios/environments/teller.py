@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.environments.normalise import Normaliser
 from peopleboy.scenarios.environments.observations import Arrays, feel, image_shape, see_truth
-from peopleboy.sim.fleet.instants import Instants
+from peopleboy.sim.batch.snapshot import Instants
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.scenes import Records
 

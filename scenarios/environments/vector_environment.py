@@ -17,9 +17,9 @@ from peopleboy.scenarios.environments.join_infos import Infos, join_infos
 from peopleboy.scenarios.environments.judging.episodes import LiveEpisodes
 from peopleboy.scenarios.environments.observations import Arrays
 from peopleboy.scenarios.environments.step_results import StepResults
-from peopleboy.sim.fleet.crew import Crew
-from peopleboy.sim.fleet.instants import Instants
-from peopleboy.sim.fleet.together import Together
+from peopleboy.sim.batch.cameras import Crew
+from peopleboy.sim.batch.snapshot import Instants
+from peopleboy.sim.batch.world_batch import Together
 from peopleboy.sim.shapes.joined_tables import Numbers
 
 Flags = NDArray[np.bool_]
@@ -31,7 +31,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
 
     Actions are (B, 2); an observation has the arrays of `PeopleBoyEnv` with B before their shape, such as
     `thermal` (B, H, W, 1), each of its own and never written again. Kinematic worlds go through kernels
-    together, see `peopleboy.sim.fleet.fleet.Fleet`. World i gives to the byte what a single
+    together, see `peopleboy.sim.batch.world_batch.Fleet`. World i gives to the byte what a single
     environment with its seed and actions gives. The step after an episode's end begins the next episode in
     that world, whatever its action, with reward 0 (`AutoresetMode.NEXT_STEP`); `infos` has the arrays that
     gymnasium makes of B infos.

@@ -13,7 +13,7 @@ from peopleboy.scenarios.environments.judging.episode_figures import EpisodeFigu
 from peopleboy.scenarios.environments.judging.rewards import ENDS, TASKS, TERMS, reward_worlds
 from peopleboy.scenarios.environments.judging.situation import EPISODE, Array, areas_of
 from peopleboy.scenarios.scores.following_metrics import FollowingTask
-from peopleboy.sim.fleet.instants import Instants
+from peopleboy.sim.batch.snapshot import Instants
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.shapes.joined_tables import Numbers, ends
 from peopleboy.sim.truth.scenes import ImageFreeTruth, Scenes

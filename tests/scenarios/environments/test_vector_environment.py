@@ -12,8 +12,8 @@ from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.join_infos import join_infos
 from peopleboy.scenarios.environments.vector_environment import PeopleBoyVectorEnv
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.sim.fleet.crew import Crew
-from peopleboy.sim.fleet.together import Together
+from peopleboy.sim.batch.cameras import Crew
+from peopleboy.sim.batch.world_batch import Together
 from peopleboy.sim.world import World
 from tests.helpers.some_of import some_of
 

@@ -8,6 +8,17 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.sim.batch.image_kernels import (
+    Detectors,
+    Eye,
+    Film,
+    Poses,
+    Radiators,
+    Scenery,
+    detect_worlds,
+    expose_worlds,
+    radiate_worlds,
+)
 from peopleboy.sim.cameras.blur import optics_blur_sheet, optics_margin, sweep_of_one_rad
 from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, ThermalConfig
 from peopleboy.sim.cameras.colour import GAMMA, LIGHT
@@ -23,10 +34,6 @@ from peopleboy.sim.cameras.thermal import (
     TEMPERATURE,
     mirrored,
 )
-from peopleboy.sim.fleet.drawing.colour_worlds import Film, expose_worlds
-from peopleboy.sim.fleet.drawing.look_worlds import Eye, Poses
-from peopleboy.sim.fleet.drawing.scenery import Scenery
-from peopleboy.sim.fleet.drawing.thermal_worlds import Detectors, Radiators, detect_worlds, radiate_worlds
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.rendering.canvas import Lens
 from peopleboy.sim.shapes.joined_tables import Numbers

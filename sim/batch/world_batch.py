@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.sim.batch.cameras import Crew, Eyes, cameras_of
+from peopleboy.sim.batch.drive import Drives
+from peopleboy.sim.batch.joined_worlds import lay_side_by_side, refresh_worlds
+from peopleboy.sim.batch.people import Limbs, Walks
+from peopleboy.sim.batch.sensing import Ears, Watch
+from peopleboy.sim.batch.snapshot import Instants, OwnPictures, Pictures, perceive
 from peopleboy.sim.cameras.kinds import flat_geometry
-from peopleboy.sim.fleet.cast_worlds import refresh_worlds
-from peopleboy.sim.fleet.crew import Crew
-from peopleboy.sim.fleet.drawing.eyes import Eyes, cameras_of
-from peopleboy.sim.fleet.drives import Drives
-from peopleboy.sim.fleet.ears import Ears
-from peopleboy.sim.fleet.hold_people import Limbs
-from peopleboy.sim.fleet.instants import Instants, OwnPictures, Pictures
-from peopleboy.sim.fleet.side_by_side import lay_side_by_side
-from peopleboy.sim.fleet.walk_worlds import Walks
-from peopleboy.sim.fleet.watch_people import Watch
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.kinematic import Kinematic
@@ -180,3 +177,49 @@ def _planar(poses: Matrix) -> Array:
 def _kinematic(world: World) -> Kinematic:
     assert isinstance(world.physics, Kinematic)
     return world.physics
+
+
+# Any worlds, stepped together as far as they can be.
+
+
+class Together:
+    """Worlds by number: kinematic ones in a fleet for each kind, others each by itself."""
+
+    def __init__(self, worlds: Sequence[World], crew: Crew) -> None:
+        self._worlds = tuple(worlds)
+        kinds: dict[object, list[int]] = defaultdict(list)
+        for number, world in enumerate(worlds):
+            kinds[kind_of_fleet(world)].append(number)
+        self._alone = kinds.pop(None, [])
+        self._fleets = [
+            (Fleet([worlds[number] for number in group], crew), np.array(group, np.int64))
+            for group in kinds.values()
+        ]
+
+    def step(self, going: Numbers, commands: Array) -> list[Instants]:
+        """Step some of the worlds, and perceive what is in them then.
+
+        Args:
+            going: (G,) numbers of the worlds, rising.
+            commands: (G, 2) speeds [m/s, rad/s].
+
+        Returns:
+            What is perceived in all of them, as many worlds at a time as are stepped together.
+
+        Raises:
+            BadInput: a command is not finite.
+        """
+        found = []
+        for number in self._alone:
+            for k in np.flatnonzero(going == number).tolist():
+                world = self._worlds[number]
+                world.step(*commands[k].tolist())
+                found.append(perceive(world)._replace(numbers=going[k : k + 1]))
+        row = np.full(len(self._worlds), -1)
+        row[going] = np.arange(len(going))
+        for fleet, group in self._fleets:
+            own = np.flatnonzero(row[group] >= 0)
+            if len(own):
+                fleet.step(own, commands[row[group[own]]])
+                found.append(fleet.look(own)._replace(numbers=group[own]))
+        return found

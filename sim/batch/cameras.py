@@ -1,0 +1,261 @@
+"""The cameras of many worlds, whose images are made together."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from functools import partial
+from itertools import pairwise
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.batch.image_kernels import Array, Poses, join_scenery
+from peopleboy.sim.batch.joined_worlds import Joined
+from peopleboy.sim.batch.render_stages import Images, is_simple, open_studio
+from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.kinds import image_names, name_images
+from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.on_demand import OnDemand
+from peopleboy.sim.physics.kinematic import turn_wheels
+from peopleboy.sim.shapes.joined_tables import Numbers
+from peopleboy.sim.world import World
+
+# The images of one instant in many worlds: made ahead, or when somebody asks for one.
+
+# Threads that work for a fleet while Python goes on.
+
+Task = Callable[[], None]
+
+
+class Crew:
+    """A number of threads, of which the one that asks is the first; alone it does all itself.
+
+    Args:
+        threads: 1 or more; None for as many as there are processors that this process may run on.
+    """
+
+    def __init__(self, threads: int | None = None) -> None:
+        self.threads = _processors() if threads is None else threads
+        self._pool = ThreadPoolExecutor(self.threads - 1) if self.threads > 1 else None
+
+    def start(self, tasks: Sequence[Task]) -> Work:
+        """Begin with tasks that do not need each other; they are done when `Work.finish` returns."""
+        return Work([(task, None if self._pool is None else self._pool.submit(task)) for task in tasks])
+
+    def close(self) -> None:
+        """Let the threads go."""
+        if self._pool is not None:
+            self._pool.shutdown()
+
+
+class Work:
+    """Tasks under way."""
+
+    def __init__(self, tasks: Sequence[tuple[Task, Future[None] | None]]) -> None:
+        self._tasks = list(tasks)
+
+    def finish(self) -> None:
+        """Do what nobody has begun with, the last first, and wait for the rest."""
+        begun = []
+        while self._tasks:
+            task, future = self._tasks.pop()
+            if future is None or future.cancel():
+                task()
+            else:
+                begun.append(future)
+        for future in begun:
+            future.result()
+
+
+def _processors() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+Start = Callable[[], tuple[Images, Work]]
+
+
+class Shot:
+    """What one camera takes at an instant in some of G worlds.
+
+    Args:
+        name: of the camera.
+        config: its settings, the same in all worlds.
+        rows: which of the worlds, in the order of the images.
+        start: gives space for the images, and who fills it; called once at most.
+    """
+
+    def __init__(self, name: str, config: CameraConfig, rows: Sequence[int], start: Start) -> None:
+        self.name, self.rows = name, rows
+        self._config, self._start = config, start
+        self._begun: tuple[Images, Work] | None = None
+        self._is_over = False
+        self.is_asked_for = False
+
+    def begin(self) -> tuple[Images, Work]:
+        """Have the images made.
+
+        Raises:
+            BadInput: the instant is over, and nobody had begun with them.
+        """
+        if self._begun is None:
+            if self._is_over:
+                raise BadInput(
+                    f"camera {self.name!r}: the image of an instant that is over was not asked for while it "
+                    "lasted; read it before the next step or observation"
+                )
+            self._begun = self._start()
+        return self._begun
+
+    def end(self) -> None:
+        """Wait for what has begun; nothing else can begin any more."""
+        self._is_over = True
+        if self._begun is not None:
+            self._begun[1].finish()
+
+    def images(self) -> NDArray[Any]:
+        """Give those of the camera's own name, of all of its worlds."""
+        return self._finish()[0]
+
+    def image(self, name: str, place: int) -> NDArray[Any]:
+        """Give an image of that name, of the world at some place among its own."""
+        images = self._finish()
+        if name == self.name:
+            return np.asarray(images[0][place])
+        return name_images(self.name, self._config, [each[place] for each in images])[name]
+
+    def _finish(self) -> Images:
+        self.is_asked_for = True
+        images, work = self.begin()
+        work.finish()
+        return images
+
+
+class Shots:
+    """All of an instant.
+
+    Args:
+        shots: of each camera that is due anywhere.
+        names: of the images of each camera.
+    """
+
+    def __init__(self, shots: Sequence[Shot], names: Mapping[str, Sequence[str]]) -> None:
+        self._shots, self._names = tuple(shots), names
+
+    @classmethod
+    def none(cls) -> Shots:
+        """Those of no instant yet."""
+        return cls((), {})
+
+    def asked_for(self) -> set[str]:
+        """Names of the cameras of which somebody asked for an image."""
+        return {shot.name for shot in self._shots if shot.is_asked_for}
+
+    def end(self) -> None:
+        """Wait for what has begun, as must be before anything in the worlds changes."""
+        for shot in self._shots:
+            shot.end()
+
+    def of(self, row: int) -> Mapping[str, NDArray[Any]]:
+        """Give the images of one of the worlds by their names."""
+        owners = {
+            image: (shot, shot.rows.index(row))
+            for shot in self._shots
+            if row in shot.rows
+            for image in self._names[shot.name]
+        }
+
+        def make(image: str) -> NDArray[Any]:
+            shot, place = owners[image]
+            return shot.image(image, place)
+
+        return OnDemand(owners, make)
+
+    def together(self, camera: str) -> tuple[Sequence[int], Sequence[NDArray[Any]] | NDArray[Any]]:
+        """Give the images of a camera's own name: in which of the worlds it takes one, and these."""
+        return next(((shot.rows, shot.images()) for shot in self._shots if shot.name == camera), ((), ()))
+
+
+_SHARES: Final = 2  # of a camera's images for each thread, so that none waits long for the last
+
+
+class Eyes:
+    """The cameras of B worlds, see `cameras_of`; they give to the byte what each world by itself would give.
+
+    Images of a camera are made ahead, by threads while Python goes on, if somebody asked for those of the
+    instant before; all others when they are asked for.
+
+    Args:
+        worlds: of one kind, all of a fleet.
+        joined: where all of their parts are.
+        wheels: (B, 2) numbers of the wheels among the parts of all worlds.
+        crew: makes the images.
+    """
+
+    def __init__(self, worlds: Sequence[World], joined: Joined, wheels: Numbers, crew: Crew) -> None:
+        self._worlds, self._joined, self._crew = tuple(worlds), joined, crew
+        self._wheels = wheels.reshape(-1)
+        self._cameras = dict(worlds[0].cameras)
+        scenery = join_scenery([world.table for world in worlds], [world.looks for world in worlds])
+        self._studios = {
+            name: open_studio(name, config, scenery, worlds) for name, config in self._cameras.items()
+        }
+        self._images = {name: image_names(name, config) for name, config in self._cameras.items()}
+        first_body = np.repeat(joined.first_body[:-1], np.diff(joined.first_part))
+        self._body_of_part = joined.bodies.of_part + first_body
+        self._shots = Shots.none()
+
+    def look(self, going: Numbers, robots: Array, turn_rad_s: Array) -> Shots:
+        """Take the images of some worlds at this instant.
+
+        Args:
+            going: (G,) numbers of the worlds.
+            robots: (G, 4, 4) world from robot.
+            turn_rad_s: (G,) at which they turn.
+        """
+        asked_for = self._shots.asked_for()
+        self.finish()
+        part = self._joined.bodies.poses.copy()
+        turn_wheels(part, self._wheels, self._joined.motion.angles.reshape(-1))
+        hidden = self._joined.bodies.hidden[self._body_of_part]
+        due = [self._worlds[number].await_images() for number in going.tolist()]
+        shots = []
+        for name, config in self._cameras.items():
+            rows = [row for row, names in enumerate(due) if name in names]
+            if rows:
+                assert isinstance(config.camera, Pinhole)
+                poses = Poses(
+                    part=part,
+                    hidden=hidden,
+                    camera=robots[rows] @ config.camera.robot_from_camera,
+                    turned=turn_rad_s[rows] * config.exposure_s,
+                )
+                shots.append(Shot(name, config, rows, partial(self._shoot, name, going[rows], poses)))
+        for shot in reversed(shots):  # as who looks at the first of them helps with that
+            if shot.name in asked_for:
+                shot.begin()
+        self._shots = Shots(shots, self._images)
+        return self._shots
+
+    def finish(self) -> None:
+        """Wait for all images with which somebody has begun, as must be before the worlds change."""
+        self._shots.end()
+
+    def _shoot(self, name: str, worlds: Numbers, poses: Poses) -> tuple[Images, Work]:
+        images, fill = self._studios[name].shoot(worlds, poses)
+        count = min(_SHARES * self._crew.threads, len(worlds))
+        ends = np.linspace(0, len(worlds), count + 1).round().astype(int).tolist()
+        return images, self._crew.start([partial(fill, *share) for share in pairwise(ends)])
+
+
+def cameras_of(world: World) -> tuple[tuple[str, CameraConfig], ...] | None:
+    """What all worlds must share whose images are made together; None for a world that makes its own."""
+    config = world.config
+    if config.renderer != "raycast" or config.detail != "plain":
+        return None
+    return tuple(world.cameras.items()) if all(map(is_simple, world.cameras.values())) else None

@@ -1,0 +1,362 @@
+"""What cameras of plain detail look at in many worlds (numba kernels)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.sim.cameras.blur import sweep_weights, weighted_sum
+from peopleboy.sim.cameras.colour import encode, light_image
+from peopleboy.sim.cameras.noise import look_up
+from peopleboy.sim.cameras.surfaces import MaterialTable, combine
+from peopleboy.sim.cameras.thermal import radiance_image, to_apparent_c
+from peopleboy.sim.geometry.products import from_each, invert
+from peopleboy.sim.rendering.canvas import Canvas, Lens, locate, shade
+from peopleboy.sim.rendering.raycast import draw
+from peopleboy.sim.shapes.joined_tables import JoinedTables, Numbers, ends, join_tables, table_of
+from peopleboy.sim.shapes.shape_table import ShapeTable
+
+# What there is to be seen in many worlds, one world after the other in arrays.
+
+Array = NDArray[np.float64]
+
+
+class Looks(NamedTuple):
+    """How parts look, as in `MaterialTable`; those of plain detail have neither finishes nor paintings."""
+
+    thermal: Array
+    colour: Array
+    kind: Numbers
+    period: Array
+    phase: Array
+    finish: Array
+    texels: NDArray[np.int16]
+    paint: Array
+    paint_texels: NDArray[np.int16]
+
+
+class Scenery(NamedTuple):
+    """B worlds; numbers within them are those of each world by itself.
+
+    Attributes:
+        tables: visible shapes of all worlds.
+        looks: of their parts.
+        part: (B + 1,) where each world's parts begin, and where the last end.
+    """
+
+    tables: JoinedTables
+    looks: Looks
+    part: Numbers
+
+
+def join_scenery(tables: Sequence[ShapeTable], materials: Sequence[MaterialTable]) -> Scenery:
+    """Copy tables and looks of worlds of plain detail into arrays of all of them."""
+    own = [(each.thermal, each.colour, each.kind, each.period, each.phase) for each in materials]
+    first = materials[0]
+    without = first.finish, first.texels, first.paint, first.paint_texels
+    looks = Looks._make([*map(np.concatenate, zip(*own, strict=True)), *without])
+    return Scenery(join_tables(tables), looks, ends([len(each.thermal) for each in materials]))
+
+
+@njit(cache=True, nogil=True)
+def looks_of(scenery: Scenery, world: int) -> Looks:
+    """How the parts of one of the worlds look."""
+    looks, p, p_end = scenery.looks, scenery.part[world], scenery.part[world + 1]
+    return Looks(
+        looks.thermal[p:p_end],
+        looks.colour[p:p_end],
+        looks.kind[p:p_end],
+        looks.period[p:p_end],
+        looks.phase[p:p_end],
+        looks.finish,
+        looks.texels,
+        looks.paint,
+        looks.paint_texels,
+    )
+
+
+Image = NDArray[np.float32]
+_LEAST_SWEEP_PX = 0.05  # as in `rotation_blur`
+
+
+class Poses(NamedTuple):
+    """Where all is that is to be seen.
+
+    Attributes:
+        part: (P, 4, 4) world from part, of all worlds of a `Scenery`.
+        hidden: (P,) parts that are not there.
+        camera: (G, 4, 4) world from camera, of G of the worlds.
+        turned: (G,) [rad] by which each has turned about the vertical axis during the exposure.
+    """
+
+    part: Array
+    hidden: NDArray[np.bool_]
+    camera: Array
+    turned: Array
+
+
+class Eye(NamedTuple):
+    """A pinhole camera as kernels take it.
+
+    Attributes:
+        lens: where its pixels look.
+        rays: (3, 3) as `rays_through` gives it.
+        sweep: (W,) [px] of each column for a turn by 1 rad.
+    """
+
+    lens: Lens
+    rays: Array
+    sweep: Array
+
+
+class Buffers(NamedTuple):
+    """Space for what one camera sees, (H, W), as in `peopleboy.sim.rendering.view.View`."""
+
+    part: NDArray[np.int32]
+    depth: Image
+    normal: Image
+
+
+@njit(cache=True)
+def open_space(lens: Lens, scenery: Scenery) -> tuple[Canvas, Buffers]:
+    """Space for one image after the other."""
+    shape, surfaces, first = (lens.height, lens.width), 0, scenery.tables.surface
+    for world in range(len(first) - 1):
+        surfaces = max(surfaces, first[world + 1] - first[world])
+    canvas = Canvas(
+        np.zeros(shape),
+        np.empty(shape, np.int32),
+        np.zeros(shape, np.uint64),
+        np.empty((surfaces, 7)),
+        np.empty((6, 3)),
+        np.empty((3, 4)),
+    )
+    return canvas, Buffers(
+        np.empty(shape, np.int32), np.empty(shape, np.float32), np.empty((*shape, 3), np.float32)
+    )
+
+
+@njit(cache=True)
+def look_into(
+    world: int,
+    row: int,
+    table: ShapeTable,
+    first_part: Numbers,
+    poses: Poses,
+    eye: Eye,
+    canvas: Canvas,
+) -> Array:
+    """Draw one world; gives the matrices of `part_from_pixel`."""
+    first, end = first_part[world], first_part[world + 1]
+    parts, camera = poses.part[first:end], poses.camera[row]
+    camera_from_world = np.empty((4, 4))
+    invert(camera, camera_from_world)
+    nobody = np.zeros(end - first, np.uint64)
+    canvas.nearness[:] = 0.0
+    draw(table, from_each(camera_from_world, parts), poses.hidden[first:end], nobody, eye.lens, canvas)
+    return combine(eye.rays, camera, parts)
+
+
+@njit(cache=True)
+def smear(lines: Image, sweep_of_one_rad: Array, turned_rad: float, channels: int) -> Image:
+    """Do as `rotation_blur` with (H, W C) lines of an image."""
+    sweep = sweep_of_one_rad * abs(turned_rad)
+    if sweep.max() < _LEAST_SWEEP_PX:
+        return lines
+    own = sweep_weights(sweep)
+    weights = np.empty((own.shape[0], own.shape[1] * channels), np.float32)
+    for k in range(own.shape[0]):
+        for u in range(own.shape[1]):
+            weights[k, channels * u : channels * (u + 1)] = own[k, u]
+    return weighted_sum(lines, weights, channels)
+
+
+# Colour images of many worlds, from poses to sRGB (numba kernels).
+
+
+class Film(NamedTuple):
+    """How a colour camera exposes: gain, and noise as in `LightConfig`; (3,) direction of the light."""
+
+    read_noise: np.float32
+    shot_noise: np.float32
+    light: Array
+    gamma: NDArray[np.uint8]
+
+
+@njit(cache=True, nogil=True)
+def expose_worlds(
+    first: int,
+    end: int,
+    worlds: Numbers,
+    scenery: Scenery,
+    poses: Poses,
+    eye: Eye,
+    film: Film,
+    level: Array,
+    quantiles: Image,
+    words: NDArray[np.uint64],
+    image: NDArray[np.uint8],
+) -> None:
+    """Make colour images, as `radiate_worlds` and `detect_worlds` make thermal ones.
+
+    Args:
+        first: row of the first world of these.
+        end: row after the last one.
+        worlds: (G,) their numbers in the scenery.
+        scenery: of all.
+        poses: of all.
+        eye: the camera, the same in all worlds.
+        film: how it exposes.
+        level: (G,) of the light, times the camera's gain.
+        quantiles: of the noise.
+        words: (end - first, N) random, of these rows.
+        image: (G, H, W, 3) rows first..end-1 are filled.
+    """
+    canvas, view = open_space(eye.lens, scenery)
+    noise = np.empty((eye.lens.height, eye.lens.width, 3), np.float32)
+    for row in range(first, end):
+        table, looks = table_of(scenery.tables, worlds[row]), looks_of(scenery, worlds[row])
+        matrices = look_into(worlds[row], row, table, scenery.part, poses, eye, canvas)
+        rotation = np.ascontiguousarray(poses.camera[row, :3, :3])
+        shade(table.surface_part, eye.lens, canvas, rotation, view.part, view.depth, view.normal)
+        linear = light_image(
+            view.part, view.depth, view.normal, matrices, looks.colour, looks.kind, looks.period, looks.phase,
+            looks.finish, looks.texels, looks.paint, looks.paint_texels, film.light, level[row],
+        )  # fmt: skip
+        lines = linear.reshape(eye.lens.height, 3 * eye.lens.width)
+        smeared = smear(lines, eye.sweep, poses.turned[row], 3)
+        look_up(quantiles, words[row - first], noise.reshape(-1))
+        coded = encode(smeared.reshape(noise.shape), noise, film.gamma, film.read_noise, film.shot_noise)
+        source, target = coded.reshape(-1), image[row].reshape(-1)
+        for i in range(len(target)):
+            target[i] = source[i]
+
+
+# Thermal images of many worlds, from poses to greys (numba kernels).
+
+
+class Radiators(NamedTuple):
+    """Tables by which temperatures become radiance and back; see `radiance_image` and `to_apparent_c`."""
+
+    radiance: Array
+    span_c: tuple[float, float]
+    temperature: Array
+    span: tuple[float, float]
+
+
+@njit(cache=True, nogil=True)
+def radiate_worlds(
+    first: int,
+    end: int,
+    worlds: Numbers,
+    scenery: Scenery,
+    poses: Poses,
+    eye: Eye,
+    tables: Radiators,
+    surroundings: Array,
+    margin: int,
+    sheet: Image,
+) -> None:
+    """Form thermal images before optics.
+
+    Args:
+        first: row of the first world of these.
+        end: row after the last one.
+        worlds: (G,) their numbers in the scenery.
+        scenery: of all.
+        poses: of all.
+        eye: the camera, the same in all worlds.
+        tables: of radiance.
+        surroundings: (G,) radiance of what surfaces mirror.
+        margin: M rows above and below each image.
+        sheet: (end - first, H + 2 M, W) is filled, with those rows as `optics_blur_sheet` wants them.
+    """
+    canvas, view = open_space(eye.lens, scenery)
+    for row in range(first, end):
+        table, looks = table_of(scenery.tables, worlds[row]), looks_of(scenery, worlds[row])
+        matrices = look_into(worlds[row], row, table, scenery.part, poses, eye, canvas)
+        locate(table.surface_part, eye.lens, canvas, view.part, view.depth)
+        radiance = sheet[row - first]
+        image = radiance_image(
+            view.part, view.depth, matrices, looks.thermal, looks.kind, looks.period, looks.phase,
+            looks.finish, looks.texels, looks.paint, looks.paint_texels, tables.radiance, surroundings[row],
+            tables.span_c,
+        )  # fmt: skip
+        for v in range(len(radiance)):
+            from_row = min(max(v - margin, 0), eye.lens.height - 1)
+            for u in range(eye.lens.width):
+                radiance[v, u] = image[from_row, u]
+
+
+class Detectors(NamedTuple):
+    """The thermal detectors of B worlds, and what they make of an image.
+
+    Attributes:
+        offset_k, dead: (B, H, W) as in `peopleboy.sim.cameras.thermal.Detector`.
+        dead_c: [degC].
+        netd_k: [K].
+        lowest_c: [degC] of grey 0.
+        grey_per_k: how many greys a kelvin has.
+    """
+
+    offset_k: Image
+    dead: NDArray[np.bool_]
+    dead_c: np.float32
+    netd_k: np.float32
+    lowest_c: np.float32
+    grey_per_k: np.float32
+
+
+@njit(cache=True, nogil=True)
+def detect_worlds(
+    first: int,
+    end: int,
+    worlds: Numbers,
+    margin: int,
+    sheet: Image,
+    eye: Eye,
+    turned: Array,
+    tables: Radiators,
+    detectors: Detectors,
+    quantiles: Image,
+    words: NDArray[np.uint64],
+    temperature_c: Image,
+    grey: NDArray[np.uint8],
+) -> None:
+    """Make thermal images of radiance behind the optics.
+
+    Args:
+        first: row of the first world of these.
+        end: row after the last one.
+        worlds: (G,) their numbers.
+        margin: M rows above and below each image.
+        sheet: (end - first, H + 2 M, W), what is read of it is lost.
+        eye: the camera.
+        turned: (G,) [rad] as in `Poses`.
+        tables: of radiance.
+        detectors: of all worlds.
+        quantiles: of the noise.
+        words: (end - first, N) random, of these rows.
+        temperature_c: (G, H, W) [degC] rows first..end-1 are filled.
+        grey: (G, H, W) likewise.
+    """
+    height, width = temperature_c.shape[1:]
+    noise = np.empty(height * width, np.float32)
+    black, white = np.float32(0.0), np.float32(255.0)
+    for row in range(first, end):
+        apparent = smear(sheet[row - first][margin : margin + height], eye.sweep, turned[row], 1)
+        to_apparent_c(apparent, tables.temperature, tables.span[0], tables.span[1])
+        look_up(quantiles, words[row - first], noise)
+        seen, found, greys = apparent.reshape(-1), temperature_c[row].reshape(-1), grey[row].reshape(-1)
+        offset_k = detectors.offset_k[worlds[row]].reshape(-1)
+        dead = detectors.dead[worlds[row]].reshape(-1)
+        for i in range(height * width):
+            read = noise[i] * detectors.netd_k + seen[i] + offset_k[i]
+            found[i] = detectors.dead_c if dead[i] else read
+        for i in range(height * width):
+            value = np.rint((found[i] - detectors.lowest_c) * detectors.grey_per_k)
+            greys[i] = np.uint8(min(max(value, black), white))

@@ -1,1 +1,0 @@
-"""Images of many worlds, made together."""
