@@ -38,7 +38,7 @@ from peopleboy.scenarios.loop.tracker_by_name import camera_names, make_checked_
 from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.scores.following_score import TARGET, following_task
-from peopleboy.sim.batch.snapshot import Instants, perceive
+from peopleboy.sim.batch.snapshot import Snapshot, take_snapshot
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
@@ -219,23 +219,23 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         ends, is_cut = bool(verdicts.terminations[0]), bool(verdicts.truncations[0])
         return self._observation(), reward, ends, is_cut, self._info(verdicts)
 
-    def track(self, instants: Instants, row: int) -> int:
+    def track(self, snapshot: Snapshot, row: int) -> int:
         """Let the tracker look at an instant, where there is one.
 
         Args:
-            instants: of many worlds.
+            snapshot: of many worlds.
             row: of this one's.
 
         Returns:
             The number of the track that lies on the person to follow, 0 for none.
         """
         assert self._tracker is not None
-        world, senses = self._running(even_over=True), instants.senses(row)
+        world, senses = self._running(even_over=True), snapshot.senses(row)
         assert isinstance(senses, Observation)
         self._tracks = self._tracker.update(make_frame(senses, self._calibrations, self._before))
         self._before = senses.odometry
         box = world.box(TARGET) if world.config.people else None
-        track = track_in(instants.scenes, row, self._tracks, box, self._track)
+        track = track_in(snapshot.scenes, row, self._tracks, box, self._track)
         self._track = track or self._track
         return track
 
@@ -269,7 +269,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     def metrics(self) -> Figures:
         """Give the figures of the episode so far, see `EpisodeFigures`.
 
-        They are over the instants at which a run has frames; that at which the time is over is none.
+        They are over the snapshot at which a run has frames; that at which the time is over is none.
 
         Raises:
             BadInput: there is no episode yet.
@@ -361,7 +361,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
 
     def _perceive(self, world: World) -> list[int] | None:
         """Take in an instant; gives what `LiveEpisodes.judge` is to know of the tracker."""
-        self._instants = perceive(world)._replace(numbers=np.array([self._number]))
+        self._instants = take_snapshot(world)._replace(numbers=np.array([self._number]))
         return None if self._tracker is None else [self.track(self._instants, 0)]
 
     def _observation(self) -> Arrays:

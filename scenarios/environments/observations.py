@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.environments.tell_worlds import fill_tracks, tell_motions
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.thermal_box import thermal_box
-from peopleboy.sim.batch.snapshot import Instants
+from peopleboy.sim.batch.snapshot import Snapshot
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.physics.solid_shapes import Array
@@ -67,16 +67,16 @@ def observation_space(kind: str, robot: RobotConfig, shown: Sequence[str]) -> sp
     return spaces.Dict(found)  # type: ignore[return-value]  # typed there as if samples were spaces
 
 
-def feel(instants: Instants, starts: Array) -> Arrays:
+def feel(snapshot: Snapshot, starts: Array) -> Arrays:
     """Give what every observation has, of G worlds: sonar (G, 16) and odometry (G, 6).
 
     Args:
-        instants: of the worlds.
+        snapshot: of the worlds.
         starts: (G, 3) odometry x, y [m], heading [rad] at the beginning of each episode.
     """
     odometry = np.empty((len(starts), 6), np.float32)
-    tell_motions(starts, instants.odometry, instants.wheel_speeds_m_s, odometry)
-    return {"sonar": instants.sonar_m.astype(np.float32), "odometry": odometry}
+    tell_motions(starts, snapshot.odometry, snapshot.wheel_speeds_m_s, odometry)
+    return {"sonar": snapshot.sonar_m.astype(np.float32), "odometry": odometry}
 
 
 def see_tracks(tracks: Iterable[Track], robot: RobotConfig) -> NDArray[np.float32]:

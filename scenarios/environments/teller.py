@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.environments.normalise import Normaliser
 from peopleboy.scenarios.environments.observations import Arrays, feel, image_shape, see_truth
-from peopleboy.sim.batch.snapshot import Instants
+from peopleboy.sim.batch.snapshot import Snapshot
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.scenes import Records
 
@@ -37,18 +37,18 @@ class Teller:
         self.tracks = kind == "tracks"
         self.slow = [name for name in self._shapes if robot.cameras[name].rate_hz]
 
-    def tell(self, instants: Instants, episodes: Records, tracks: NDArray[np.float32] | None) -> Arrays:
+    def tell(self, snapshot: Snapshot, episodes: Records, tracks: NDArray[np.float32] | None) -> Arrays:
         """Give all but images, with worlds first.
 
         Args:
-            instants: of G worlds, by their numbers.
+            snapshot: of G worlds, by their numbers.
             episodes: (B,) records EPISODE.
             tracks: (G, 35) where trackers look, None elsewhere.
         """
-        numbers = instants.numbers
-        found = feel(instants, episodes["start"][numbers])
+        numbers = snapshot.numbers
+        found = feel(snapshot, episodes["start"][numbers])
         if self._kind == "truth":
-            found["tracks"] = see_truth(instants.scenes, self._robot)
+            found["tracks"] = see_truth(snapshot.scenes, self._robot)
         elif tracks is not None:
             found["tracks"] = tracks
         if self._normaliser is not None:
@@ -57,12 +57,12 @@ class Teller:
             episodes["holders"][numbers] = holders
         return found
 
-    def show(self, instants: Instants) -> dict[str, tuple[Sequence[int], NDArray[Any]]]:
+    def show(self, snapshot: Snapshot) -> dict[str, tuple[Sequence[int], NDArray[Any]]]:
         """Give the images of `pixels`: for each camera which of the worlds have a new one, and these."""
         found = {}
         for name, shape in self._shapes.items():
-            assert instants.pictures is not None
-            rows, images = instants.pictures.together(name)
+            assert snapshot.pictures is not None
+            rows, images = snapshot.pictures.together(name)
             if rows:
                 found[name] = rows, np.asarray(images).reshape(-1, *shape)
         return found

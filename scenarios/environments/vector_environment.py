@@ -17,9 +17,9 @@ from peopleboy.scenarios.environments.join_infos import Infos, join_infos
 from peopleboy.scenarios.environments.judging.episodes import LiveEpisodes
 from peopleboy.scenarios.environments.observations import Arrays
 from peopleboy.scenarios.environments.step_results import StepResults
-from peopleboy.sim.batch.cameras import Crew
-from peopleboy.sim.batch.snapshot import Instants
-from peopleboy.sim.batch.world_batch import Together
+from peopleboy.sim.batch.cameras import WorkerPool
+from peopleboy.sim.batch.snapshot import Snapshot
+from peopleboy.sim.batch.world_batch import WorldBatch
 from peopleboy.sim.shapes.joined_tables import Numbers
 
 Flags = NDArray[np.bool_]
@@ -31,7 +31,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
 
     Actions are (B, 2); an observation has the arrays of `PeopleBoyEnv` with B before their shape, such as
     `thermal` (B, H, W, 1), each of its own and never written again. Kinematic worlds go through kernels
-    together, see `peopleboy.sim.batch.world_batch.Fleet`. World i gives to the byte what a single
+    together, see `peopleboy.sim.batch.world_batch.KinematicBatch`. World i gives to the byte what a single
     environment with its seed and actions gives. The step after an episode's end begins the next episode in
     that world, whatever its action, with reward 0 (`AutoresetMode.NEXT_STEP`); `infos` has the arrays that
     gymnasium makes of B infos.
@@ -64,7 +64,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
                 f"threads {threads!r}: must be 1 or more, or None for as many as there are processors"
             )
         self.num_envs = num_envs
-        self._crew = Crew(threads)
+        self._crew = WorkerPool(threads)
         self._envs = tuple(PeopleBoyEnv(**settings) for _ in range(num_envs))
         first = self._envs[0]
         self._episodes = LiveEpisodes(num_envs, first.task)
@@ -76,7 +76,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self._teller = first.teller
         self._kept: Arrays = {}
-        self._together: Together | None = None  # until episodes have begun
+        self._together: WorldBatch | None = None  # until episodes have begun
 
     def reset(
         self,
@@ -114,15 +114,15 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         """
         self._check_open()
         shares, is_over = check_actions(actions, (self.num_envs, 2)), self._episodes.records["is_over"].copy()
-        instants = self._step_together(np.flatnonzero(~is_over), shares)
+        snapshot = self._step_together(np.flatnonzero(~is_over), shares)
         results = StepResults(self.num_envs)
-        for each in instants:
+        for each in snapshot:
             results.take(each.numbers, self._episodes.judge(each, shares[each.numbers], self._track(each)))
         begun = self._begin(np.flatnonzero(is_over), results)
         ends = (results.terminations | results.truncations).tolist()
         metrics = [self._episodes.metrics(number) if is_end else None for number, is_end in enumerate(ends)]
         infos = results.infos([env.seed for env in self._envs], metrics)
-        found = self._tell(instants)  # at last, as images are being made meanwhile
+        found = self._tell(snapshot)  # at last, as images are being made meanwhile
         for number, observation in begun.items():
             _put(found, number, observation)
         self._keep(found)
@@ -157,18 +157,18 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
             raise BadInput(f"seed: {len(seed)} seeds for {self.num_envs} worlds; give one each")
         return [int(own) if isinstance(own, np.integer) else own for own in seed]
 
-    def _step_together(self, going: Numbers, shares: NDArray[np.float64]) -> list[Instants]:
+    def _step_together(self, going: Numbers, shares: NDArray[np.float64]) -> list[Snapshot]:
         """Step the worlds whose episodes are under way."""
         if self._together is None:
-            self._together = Together([env.world for env in self._envs], self._crew)
+            self._together = WorldBatch([env.world for env in self._envs], self._crew)
         return self._together.step(going, (shares * self._episodes.records["limits"])[going])
 
-    def _track(self, instants: Instants) -> list[int] | None:
+    def _track(self, snapshot: Snapshot) -> list[int] | None:
         """Let trackers look, if there are any; gives what `LiveEpisodes.judge` is to know of them."""
         if not self._teller.tracks:
             return None
         return [
-            self._envs[number].track(instants, row) for row, number in enumerate(instants.numbers.tolist())
+            self._envs[number].track(snapshot, row) for row, number in enumerate(snapshot.numbers.tolist())
         ]
 
     def _begin(self, numbers: Numbers, results: StepResults) -> dict[int, Arrays]:
@@ -180,12 +180,12 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
             self._together = None
         return found
 
-    def _tell(self, instants: Sequence[Instants]) -> Arrays:
-        """Tell what controllers are told of some instants; of other worlds it tells nothing yet."""
+    def _tell(self, snapshot: Sequence[Snapshot]) -> Arrays:
+        """Tell what controllers are told of some snapshot; of other worlds it tells nothing yet."""
         found = self._empty()
         for name, images in self._kept.items():
             found[name][:] = images
-        for each in instants:
+        for each in snapshot:
             tracks = None
             if self._teller.tracks:
                 tracks = np.stack([self._envs[number].tracks for number in each.numbers.tolist()])

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.batch.image_kernels import Array, Poses, join_scenery
-from peopleboy.sim.batch.joined_worlds import Joined
-from peopleboy.sim.batch.render_stages import Images, is_simple, open_studio
+from peopleboy.sim.batch.image_kernels import Array, Poses, join_scenes
+from peopleboy.sim.batch.joined_worlds import JoinedWorlds
+from peopleboy.sim.batch.render_stages import Images, has_stage, make_stage
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import image_names, name_images
 from peopleboy.sim.geometry.pinhole import Pinhole
@@ -31,7 +31,7 @@ from peopleboy.sim.world import World
 Task = Callable[[], None]
 
 
-class Crew:
+class WorkerPool:
     """A number of threads, of which the one that asks is the first; alone it does all itself.
 
     Args:
@@ -42,9 +42,11 @@ class Crew:
         self.threads = _processors() if threads is None else threads
         self._pool = ThreadPoolExecutor(self.threads - 1) if self.threads > 1 else None
 
-    def start(self, tasks: Sequence[Task]) -> Work:
-        """Begin with tasks that do not need each other; they are done when `Work.finish` returns."""
-        return Work([(task, None if self._pool is None else self._pool.submit(task)) for task in tasks])
+    def start(self, tasks: Sequence[Task]) -> PendingWork:
+        """Begin with tasks that do not need each other; they are done when `PendingWork.finish` returns."""
+        return PendingWork(
+            [(task, None if self._pool is None else self._pool.submit(task)) for task in tasks]
+        )
 
     def close(self) -> None:
         """Let the threads go."""
@@ -52,7 +54,7 @@ class Crew:
             self._pool.shutdown()
 
 
-class Work:
+class PendingWork:
     """Tasks under way."""
 
     def __init__(self, tasks: Sequence[tuple[Task, Future[None] | None]]) -> None:
@@ -77,10 +79,10 @@ def _processors() -> int:
     return os.cpu_count() or 1
 
 
-Start = Callable[[], tuple[Images, Work]]
+Start = Callable[[], tuple[Images, PendingWork]]
 
 
-class Shot:
+class Exposure:
     """What one camera takes at an instant in some of G worlds.
 
     Args:
@@ -93,11 +95,11 @@ class Shot:
     def __init__(self, name: str, config: CameraConfig, rows: Sequence[int], start: Start) -> None:
         self.name, self.rows = name, rows
         self._config, self._start = config, start
-        self._begun: tuple[Images, Work] | None = None
+        self._begun: tuple[Images, PendingWork] | None = None
         self._is_over = False
         self.is_asked_for = False
 
-    def begin(self) -> tuple[Images, Work]:
+    def begin(self) -> tuple[Images, PendingWork]:
         """Have the images made.
 
         Raises:
@@ -136,7 +138,7 @@ class Shot:
         return images
 
 
-class Shots:
+class Exposures:
     """All of an instant.
 
     Args:
@@ -144,11 +146,11 @@ class Shots:
         names: of the images of each camera.
     """
 
-    def __init__(self, shots: Sequence[Shot], names: Mapping[str, Sequence[str]]) -> None:
+    def __init__(self, shots: Sequence[Exposure], names: Mapping[str, Sequence[str]]) -> None:
         self._shots, self._names = tuple(shots), names
 
     @classmethod
-    def none(cls) -> Shots:
+    def none(cls) -> Exposures:
         """Those of no instant yet."""
         return cls((), {})
 
@@ -184,8 +186,8 @@ class Shots:
 _SHARES: Final = 2  # of a camera's images for each thread, so that none waits long for the last
 
 
-class Eyes:
-    """The cameras of B worlds, see `cameras_of`; they give to the byte what each world by itself would give.
+class BatchCameras:
+    """The cameras of B worlds, see `shared_cameras`; they give to the byte what each world by itself would give.
 
     Images of a camera are made ahead, by threads while Python goes on, if somebody asked for those of the
     instant before; all others when they are asked for.
@@ -194,23 +196,25 @@ class Eyes:
         worlds: of one kind, all of a fleet.
         joined: where all of their parts are.
         wheels: (B, 2) numbers of the wheels among the parts of all worlds.
-        crew: makes the images.
+        workers: makes the images.
     """
 
-    def __init__(self, worlds: Sequence[World], joined: Joined, wheels: Numbers, crew: Crew) -> None:
-        self._worlds, self._joined, self._crew = tuple(worlds), joined, crew
+    def __init__(
+        self, worlds: Sequence[World], joined: JoinedWorlds, wheels: Numbers, workers: WorkerPool
+    ) -> None:
+        self._worlds, self._joined, self._crew = tuple(worlds), joined, workers
         self._wheels = wheels.reshape(-1)
         self._cameras = dict(worlds[0].cameras)
-        scenery = join_scenery([world.table for world in worlds], [world.looks for world in worlds])
+        scenery = join_scenes([world.table for world in worlds], [world.looks for world in worlds])
         self._studios = {
-            name: open_studio(name, config, scenery, worlds) for name, config in self._cameras.items()
+            name: make_stage(name, config, scenery, worlds) for name, config in self._cameras.items()
         }
         self._images = {name: image_names(name, config) for name, config in self._cameras.items()}
         first_body = np.repeat(joined.first_body[:-1], np.diff(joined.first_part))
         self._body_of_part = joined.bodies.of_part + first_body
-        self._shots = Shots.none()
+        self._shots = Exposures.none()
 
-    def look(self, going: Numbers, robots: Array, turn_rad_s: Array) -> Shots:
+    def look(self, going: Numbers, robots: Array, turn_rad_s: Array) -> Exposures:
         """Take the images of some worlds at this instant.
 
         Args:
@@ -235,27 +239,27 @@ class Eyes:
                     camera=robots[rows] @ config.camera.robot_from_camera,
                     turned=turn_rad_s[rows] * config.exposure_s,
                 )
-                shots.append(Shot(name, config, rows, partial(self._shoot, name, going[rows], poses)))
+                shots.append(Exposure(name, config, rows, partial(self._shoot, name, going[rows], poses)))
         for shot in reversed(shots):  # as who looks at the first of them helps with that
             if shot.name in asked_for:
                 shot.begin()
-        self._shots = Shots(shots, self._images)
+        self._shots = Exposures(shots, self._images)
         return self._shots
 
     def finish(self) -> None:
         """Wait for all images with which somebody has begun, as must be before the worlds change."""
         self._shots.end()
 
-    def _shoot(self, name: str, worlds: Numbers, poses: Poses) -> tuple[Images, Work]:
+    def _shoot(self, name: str, worlds: Numbers, poses: Poses) -> tuple[Images, PendingWork]:
         images, fill = self._studios[name].shoot(worlds, poses)
         count = min(_SHARES * self._crew.threads, len(worlds))
         ends = np.linspace(0, len(worlds), count + 1).round().astype(int).tolist()
         return images, self._crew.start([partial(fill, *share) for share in pairwise(ends)])
 
 
-def cameras_of(world: World) -> tuple[tuple[str, CameraConfig], ...] | None:
+def shared_cameras(world: World) -> tuple[tuple[str, CameraConfig], ...] | None:
     """What all worlds must share whose images are made together; None for a world that makes its own."""
     config = world.config
     if config.renderer != "raycast" or config.detail != "plain":
         return None
-    return tuple(world.cameras.items()) if all(map(is_simple, world.cameras.values())) else None
+    return tuple(world.cameras.items()) if all(map(has_stage, world.cameras.values())) else None

@@ -11,8 +11,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.batch.joined_worlds import Joined, world_in
-from peopleboy.sim.batch.people import Walks
+from peopleboy.sim.batch.joined_worlds import JoinedWorlds, slice_world
+from peopleboy.sim.batch.people import BatchWalks
 from peopleboy.sim.geometry.angles import remainder
 from peopleboy.sim.physics.kinematic import Kinematic
 from peopleboy.sim.physics.solid_shapes import Array, Placements, Solids, refresh
@@ -48,9 +48,9 @@ class Capsules(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def drive_worlds(
+def drive_step(
     going: Numbers,
-    joined: Joined,
+    joined: JoinedWorlds,
     vehicle: Vehicle,
     gears: Gears,
     noise_m: Array,
@@ -74,7 +74,7 @@ def drive_worlds(
     """
     for row in range(len(going)):
         world = going[row]
-        bodies, solids = world_in(joined, world)
+        bodies, solids = slice_world(joined, world)
         first, end = joined.first_body[world], joined.first_body[world + 1]
         met = np.zeros(end - first, np.bool_)
         for k in range(steps):
@@ -131,7 +131,7 @@ def _place(bodies: Placements, body: int, x: float, y: float, z: float) -> None:
 
 @njit(cache=True)
 def _roll(
-    joined: Joined,
+    joined: JoinedWorlds,
     world: int,
     vehicle: Vehicle,
     bodies: Placements,
@@ -176,7 +176,7 @@ def _count(gears: Gears, world: int, noise_m: Array, angles: Array) -> None:
     odometry[2] = remainder(odometry[2] + turn)
 
 
-class Drives:
+class BatchDrive:
     """The robots of B worlds, whose gears lie in arrays of all of them from now on.
 
     Args:
@@ -189,14 +189,16 @@ class Drives:
         gears: of all of them, with worlds first.
     """
 
-    def __init__(self, worlds: Sequence[World], walks: Walks, joined: Joined, vehicle: Vehicle) -> None:
+    def __init__(
+        self, worlds: Sequence[World], walks: BatchWalks, joined: JoinedWorlds, vehicle: Vehicle
+    ) -> None:
         self._robots = [world.robot for world in worlds]
         self._walks, self._joined, self._vehicle = walks, joined, vehicle
         self._capsules = _capsules(worlds, walks)
         self._bodies = joined.first_body[walks.world] + self._capsules.body
         self.gears = Gears(*map(np.stack, zip(*(robot.gears for robot in self._robots), strict=True)))
         for number, robot in enumerate(self._robots):
-            robot.lay_into(Gears(*(array[number] for array in self.gears)))
+            robot.rebind(Gears(*(array[number] for array in self.gears)))
         drives = [robot.limits for robot in self._robots]
         self._limits = np.array([each.limits for each in drives])
         self._rise = np.array([each.rise for each in drives])
@@ -240,13 +242,13 @@ class Drives:
         before, after = np.ascontiguousarray(before), np.ascontiguousarray(self._walks.records["position"])
         capsules = self._capsules._replace(is_solid=self.are_solid, before=before, after=after)
         touched = np.zeros(len(self._joined.bodies.places), np.bool_)
-        drive_worlds(
+        drive_step(
             going, self._joined, self._vehicle, self.gears, noise, capsules, self._dt_s, self._steps, touched
         )
         return touched
 
 
-def _capsules(worlds: Sequence[World], walks: Walks) -> Capsules:
+def _capsules(worlds: Sequence[World], walks: BatchWalks) -> Capsules:
     """By what people are met; where it is comes with each step."""
     people = [person for world in worlds for person in world.crowd.people]
     places = walks.records["position"]

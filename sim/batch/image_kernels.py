@@ -25,7 +25,7 @@ from peopleboy.sim.shapes.shape_table import ShapeTable
 Array = NDArray[np.float64]
 
 
-class Looks(NamedTuple):
+class Materials(NamedTuple):
     """How parts look, as in `MaterialTable`; those of plain detail have neither finishes nor paintings."""
 
     thermal: Array
@@ -39,7 +39,7 @@ class Looks(NamedTuple):
     paint_texels: NDArray[np.int16]
 
 
-class Scenery(NamedTuple):
+class JoinedScene(NamedTuple):
     """B worlds; numbers within them are those of each world by itself.
 
     Attributes:
@@ -49,24 +49,24 @@ class Scenery(NamedTuple):
     """
 
     tables: JoinedTables
-    looks: Looks
+    looks: Materials
     part: Numbers
 
 
-def join_scenery(tables: Sequence[ShapeTable], materials: Sequence[MaterialTable]) -> Scenery:
+def join_scenes(tables: Sequence[ShapeTable], materials: Sequence[MaterialTable]) -> JoinedScene:
     """Copy tables and looks of worlds of plain detail into arrays of all of them."""
     own = [(each.thermal, each.colour, each.kind, each.period, each.phase) for each in materials]
     first = materials[0]
     without = first.finish, first.texels, first.paint, first.paint_texels
-    looks = Looks._make([*map(np.concatenate, zip(*own, strict=True)), *without])
-    return Scenery(join_tables(tables), looks, ends([len(each.thermal) for each in materials]))
+    looks = Materials._make([*map(np.concatenate, zip(*own, strict=True)), *without])
+    return JoinedScene(join_tables(tables), looks, ends([len(each.thermal) for each in materials]))
 
 
 @njit(cache=True, nogil=True)
-def looks_of(scenery: Scenery, world: int) -> Looks:
+def materials_of(scenery: JoinedScene, world: int) -> Materials:
     """How the parts of one of the worlds look."""
     looks, p, p_end = scenery.looks, scenery.part[world], scenery.part[world + 1]
-    return Looks(
+    return Materials(
         looks.thermal[p:p_end],
         looks.colour[p:p_end],
         looks.kind[p:p_end],
@@ -87,7 +87,7 @@ class Poses(NamedTuple):
     """Where all is that is to be seen.
 
     Attributes:
-        part: (P, 4, 4) world from part, of all worlds of a `Scenery`.
+        part: (P, 4, 4) world from part, of all worlds of a `JoinedScene`.
         hidden: (P,) parts that are not there.
         camera: (G, 4, 4) world from camera, of G of the worlds.
         turned: (G,) [rad] by which each has turned about the vertical axis during the exposure.
@@ -99,7 +99,7 @@ class Poses(NamedTuple):
     turned: Array
 
 
-class Eye(NamedTuple):
+class KernelCamera(NamedTuple):
     """A pinhole camera as kernels take it.
 
     Attributes:
@@ -122,7 +122,7 @@ class Buffers(NamedTuple):
 
 
 @njit(cache=True)
-def open_space(lens: Lens, scenery: Scenery) -> tuple[Canvas, Buffers]:
+def make_buffers(lens: Lens, scenery: JoinedScene) -> tuple[Canvas, Buffers]:
     """Space for one image after the other."""
     shape, surfaces, first = (lens.height, lens.width), 0, scenery.tables.surface
     for world in range(len(first) - 1):
@@ -141,13 +141,13 @@ def open_space(lens: Lens, scenery: Scenery) -> tuple[Canvas, Buffers]:
 
 
 @njit(cache=True)
-def look_into(
+def render_view(
     world: int,
     row: int,
     table: ShapeTable,
     first_part: Numbers,
     poses: Poses,
-    eye: Eye,
+    eye: KernelCamera,
     canvas: Canvas,
 ) -> Array:
     """Draw one world; gives the matrices of `part_from_pixel`."""
@@ -162,7 +162,7 @@ def look_into(
 
 
 @njit(cache=True)
-def smear(lines: Image, sweep_of_one_rad: Array, turned_rad: float, channels: int) -> Image:
+def blur_by_rotation(lines: Image, sweep_of_one_rad: Array, turned_rad: float, channels: int) -> Image:
     """Do as `rotation_blur` with (H, W C) lines of an image."""
     sweep = sweep_of_one_rad * abs(turned_rad)
     if sweep.max() < _LEAST_SWEEP_PX:
@@ -178,7 +178,7 @@ def smear(lines: Image, sweep_of_one_rad: Array, turned_rad: float, channels: in
 # Colour images of many worlds, from poses to sRGB (numba kernels).
 
 
-class Film(NamedTuple):
+class ColourResponse(NamedTuple):
     """How a colour camera exposes: gain, and noise as in `LightConfig`; (3,) direction of the light."""
 
     read_noise: np.float32
@@ -188,20 +188,20 @@ class Film(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def expose_worlds(
+def render_colour(
     first: int,
     end: int,
     worlds: Numbers,
-    scenery: Scenery,
+    scenery: JoinedScene,
     poses: Poses,
-    eye: Eye,
-    film: Film,
+    eye: KernelCamera,
+    film: ColourResponse,
     level: Array,
     quantiles: Image,
     words: NDArray[np.uint64],
     image: NDArray[np.uint8],
 ) -> None:
-    """Make colour images, as `radiate_worlds` and `detect_worlds` make thermal ones.
+    """Make colour images, as `render_radiance` and `detect_thermal` make thermal ones.
 
     Args:
         first: row of the first world of these.
@@ -216,11 +216,11 @@ def expose_worlds(
         words: (end - first, N) random, of these rows.
         image: (G, H, W, 3) rows first..end-1 are filled.
     """
-    canvas, view = open_space(eye.lens, scenery)
+    canvas, view = make_buffers(eye.lens, scenery)
     noise = np.empty((eye.lens.height, eye.lens.width, 3), np.float32)
     for row in range(first, end):
-        table, looks = table_of(scenery.tables, worlds[row]), looks_of(scenery, worlds[row])
-        matrices = look_into(worlds[row], row, table, scenery.part, poses, eye, canvas)
+        table, looks = table_of(scenery.tables, worlds[row]), materials_of(scenery, worlds[row])
+        matrices = render_view(worlds[row], row, table, scenery.part, poses, eye, canvas)
         rotation = np.ascontiguousarray(poses.camera[row, :3, :3])
         shade(table.surface_part, eye.lens, canvas, rotation, view.part, view.depth, view.normal)
         linear = light_image(
@@ -228,7 +228,7 @@ def expose_worlds(
             looks.finish, looks.texels, looks.paint, looks.paint_texels, film.light, level[row],
         )  # fmt: skip
         lines = linear.reshape(eye.lens.height, 3 * eye.lens.width)
-        smeared = smear(lines, eye.sweep, poses.turned[row], 3)
+        smeared = blur_by_rotation(lines, eye.sweep, poses.turned[row], 3)
         look_up(quantiles, words[row - first], noise.reshape(-1))
         coded = encode(smeared.reshape(noise.shape), noise, film.gamma, film.read_noise, film.shot_noise)
         source, target = coded.reshape(-1), image[row].reshape(-1)
@@ -239,7 +239,7 @@ def expose_worlds(
 # Thermal images of many worlds, from poses to greys (numba kernels).
 
 
-class Radiators(NamedTuple):
+class RadianceTables(NamedTuple):
     """Tables by which temperatures become radiance and back; see `radiance_image` and `to_apparent_c`."""
 
     radiance: Array
@@ -249,14 +249,14 @@ class Radiators(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def radiate_worlds(
+def render_radiance(
     first: int,
     end: int,
     worlds: Numbers,
-    scenery: Scenery,
+    scenery: JoinedScene,
     poses: Poses,
-    eye: Eye,
-    tables: Radiators,
+    eye: KernelCamera,
+    tables: RadianceTables,
     surroundings: Array,
     margin: int,
     sheet: Image,
@@ -275,10 +275,10 @@ def radiate_worlds(
         margin: M rows above and below each image.
         sheet: (end - first, H + 2 M, W) is filled, with those rows as `optics_blur_sheet` wants them.
     """
-    canvas, view = open_space(eye.lens, scenery)
+    canvas, view = make_buffers(eye.lens, scenery)
     for row in range(first, end):
-        table, looks = table_of(scenery.tables, worlds[row]), looks_of(scenery, worlds[row])
-        matrices = look_into(worlds[row], row, table, scenery.part, poses, eye, canvas)
+        table, looks = table_of(scenery.tables, worlds[row]), materials_of(scenery, worlds[row])
+        matrices = render_view(worlds[row], row, table, scenery.part, poses, eye, canvas)
         locate(table.surface_part, eye.lens, canvas, view.part, view.depth)
         radiance = sheet[row - first]
         image = radiance_image(
@@ -312,15 +312,15 @@ class Detectors(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def detect_worlds(
+def detect_thermal(
     first: int,
     end: int,
     worlds: Numbers,
     margin: int,
     sheet: Image,
-    eye: Eye,
+    eye: KernelCamera,
     turned: Array,
-    tables: Radiators,
+    tables: RadianceTables,
     detectors: Detectors,
     quantiles: Image,
     words: NDArray[np.uint64],
@@ -348,7 +348,7 @@ def detect_worlds(
     noise = np.empty(height * width, np.float32)
     black, white = np.float32(0.0), np.float32(255.0)
     for row in range(first, end):
-        apparent = smear(sheet[row - first][margin : margin + height], eye.sweep, turned[row], 1)
+        apparent = blur_by_rotation(sheet[row - first][margin : margin + height], eye.sweep, turned[row], 1)
         to_apparent_c(apparent, tables.temperature, tables.span[0], tables.span[1])
         look_up(quantiles, words[row - first], noise)
         seen, found, greys = apparent.reshape(-1), temperature_c[row].reshape(-1), grey[row].reshape(-1)

@@ -13,7 +13,7 @@ from peopleboy.sim.physics.vehicle import Motion, State
 from peopleboy.sim.shapes.joined_tables import JoinedTables, Numbers, ends, join_tables, table_of
 
 
-class Joined(NamedTuple):
+class JoinedWorlds(NamedTuple):
     """B worlds; numbers within them are those of each world by itself.
 
     Attributes:
@@ -35,13 +35,13 @@ class Joined(NamedTuple):
     first_part: Numbers
 
 
-def lay_side_by_side(states: Sequence[State]) -> tuple[Joined, list[State]]:
+def join_worlds(states: Sequence[State]) -> tuple[JoinedWorlds, list[State]]:
     """Copy the states of worlds into arrays of all of them.
 
     Returns:
         The arrays, and each world's state anew, which lies in them.
     """
-    joined = Joined(
+    joined = JoinedWorlds(
         bodies=Placements(*map(np.concatenate, zip(*(state.bodies for state in states), strict=True))),
         tables=join_tables([state.solids.table for state in states]),
         poses=np.concatenate([state.solids.poses for state in states]),
@@ -54,14 +54,14 @@ def lay_side_by_side(states: Sequence[State]) -> tuple[Joined, list[State]]:
     return joined, [_state_in(joined, number, state) for number, state in enumerate(states)]
 
 
-def _state_in(joined: Joined, number: int, before: State) -> State:
-    bodies, solids = world_in.py_func(joined, number)
+def _state_in(joined: JoinedWorlds, number: int, before: State) -> State:
+    bodies, solids = slice_world.py_func(joined, number)
     motion = Motion(*(array[number] for array in joined.motion))
     return before._replace(bodies=bodies, solids=solids._replace(table=before.solids.table), motion=motion)
 
 
 @njit(cache=True, nogil=True)
-def world_in(joined: Joined, number: int) -> tuple[Placements, Solids]:
+def slice_world(joined: JoinedWorlds, number: int) -> tuple[Placements, Solids]:
     """Bodies and solids of one of the worlds."""
     b, b_end = joined.first_body[number], joined.first_body[number + 1]
     p, p_end = joined.first_part[number], joined.first_part[number + 1]
@@ -81,16 +81,16 @@ def world_in(joined: Joined, number: int) -> tuple[Placements, Solids]:
 
 
 @njit(cache=True, nogil=True)
-def refresh_worlds(going: Numbers, joined: Joined) -> None:
+def refresh_worlds(going: Numbers, joined: JoinedWorlds) -> None:
     """Bring some of the worlds up to date, as `refresh` does with one."""
     for number in going:
-        bodies, solids = world_in(joined, number)
+        bodies, solids = slice_world(joined, number)
         refresh(bodies, solids)
 
 
 @njit(cache=True, nogil=True)
 def hear_worlds(
-    going: Numbers, joined: Joined, starts: Array, ends: Array, reach_m: Array, nearest_m: Array
+    going: Numbers, joined: JoinedWorlds, starts: Array, ends: Array, reach_m: Array, nearest_m: Array
 ) -> None:
     """Find the nearest solid in the cones of sonars in some of the worlds, as `SonarRing.read` does in one.
 
@@ -106,7 +106,7 @@ def hear_worlds(
     begin, part = np.empty((sonars * rays, 3)), np.empty(sonars * rays, np.int64)
     fraction = np.empty(sonars * rays)
     for row in range(len(going)):
-        bodies, solids = world_in(joined, going[row])
+        bodies, solids = slice_world(joined, going[row])
         for ray in range(sonars * rays):
             for i in range(3):
                 begin[ray, i] = starts[row, ray // rays, i]
@@ -122,7 +122,7 @@ def hear_worlds(
 
 @njit(cache=True, nogil=True)
 def cast_eyes(
-    looked: Numbers, world: Numbers, joined: Joined, eyes: Array, points: Array, fraction: Array
+    looked: Numbers, world: Numbers, joined: JoinedWorlds, eyes: Array, points: Array, fraction: Array
 ) -> None:
     """Do as `cast` from one eye to several points for each of Q people, through robots.
 
@@ -137,7 +137,7 @@ def cast_eyes(
     count = points.shape[1]
     starts, part = np.empty((count, 3)), np.empty(count, np.int64)
     for person in looked:
-        bodies, solids = world_in(joined, world[person])
+        bodies, solids = slice_world(joined, world[person])
         for n in range(count):
             for i in range(3):
                 starts[n, i] = eyes[person, i]

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.batch.joined_worlds import Joined
+from peopleboy.sim.batch.joined_worlds import JoinedWorlds
 from peopleboy.sim.geometry.poses import quaternions
 from peopleboy.sim.people.body.placing import carry, put_on_floor
 from peopleboy.sim.people.body.stance import STANCE, Builds, Stances, hold, move_limbs
@@ -26,7 +26,7 @@ _TWO = 2.0  # see `walk_on`
 _NO_SCRIPT = Script.nothing()
 
 
-class Walks:
+class BatchWalks:
     """Everybody in B worlds; those of worlds in which not all are scripted walk by themselves.
 
     Attributes:
@@ -57,7 +57,7 @@ class Walks:
         self.makes_way = np.array([each is not None and bool(each.records["yields"].any()) for each in own])
         for crowd, each, first, end in zip(self._crowds, own, self.first, self.first[1:], strict=False):
             if each is not None:
-                crowd.lay_into(self.records[first:end])
+                crowd.rebind(self.records[first:end])
         self._follow(np.arange(len(worlds)))
 
     def step(self, going: Numbers, times_s: Array, dt_s: float, robots: Array) -> None:
@@ -134,7 +134,7 @@ class Parts(NamedTuple):
     body: Numbers
 
 
-class Limbs:
+class BatchLimbs:
     """Everybody in B worlds in which people are seen.
 
     Args:
@@ -143,14 +143,14 @@ class Limbs:
         joined: where all bodies are.
     """
 
-    def __init__(self, worlds: Sequence[World], walks: Walks, joined: Joined) -> None:
+    def __init__(self, worlds: Sequence[World], walks: BatchWalks, joined: JoinedWorlds) -> None:
         self._walks, self._joined = walks, joined
         self._people = [person for world in worlds for person in world.crowd.people]
         self._stances = join_records([each.stance for each in self._people], STANCE)
         self._builds = Builds(*map(np.concatenate, zip(*(each.build for each in self._people), strict=True)))
         for q, person in enumerate(self._people):
             own = slice(q, q + 1)
-            person.lay_into(self._stances[own], Builds._make(array[own] for array in self._builds))
+            person.rebind(self._stances[own], Builds._make(array[own] for array in self._builds))
         self._handle_things = any(world.config.place.movers for world in worlds)
         gaits = [person.gait for person in self._people]
         self._unit_stride_m = np.array([gait.unit_stride_m for gait in gaits])
@@ -235,7 +235,7 @@ def _move(
 
 @njit(cache=True, nogil=True)
 def _place(
-    who: Numbers, places: Array, people: Builds, stances: Stances, parts: Parts, joined: Joined
+    who: Numbers, places: Array, people: Builds, stances: Stances, parts: Parts, joined: JoinedWorlds
 ) -> None:
     bones, turns = np.empty((parts.offsets.shape[1], 4, 4)), np.empty((parts.offsets.shape[1], 3))
     bodies = joined.bodies

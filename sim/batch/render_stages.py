@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.batch.image_kernels import (
+    ColourResponse,
     Detectors,
-    Eye,
-    Film,
+    JoinedScene,
+    KernelCamera,
     Poses,
-    Radiators,
-    Scenery,
-    detect_worlds,
-    expose_worlds,
-    radiate_worlds,
+    RadianceTables,
+    detect_thermal,
+    render_colour,
+    render_radiance,
 )
 from peopleboy.sim.cameras.blur import optics_blur_sheet, optics_margin, sweep_of_one_rad
 from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, ThermalConfig
@@ -42,10 +42,10 @@ from peopleboy.sim.world import World, light_level
 Images = tuple[NDArray[Any], ...]
 Shoot = Callable[[int, int], None]  # fills the rows from one to before another
 
-_TABLES = Radiators(RADIANCE, (LOWEST_C, HIGHEST_C), TEMPERATURE, (DIMMEST, BRIGHTEST))
+_TABLES = RadianceTables(RADIANCE, (LOWEST_C, HIGHEST_C), TEMPERATURE, (DIMMEST, BRIGHTEST))
 
 
-class Studio(Protocol):
+class RenderStage(Protocol):
     """One camera, the same in B worlds."""
 
     def shoot(self, worlds: Numbers, poses: Poses) -> tuple[Images, Shoot]:
@@ -53,10 +53,12 @@ class Studio(Protocol):
         ...
 
 
-class ThermalStudio:
+class ThermalStage:
     """Does as `ThermalSensor` of a simple camera."""
 
-    def __init__(self, name: str, config: ThermalConfig, scenery: Scenery, worlds: Sequence[World]) -> None:
+    def __init__(
+        self, name: str, config: ThermalConfig, scenery: JoinedScene, worlds: Sequence[World]
+    ) -> None:
         self._name, self._config, self._scenery, self._worlds = name, config, scenery, tuple(worlds)
         self._eye = _eye(config.camera)
         self._surroundings = np.array([mirrored(world.config.place.surroundings_c) for world in worlds])
@@ -71,7 +73,7 @@ class ThermalStudio:
         )
 
     def shoot(self, worlds: Numbers, poses: Poses) -> tuple[Images, Shoot]:
-        """See `Studio.shoot`; of greys and temperatures [degC], (G, H, W)."""
+        """See `RenderStage.shoot`; of greys and temperatures [degC], (G, H, W)."""
         shape = (len(worlds), self._config.camera.height, self._config.camera.width)
         temperature_c, grey = np.empty(shape, np.float32), np.empty(shape, np.uint8)
         surroundings, blur_px = self._surroundings[worlds], self._config.blur_px
@@ -82,9 +84,9 @@ class ThermalStudio:
         def fill(first: int, end: int) -> None:
             words = np.stack([sensor.draw_noise() for sensor in sensors[first:end]])
             sheet = np.empty((end - first, shape[1] + 2 * margin, shape[2]), np.float32)
-            radiate_worlds(first, end, worlds, scenery, poses, eye, _TABLES, surroundings, margin, sheet)
+            render_radiance(first, end, worlds, scenery, poses, eye, _TABLES, surroundings, margin, sheet)
             sheet = optics_blur_sheet(sheet, blur_px)
-            detect_worlds(
+            detect_thermal(
                 first, end, worlds, margin, sheet, eye, poses.turned, _TABLES, self._detectors, QUANTILES,
                 words, temperature_c, grey,
             )  # fmt: skip
@@ -92,16 +94,20 @@ class ThermalStudio:
         return (grey, temperature_c), fill
 
 
-class ColourStudio:
+class ColourStage:
     """Does as `ColourSensor`."""
 
-    def __init__(self, name: str, config: ColourConfig, scenery: Scenery, worlds: Sequence[World]) -> None:
+    def __init__(
+        self, name: str, config: ColourConfig, scenery: JoinedScene, worlds: Sequence[World]
+    ) -> None:
         self._name, self._config, self._scenery, self._worlds = name, config, scenery, tuple(worlds)
         self._eye = _eye(config.camera)
-        self._film = Film(np.float32(config.read_noise), np.float32(config.shot_noise), LIGHT, GAMMA)
+        self._film = ColourResponse(
+            np.float32(config.read_noise), np.float32(config.shot_noise), LIGHT, GAMMA
+        )
 
     def shoot(self, worlds: Numbers, poses: Poses) -> tuple[Images, Shoot]:
-        """See `Studio.shoot`; of (G, H, W, 3) sRGB."""
+        """See `RenderStage.shoot`; of (G, H, W, 3) sRGB."""
         image = np.empty((len(worlds), self._config.camera.height, self._config.camera.width, 3), np.uint8)
         own = [self._worlds[number] for number in worlds.tolist()]
         sensors = [_colour(world, self._name) for world in own]
@@ -109,7 +115,7 @@ class ColourStudio:
 
         def fill(first: int, end: int) -> None:
             words = np.stack([sensor.draw_noise() for sensor in sensors[first:end]])
-            expose_worlds(
+            render_colour(
                 first, end, worlds, self._scenery, poses, self._eye, self._film, level, QUANTILES, words,
                 image,
             )  # fmt: skip
@@ -117,24 +123,24 @@ class ColourStudio:
         return (image,), fill
 
 
-def open_studio(name: str, config: CameraConfig, scenery: Scenery, worlds: Sequence[World]) -> Studio:
+def make_stage(name: str, config: CameraConfig, scenery: JoinedScene, worlds: Sequence[World]) -> RenderStage:
     """Prepare for the images of a camera for which there `is_studio`."""
     if isinstance(config, ThermalConfig):
-        return ThermalStudio(name, config, scenery, worlds)
+        return ThermalStage(name, config, scenery, worlds)
     assert isinstance(config, ColourConfig)
-    return ColourStudio(name, config, scenery, worlds)
+    return ColourStage(name, config, scenery, worlds)
 
 
-def is_simple(config: CameraConfig) -> bool:
+def has_stage(config: CameraConfig) -> bool:
     """Whether there is a studio for a camera's images."""
     if not isinstance(config.camera, Pinhole):
         return False
     return isinstance(config, ColourConfig) or (isinstance(config, ThermalConfig) and config.is_simple)
 
 
-def _eye(camera: Pinhole) -> Eye:
+def _eye(camera: Pinhole) -> KernelCamera:
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
-    return Eye(lens, rays_through(camera), sweep_of_one_rad(camera))
+    return KernelCamera(lens, rays_through(camera), sweep_of_one_rad(camera))
 
 
 def _thermal(world: World, name: str) -> ThermalSensor:

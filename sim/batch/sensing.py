@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from peopleboy.sim.batch.joined_worlds import Joined, cast_eyes, hear_worlds
-from peopleboy.sim.batch.people import Walks
+from peopleboy.sim.batch.joined_worlds import JoinedWorlds, cast_eyes, hear_worlds
+from peopleboy.sim.batch.people import BatchWalks
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.robot.sonar import read_echoes
@@ -25,7 +25,7 @@ class Ears:
         joined: where all is that they hear.
     """
 
-    def __init__(self, worlds: Sequence[World], joined: Joined) -> None:
+    def __init__(self, worlds: Sequence[World], joined: JoinedWorlds) -> None:
         self._rings = [world.robot.ring for world in worlds]
         self._joined = joined
 
@@ -49,7 +49,7 @@ class Ears:
 # Who could be seen from many robots, told together.
 
 
-class Watch:
+class PeopleVisibility:
     """Everybody in B worlds, before the thermal cameras of their robots, all of one kind.
 
     Args:
@@ -58,7 +58,7 @@ class Watch:
         joined: where all is that may hide them.
     """
 
-    def __init__(self, worlds: Sequence[World], walks: Walks, joined: Joined) -> None:
+    def __init__(self, worlds: Sequence[World], walks: BatchWalks, joined: JoinedWorlds) -> None:
         self._walks, self._joined = walks, joined
         self._camera = flat_geometry(worlds[0].config.robot.cameras, "thermal")
         counts = [len(world.crowd.people) for world in worlds]

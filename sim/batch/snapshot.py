@@ -17,7 +17,7 @@ from peopleboy.sim.world import World
 Image = NDArray[Any]
 
 
-class Pictures(Protocol):
+class BatchImages(Protocol):
     """The images of an instant in G worlds; see `Observation.images` for until when they can be had."""
 
     def of(self, row: int) -> Mapping[str, Image]:
@@ -29,23 +29,23 @@ class Pictures(Protocol):
         ...
 
 
-class OwnPictures:
+class SeparateImages:
     """Images that each world makes by itself."""
 
     def __init__(self, images: Sequence[Mapping[str, Image]]) -> None:
         self._images = images
 
     def of(self, row: int) -> Mapping[str, Image]:
-        """See `Pictures.of`."""
+        """See `BatchImages.of`."""
         return self._images[row]
 
     def together(self, camera: str) -> tuple[Sequence[int], Sequence[Image] | Image]:
-        """See `Pictures.together`."""
+        """See `BatchImages.together`."""
         rows = [row for row, images in enumerate(self._images) if camera in images]
         return rows, [self._images[row][camera] for row in rows]
 
 
-class Instants(NamedTuple):
+class Snapshot(NamedTuple):
     """What the robots of G worlds sense, and what is true at the same time.
 
     Attributes:
@@ -62,7 +62,7 @@ class Instants(NamedTuple):
     odometry: NDArray[np.float64]
     wheel_speeds_m_s: NDArray[np.float64]
     scenes: Scenes
-    pictures: Pictures | None
+    pictures: BatchImages | None
 
     def senses(self, row: int) -> Senses:
         """What one robot senses; an `Observation` where there are images."""
@@ -79,11 +79,11 @@ class Instants(NamedTuple):
         )  # fmt: skip
 
 
-def perceive(world: World) -> Instants:
+def take_snapshot(world: World) -> Snapshot:
     """Sense once in one world, images included where there are any."""
-    senses, pictures = world.sense(), OwnPictures([world.take_images()]) if world.has_images else None
+    senses, pictures = world.sense(), SeparateImages([world.take_images()]) if world.has_images else None
     at = senses.odometry
-    return Instants(
+    return Snapshot(
         numbers=np.zeros(1, np.int64),
         sonar_m=senses.sonar_m[None],
         odometry=np.array([[at.x, at.y, at.heading]]),

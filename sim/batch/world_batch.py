@@ -9,12 +9,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.batch.cameras import Crew, Eyes, cameras_of
-from peopleboy.sim.batch.drive import Drives
-from peopleboy.sim.batch.joined_worlds import lay_side_by_side, refresh_worlds
-from peopleboy.sim.batch.people import Limbs, Walks
-from peopleboy.sim.batch.sensing import Ears, Watch
-from peopleboy.sim.batch.snapshot import Instants, OwnPictures, Pictures, perceive
+from peopleboy.sim.batch.cameras import BatchCameras, WorkerPool, shared_cameras
+from peopleboy.sim.batch.drive import BatchDrive
+from peopleboy.sim.batch.joined_worlds import join_worlds, refresh_worlds
+from peopleboy.sim.batch.people import BatchLimbs, BatchWalks
+from peopleboy.sim.batch.sensing import Ears, PeopleVisibility
+from peopleboy.sim.batch.snapshot import BatchImages, SeparateImages, Snapshot, take_snapshot
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.poses import pose_matrices
@@ -26,7 +26,7 @@ from peopleboy.sim.truth.scenes import SCENE, Scenes
 from peopleboy.sim.world import World
 
 
-class Fleet:
+class KinematicBatch:
     """B worlds, which give to the byte what each would give by itself.
 
     Their state is copied side by side into arrays, in which the worlds keep looking at it, so that each may
@@ -34,31 +34,31 @@ class Fleet:
     kernels over all worlds; people walk as in one.
 
     Args:
-        worlds: kinematic, and of one kind, see `kind_of_fleet`. A world is in one fleet at a time, the last
+        worlds: kinematic, and of one kind, see `batch_key`. A world is in one fleet at a time, the last
             that it was put into.
-        crew: makes images while Python goes on.
+        workers: makes images while Python goes on.
     """
 
-    def __init__(self, worlds: Sequence[World], crew: Crew) -> None:
+    def __init__(self, worlds: Sequence[World], workers: WorkerPool) -> None:
         self._worlds = tuple(worlds)
         physics = [_kinematic(world) for world in worlds]
         states = [each.state() for each in physics]
-        self._joined, laid = lay_side_by_side(states)
+        self._joined, laid = join_worlds(states)
         for each, state in zip(physics, laid, strict=True):
-            each.lay_into(state)
+            each.rebind(state)
         self._own = self._joined.first_body[:-1] + self._joined.own
         self._control_s = 1.0 / worlds[0].config.control_hz
-        self._walks = Walks(worlds)
-        self._drives = Drives(worlds, self._walks, self._joined, states[0].vehicle)
+        self._walks = BatchWalks(worlds)
+        self._drives = BatchDrive(worlds, self._walks, self._joined, states[0].vehicle)
         self._ears = Ears(worlds, self._joined)
-        self._watch = Watch(worlds, self._walks, self._joined)
+        self._watch = PeopleVisibility(worlds, self._walks, self._joined)
         self._moves_things = np.array([bool(world.config.place.movers) for world in worlds])
         self._names = [world.crowd.names for world in worlds]
         shows = worlds[0].has_images and any(self._names)
-        self._limbs = Limbs(worlds, self._walks, self._joined) if shows else None
+        self._limbs = BatchLimbs(worlds, self._walks, self._joined) if shows else None
         wheels = self._joined.first_part[:-1, None] + np.array([each.wheels for each in physics])
-        makes_images = cameras_of(worlds[0]) is not None
-        self._eyes = Eyes(worlds, self._joined, wheels, crew) if makes_images else None
+        makes_images = shared_cameras(worlds[0]) is not None
+        self._eyes = BatchCameras(worlds, self._joined, wheels, workers) if makes_images else None
 
     def step(self, going: Numbers, commands: Array) -> None:
         """Step some of the worlds, as `World.step` does.
@@ -112,7 +112,7 @@ class Fleet:
                 names = _kinematic(world).names_of(touched[first:end])
             world.end_step(names, is_settled=not is_changed)
 
-    def look(self, going: Numbers) -> Instants:
+    def look(self, going: Numbers) -> Snapshot:
         """Sense and tell the truth in some of the worlds, as `World.sense` and `World.scene` do.
 
         Args:
@@ -131,7 +131,7 @@ class Fleet:
         contacts = tuple([self._worlds[number].touching for number in going.tolist()])
         scenes["is_touching"] = [bool(names) for names in contacts]
         names = tuple([self._names[number] for number in going.tolist()])
-        return Instants(
+        return Snapshot(
             numbers=going,
             sonar_m=sonar_m,
             odometry=self._drives.gears.odometry[going],
@@ -140,11 +140,11 @@ class Fleet:
             pictures=pictures,
         )
 
-    def _take_images(self, going: Numbers, poses: Matrix, turn_rad_s: Array) -> Pictures | None:
+    def _take_images(self, going: Numbers, poses: Matrix, turn_rad_s: Array) -> BatchImages | None:
         if self._eyes is not None:
             return self._eyes.look(going, poses, turn_rad_s)
         worlds = [self._worlds[number] for number in going.tolist()]
-        return OwnPictures([world.take_images() for world in worlds]) if worlds[0].has_images else None
+        return SeparateImages([world.take_images() for world in worlds]) if worlds[0].has_images else None
 
     def _times(self, going: Numbers) -> Array:
         return np.array([self._worlds[number].time_s for number in going.tolist()])
@@ -158,13 +158,13 @@ class Fleet:
         return np.stack([ahead, velocity[:, 2]], axis=1)
 
 
-def kind_of_fleet(world: World) -> tuple[object, ...] | None:
+def batch_key(world: World) -> tuple[object, ...] | None:
     """What all worlds of a fleet must share; None for a world that cannot be in one."""
     config = world.config
     if config.physics != "kinematic":
         return None
     camera = flat_geometry(config.robot.cameras, "thermal")
-    views = world.has_images, cameras_of(world)
+    views = world.has_images, shared_cameras(world)
     return config.physics_hz, config.control_hz, config.robot.sonar, camera, views
 
 
@@ -182,22 +182,22 @@ def _kinematic(world: World) -> Kinematic:
 # Any worlds, stepped together as far as they can be.
 
 
-class Together:
+class WorldBatch:
     """Worlds by number: kinematic ones in a fleet for each kind, others each by itself."""
 
-    def __init__(self, worlds: Sequence[World], crew: Crew) -> None:
+    def __init__(self, worlds: Sequence[World], workers: WorkerPool) -> None:
         self._worlds = tuple(worlds)
         kinds: dict[object, list[int]] = defaultdict(list)
         for number, world in enumerate(worlds):
-            kinds[kind_of_fleet(world)].append(number)
+            kinds[batch_key(world)].append(number)
         self._alone = kinds.pop(None, [])
         self._fleets = [
-            (Fleet([worlds[number] for number in group], crew), np.array(group, np.int64))
+            (KinematicBatch([worlds[number] for number in group], workers), np.array(group, np.int64))
             for group in kinds.values()
         ]
 
-    def step(self, going: Numbers, commands: Array) -> list[Instants]:
-        """Step some of the worlds, and perceive what is in them then.
+    def step(self, going: Numbers, commands: Array) -> list[Snapshot]:
+        """Step some of the worlds, and take_snapshot what is in them then.
 
         Args:
             going: (G,) numbers of the worlds, rising.
@@ -214,7 +214,7 @@ class Together:
             for k in np.flatnonzero(going == number).tolist():
                 world = self._worlds[number]
                 world.step(*commands[k].tolist())
-                found.append(perceive(world)._replace(numbers=going[k : k + 1]))
+                found.append(take_snapshot(world)._replace(numbers=going[k : k + 1]))
         row = np.full(len(self._worlds), -1)
         row[going] = np.arange(len(going))
         for fleet, group in self._fleets:

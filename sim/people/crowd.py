@@ -89,7 +89,7 @@ class Crowd:
             self._walk = ScriptedWalk(scripts, records, self._place.obstacles)
         return self._walk
 
-    def lay_into(self, records: Records) -> None:
+    def rebind(self, records: Records) -> None:
         """Keep the records of those who walk by them in another array from now on."""
         assert self._walk is not None
         self._walk = self._walk._replace(records=records)

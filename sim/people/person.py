@@ -282,10 +282,10 @@ class Person:
             self._build = self._know_build()
         return self._build
 
-    def lay_into(self, stance: Stances, builds: Builds) -> None:
+    def rebind(self, stance: Stances, builds: Builds) -> None:
         """Keep its stance and its build in other arrays from now on, which hold the same already."""
         self.stance, self._build = stance, builds
-        self._gait.lay_into(builds.rotations[0], builds.sway[0])
+        self._gait.rebind(builds.rotations[0], builds.sway[0])
 
     def _know_build(self) -> Builds:
         held, is_held = held_arms(self._manner.holds)

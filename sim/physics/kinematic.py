@@ -274,7 +274,7 @@ class Kinematic:
         motion = Motion(rolling.pose, rolling.angles, rolling.speeds, rolling.velocity)
         return State(bodies, solids, motion, rolling.vehicle, rolling.body)
 
-    def lay_into(self, state: State) -> None:
+    def rebind(self, state: State) -> None:
         """Keep all that is in the world in other arrays from now on, which hold the same already."""
         assert self._rolling is not None
         bodies, rolling = state.bodies, self._rolling

@@ -134,7 +134,7 @@ class PeopleBot:
         """What its wheels are to do and have done."""
         return self._gears
 
-    def lay_into(self, gears: Gears) -> None:
+    def rebind(self, gears: Gears) -> None:
         """Keep all that in other arrays from now on, which hold the same already."""
         self._gears = gears
 

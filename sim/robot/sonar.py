@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.pinhole import Matrix, transform
+from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.physics.physics import Physics
 from peopleboy.sim.robot.robot_config import SonarConfig
 from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD, SONAR_POSITION_M
+
+CastRays: TypeAlias = Callable[[Matrix, Matrix], Matrix]
+"""Takes starts and ends (G, R, 3) [m] of rays, gives the shares (G, R) of their ways at which they hit."""
 
 _SONARS = len(SONAR_ANGLE_RAD)
 # Rings of rays about a cone's axis: share of its half angle, and number of rays.
@@ -56,21 +61,11 @@ class SonarRing:
         self.ends = (middles[:, None, :] + rays * self.reach[..., None]).reshape(-1, 3)
 
     def read(self, world_from_robot: Matrix) -> NDArray[np.float64]:
-        """Read all sonars once.
+        """Read all sonars once: (16,) [m], from a pose (4, 4) of the robot; see `read_rings`."""
+        return read_rings([self], world_from_robot[None], self._cast)[0]
 
-        Args:
-            world_from_robot: (4, 4) pose of the robot.
-
-        Returns:
-            (16,) [m] within nearest..farthest; farthest where nothing answers.
-        """
-        starts, ends = (transform(world_from_robot, points) for points in (self.starts, self.ends))
-        starts = starts.repeat(self.reach.shape[1], axis=0)
-        fraction = self._physics.cast_rays(starts, ends, ignore=self._owner)[0].reshape(self.reach.shape)
-        nearest_m = np.where(fraction < 1.0, fraction * self.reach, np.inf).min(axis=1)
-        noise, chance = np.empty(_SONARS), np.empty(_SONARS)
-        self.draw_noise(noise, chance)
-        return read_echoes(nearest_m, noise, chance, self.config)
+    def _cast(self, starts: Matrix, ends: Matrix) -> Matrix:
+        return self._physics.cast_rays(starts[0], ends[0], ignore=self._owner)[0][None]
 
     def draw_noise(self, noise: NDArray[np.float64], chance: NDArray[np.float64]) -> None:
         """Fill (16,) with standard normal noise, and (16,) with 0..1 evenly, for the next readings."""
@@ -78,19 +73,25 @@ class SonarRing:
         self._rng.random(out=chance)
 
 
-def read_echoes(
-    nearest_m: NDArray[np.float64],
-    noise: NDArray[np.float64],
-    chance: NDArray[np.float64],
-    config: SonarConfig,
-) -> NDArray[np.float64]:
-    """Make readings (..., 16) [m] of how far the nearest is in each cone, inf for nothing.
+def read_rings(rings: Sequence[SonarRing], world_from_robot: Matrix, cast: CastRays) -> NDArray[np.float64]:
+    """Read the rings of G robots once, all of one kind.
 
     Args:
-        nearest_m: (..., 16) [m].
-        noise: (..., 16) standard normal.
-        chance: (..., 16) 0..1 evenly; that of an echo that is lost is less than the share of drop-outs.
-        config: of the ring.
+        rings: of the robots; each draws its own noise.
+        world_from_robot: (G, 4, 4) poses of the robots.
+        cast: casts the rays of all of them.
+
+    Returns:
+        (G, 16) [m] within nearest..farthest; farthest where nothing answers.
     """
-    reading = np.where(chance < config.drop_out, np.inf, nearest_m + config.noise_m * noise)
-    return np.clip(reading, config.nearest_m, config.farthest_m)
+    ring = rings[0]
+    sonars, rays = ring.reach.shape
+    turns, shifts = world_from_robot[:, :3, :3].transpose(0, 2, 1), world_from_robot[:, None, :3, 3]
+    starts, ends = (points @ turns + shifts for points in (ring.starts, ring.ends))
+    fraction = cast(starts.repeat(rays, axis=1), ends).reshape(-1, sonars, rays)
+    nearest_m = np.where(fraction < 1.0, fraction * ring.reach, np.inf).min(axis=2)
+    noise, chance = np.empty((2, len(rings), sonars))
+    for row, each in enumerate(rings):
+        each.draw_noise(noise[row], chance[row])
+    reading = np.where(chance < ring.config.drop_out, np.inf, nearest_m + ring.config.noise_m * noise)
+    return np.clip(reading, ring.config.nearest_m, ring.config.farthest_m)

@@ -1,10 +1,10 @@
-"""People as upright bodies before cameras: their boxes, and how much of them rays would meet."""
+"""How much of people robots could see, from rays to upright bodies that stand for them (numba kernels)."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numba import njit
@@ -14,10 +14,12 @@ from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.products import fma
 from peopleboy.sim.geometry.vectors import Point
 from peopleboy.sim.people.person import Person
-from peopleboy.sim.physics.physics import Physics
 from peopleboy.sim.rendering.canvas import Lens
-from peopleboy.sim.robot.robot_body import NAME
 from peopleboy.sim.truth.scenes import BYSTANDER, Records
+
+CastRays: TypeAlias = Callable[[NDArray[np.int64], Matrix, Matrix], Matrix]
+"""Takes numbers (K,) of people, starts and ends (K, 5, 3) [m] of rays, gives the shares (K, 5) of their ways
+at which they hit something other than the robot that sends them out."""
 
 # Heights at which a person's middle is looked for, in shares of the stature.
 _LOOKED_AT = (0.1, 0.3, 0.5, 0.7, 0.9)
@@ -157,58 +159,37 @@ def _count_free(uprights: Uprights, fraction: Matrix, radii_m: Matrix, shares: M
         shares[q] = free / rays
 
 
-# Where everybody is, and how much of them a camera could see: told by rays, not from an image.
-
-_RAYS = 5
-
-
-def bystanders(
-    people: Sequence[Person], physics: Physics, robot: Matrix, world_from_robot: Matrix, camera: Pinhole
-) -> Records:
-    """Tell where everybody is who is present, and how much of them the robot's camera could see.
-
-    Args:
-        people: in the scenario's order.
-        physics: the world, through which rays are cast.
-        robot: (3,) [m, m, rad] pose on the floor.
-        world_from_robot: (4, 4) the same pose.
-        camera: the thermal camera.
-
-    Returns:
-        (Q,) records BYSTANDER.
-    """
-    present = [(number, person) for number, person in enumerate(people, 1) if person.present]
-    found = np.zeros(len(present), BYSTANDER)
-    if not present:
-        return found
-    found["id"] = [number for number, _ in present]
-    for name, values in (
-        ("position_m", [person.position for _, person in present]),
-        ("velocity_m_s", [person.velocity for _, person in present]),
-        ("heading_rad", [person.heading for _, person in present]),
-        ("height_m", [person.config.height_m for _, person in present]),
-        ("radius_m", [person.radius_m for _, person in present]),
-    ):
-        found[name] = values
-    poses = (world_from_robot @ camera.robot_from_camera)[None].repeat(len(present), axis=0)
-    uprights = stand_before(found["position_m"], found["height_m"], found["radius_m"], camera, poses)
-    fraction = np.ones((len(present), _RAYS))
-    looked = uprights.reaches_in
-    eyes, points = uprights.eyes[looked].repeat(_RAYS, axis=0), uprights.points[looked].reshape(-1, 3)
-    fraction[looked] = physics.cast_rays(eyes, points, ignore=NAME)[0].reshape(-1, _RAYS)
-    look_at(found, robot[None], uprights, fraction)
-    return found
+def known_people(people: Sequence[Person]) -> Records:
+    """(Q,) records BYSTANDER with what never changes of the people of one world: id, height and radius."""
+    known = np.zeros(len(people), BYSTANDER)
+    known["id"] = range(1, len(people) + 1)
+    known["height_m"] = [person.config.height_m for person in people]
+    known["radius_m"] = [person.radius_m for person in people]
+    return known
 
 
-def look_at(people: Records, robots: Matrix, uprights: Uprights, fraction: Matrix) -> None:
-    """Note how robots see people.
+def look_at_people(
+    people: Records, robots: Matrix, camera: Pinhole, world_from_camera: Matrix, cast: CastRays
+) -> None:
+    """Fill in where people are as robots see them, and how much of them their cameras could see.
 
     Args:
-        people: (Q,) records BYSTANDER, of which the last four fields are filled.
-        robots: (Q, 3) or (1, 3) [m, m, rad] where they look from.
-        uprights: the people before their cameras.
-        fraction: (Q, 5) as in `free_ray_shares`.
+        people: (Q,) records BYSTANDER, all present, of which the last four fields are filled.
+        robots: (Q, 3) or (1, 3) [m, m, rad] poses of the robots that look at them.
+        camera: of all robots.
+        world_from_camera: (Q, 4, 4).
+        cast: casts the rays to some of the people.
     """
+    if not len(people):
+        return
+    uprights = stand_before(
+        people["position_m"], people["height_m"], people["radius_m"], camera, world_from_camera
+    )
+    fraction = np.ones(uprights.points.shape[:2])
+    in_view = np.flatnonzero(uprights.reaches_in)
+    if len(in_view):
+        starts = uprights.eyes[in_view, None].repeat(fraction.shape[1], axis=1)
+        fraction[in_view] = cast(in_view, starts, uprights.points[in_view])
     gaps = people["position_m"] - robots[:, :2]
     across, up = gaps[:, 0].tolist(), gaps[:, 1].tolist()
     people["distance_m"] = list(map(math.hypot, across, up))

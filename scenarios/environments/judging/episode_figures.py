@@ -21,7 +21,7 @@ Figures = dict[str, dict[str, float]]
 
 
 class EpisodeFigures:
-    """Keeps the instants of an episode, and works the figures out when asked.
+    """Keeps the snapshot of an episode, and works the figures out when asked.
 
     Whom the robot goes after is its controller's secret: `wrong_person_s` is NaN, and `followed_to_end` asks
     for the track only.

@@ -13,7 +13,7 @@ from peopleboy.scenarios.environments.judging.episode_figures import EpisodeFigu
 from peopleboy.scenarios.environments.judging.rewards import ENDS, TASKS, TERMS, reward_worlds
 from peopleboy.scenarios.environments.judging.situation import EPISODE, Array, areas_of
 from peopleboy.scenarios.scores.following_metrics import FollowingTask
-from peopleboy.sim.batch.snapshot import Instants
+from peopleboy.sim.batch.snapshot import Snapshot
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.shapes.joined_tables import Numbers, ends
 from peopleboy.sim.truth.scenes import ImageFreeTruth, Scenes
@@ -75,36 +75,36 @@ class LiveEpisodes:
         self._figures: dict[int, EpisodeFigures] = {}
         self._lay_out()
 
-    def begin(self, number: int, terms: Terms, instants: Instants, tracks: Sequence[int] | None) -> Verdicts:
+    def begin(self, number: int, terms: Terms, snapshot: Snapshot, tracks: Sequence[int] | None) -> Verdicts:
         """Begin an episode in one of the worlds.
 
         Args:
             number: of the world.
             terms: by what it is played.
-            instants: the first one, in that world alone.
+            snapshot: the first one, in that world alone.
             tracks: see `judge`.
         """
         self.records[number] = np.zeros((), EPISODE)
         own = self.records[number : number + 1]
-        own["start"], own["frame"], own["frames"] = instants.odometry, -1, terms.frames
+        own["start"], own["frame"], own["frames"] = snapshot.odometry, -1, terms.frames
         own["dt_s"], own["keep_m"], own["limits"] = terms.dt_s, terms.following.keep_m, terms.limits
         self._plans[number], self._touched[number] = areas_of(terms.plan), set()
         self._figures[number] = EpisodeFigures(terms.plan, terms.following)
         self._lay_out()
-        verdicts = self.judge(instants, np.zeros((1, 2)), tracks)
+        verdicts = self.judge(snapshot, np.zeros((1, 2)), tracks)
         own["is_over"] = False
         return verdicts._replace(terms=np.zeros_like(verdicts.terms), rewards=[0.0])
 
-    def judge(self, instants: Instants, actions: Array, tracks: Sequence[int] | None) -> Verdicts:
-        """Judge the next instants of some episodes.
+    def judge(self, snapshot: Snapshot, actions: Array, tracks: Sequence[int] | None) -> Verdicts:
+        """Judge the next snapshot of some episodes.
 
         Args:
-            instants: of G worlds, by their numbers.
+            snapshot: of G worlds, by their numbers.
             actions: (G, 2) that led there.
             tracks: of each the number of the track that lies on the person to follow, 0 for none; None where
                 there is no tracker, and a person counts as tracked while seen.
         """
-        numbers, scenes, records = instants.numbers, instants.scenes, self.records
+        numbers, scenes, records = snapshot.numbers, snapshot.scenes, self.records
         records["frame"][numbers] += 1
         seen, terms = records["seen"][numbers], np.empty((len(numbers), len(TERMS)))
         reward_worlds(
@@ -134,7 +134,7 @@ class LiveEpisodes:
     def _compare(
         self, numbers: Numbers, scenes: Scenes, before: NDArray[np.uint64], now: NDArray[np.uint64]
     ) -> list[Events]:
-        """Give what is new since the instants before; `before` and `now` are who was and is seen."""
+        """Give what is new since the snapshot before; `before` and `now` are who was and is seen."""
         touching = self.records["is_touching"]
         is_new = (before != now) | touching[numbers] | scenes.worlds["is_touching"]
         touching[numbers] = scenes.worlds["is_touching"]

@@ -66,7 +66,7 @@ class Gait:
         rotations, sway = self.tables
         return turns, np.array(gait_pose(rotations, sway, phase, amplitude, turns))
 
-    def lay_into(self, rotations: Array, sway: Array) -> None:
+    def rebind(self, rotations: Array, sway: Array) -> None:
         """Keep the tables in other arrays from now on, which hold the same already."""
         self.tables = rotations, sway
 
