@@ -18,7 +18,7 @@ from peopleboy.sim.cameras.sensors import Glimpse
 from peopleboy.sim.cameras.surfaces import MaterialTable, make_material_table
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
-from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.people.crowd import Crowd
@@ -33,14 +33,13 @@ from peopleboy.sim.rendering.sight import Scene, Seen, Sight, look
 from peopleboy.sim.rendering.view import BLIND, NOBODY
 from peopleboy.sim.robot.peoplebot import PeopleBot
 from peopleboy.sim.robot.robot_body import NAME as ROBOT
-from peopleboy.sim.robot.robot_body import RADIUS_M
-from peopleboy.sim.robot.robot_materials import robot_material
+from peopleboy.sim.robot.robot_body import RADIUS_M, robot_material
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shape_table import ShapeTable, make_shape_table
 from peopleboy.sim.truth.scenes import SCENE, ImageFreeTruth, Scenes
 from peopleboy.sim.truth.truth import BORDER, Box, Truth
 from peopleboy.sim.truth.truth_maker import TruthMaker
-from peopleboy.sim.truth.visibility import bystanders
+from peopleboy.sim.truth.visibility import known_people, look_at_people
 
 _STANDS_OUT_K = 5.0  # from the surroundings: what differs by more is seen in mirrors
 _MOST_PEOPLE = 64  # a view's cover has a bit for each
@@ -176,12 +175,28 @@ class World:
         """Tell what `scene` does as arrays, of one world."""
         pose, world_from_robot = self._robot.pose(), self._robot.world_from_robot()
         robot = np.array([pose.x, pose.y, pose.heading])
-        camera = flat_geometry(self.config.robot.cameras, "thermal")
-        people = bystanders(self._crowd.people, self._physics, robot, world_from_robot, camera)
-        worlds = np.zeros(1, SCENE)
+        worlds, people = np.zeros(1, SCENE), self._bystanders(robot, world_from_robot)
         worlds["time_s"], worlds["robot"], worlds["velocity"] = self.time_s, robot, self._robot.velocity()
         worlds["is_touching"], worlds["end"] = bool(self._touching), len(people)
         return Scenes(worlds, people, (self._crowd.names,), (self.touching,))
+
+    def _bystanders(self, robot: Matrix, world_from_robot: Matrix) -> Records:
+        """(Q,) records BYSTANDER of all who are present, by the robot's pose (3,) [m, m, rad] and (4, 4)."""
+        present = [k for k, person in enumerate(self._crowd.people) if person.present]
+        found = self._known_people[present]
+        for row, k in zip(found, present, strict=True):
+            person = self._crowd.people[k]
+            row["position_m"], row["velocity_m_s"] = person.position, person.velocity
+            row["heading_rad"] = person.heading
+        camera = flat_geometry(self.config.robot.cameras, "thermal")
+        cameras = (world_from_robot @ camera.robot_from_camera)[None].repeat(len(present), axis=0)
+
+        def cast(_: NDArray[np.int64], starts: Matrix, ends: Matrix) -> Matrix:
+            rays = starts.reshape(-1, 3), ends.reshape(-1, 3)
+            return self._physics.cast_rays(*rays, ignore=ROBOT)[0].reshape(starts.shape[:2])
+
+        look_at_people(found, robot[None], camera, cameras, cast)
+        return found
 
     def truth(self, camera: str = "thermal") -> Truth:
         """Tell all that is true at this instant, boxes and masks in the image of a camera.
@@ -288,6 +303,7 @@ class World:
             is_visible=config.renderer != BLIND,
             detail=config.detail,
         )
+        self._known_people = known_people(self._crowd.people)
         self._handling = Handling(physics, config.place, self._crowd.people)
         self._robot = PeopleBot(physics, config.robot, config.seed)
         if config.renderer != BLIND:

@@ -1,4 +1,4 @@
-"""What is going on, in one picture: thermal image, colour image, and the plan around the robot."""
+"""The scene in one picture: thermal image, colour image, and the plan around the robot."""
 
 from __future__ import annotations
 

@@ -157,11 +157,11 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
             raise BadInput(f"seed: {len(seed)} seeds for {self.num_envs} worlds; give one each")
         return [int(own) if isinstance(own, np.integer) else own for own in seed]
 
-    def _step_together(self, going: Numbers, shares: NDArray[np.float64]) -> list[Snapshot]:
+    def _step_together(self, active: Numbers, shares: NDArray[np.float64]) -> list[Snapshot]:
         """Step the worlds whose episodes are under way."""
         if self._together is None:
             self._together = WorldBatch([env.world for env in self._envs], self._crew)
-        return self._together.step(going, (shares * self._episodes.records["limits"])[going])
+        return self._together.step(active, (shares * self._episodes.records["limits"])[active])
 
     def _track(self, snapshot: Snapshot) -> list[int] | None:
         """Let trackers look, if there are any; gives what `LiveEpisodes.judge` is to know of them."""

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from peopleboy.behaviours.behaviour import Behaviour
 from peopleboy.behaviours.percept import Percept, SeenPerson
 from peopleboy.scenarios.environments.observations import COLUMNS, Arrays
+from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD
 from peopleboy.sim.robot.robot_config import DriveConfig
-from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD
 
 _DT_S = 1.0 / 15.0
 

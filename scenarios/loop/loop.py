@@ -20,8 +20,7 @@ from peopleboy.scenarios.loop.thermal_box import thermal_box
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
-from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
-from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD
+from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, WHEEL_DISTANCE_M
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.boxes import image_shares
 from peopleboy.tracker.frame import THERMAL, Calibration, Frame, Odometry

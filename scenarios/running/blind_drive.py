@@ -9,8 +9,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.percept import Percept
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.sim.observation import Observation
-from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
-from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD
+from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, WHEEL_DISTANCE_M
 
 if TYPE_CHECKING:
     from peopleboy.sim.world import World

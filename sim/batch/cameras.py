@@ -187,7 +187,7 @@ _SHARES: Final = 2  # of a camera's images for each thread, so that none waits l
 
 
 class BatchCameras:
-    """The cameras of B worlds, see `shared_cameras`; they give to the byte what each world by itself would give.
+    """The cameras of B worlds, see `shared_cameras`; with the same bytes as those of each world by itself.
 
     Images of a camera are made ahead, by threads while Python goes on, if somebody asked for those of the
     instant before; all others when they are asked for.
@@ -214,11 +214,11 @@ class BatchCameras:
         self._body_of_part = joined.bodies.of_part + first_body
         self._shots = Exposures.none()
 
-    def look(self, going: Numbers, robots: Array, turn_rad_s: Array) -> Exposures:
+    def look(self, active: Numbers, robots: Array, turn_rad_s: Array) -> Exposures:
         """Take the images of some worlds at this instant.
 
         Args:
-            going: (G,) numbers of the worlds.
+            active: (G,) numbers of the worlds.
             robots: (G, 4, 4) world from robot.
             turn_rad_s: (G,) at which they turn.
         """
@@ -227,7 +227,7 @@ class BatchCameras:
         part = self._joined.bodies.poses.copy()
         turn_wheels(part, self._wheels, self._joined.motion.angles.reshape(-1))
         hidden = self._joined.bodies.hidden[self._body_of_part]
-        due = [self._worlds[number].await_images() for number in going.tolist()]
+        due = [self._worlds[number].await_images() for number in active.tolist()]
         shots = []
         for name, config in self._cameras.items():
             rows = [row for row, names in enumerate(due) if name in names]
@@ -239,7 +239,7 @@ class BatchCameras:
                     camera=robots[rows] @ config.camera.robot_from_camera,
                     turned=turn_rad_s[rows] * config.exposure_s,
                 )
-                shots.append(Exposure(name, config, rows, partial(self._shoot, name, going[rows], poses)))
+                shots.append(Exposure(name, config, rows, partial(self._shoot, name, active[rows], poses)))
         for shot in reversed(shots):  # as who looks at the first of them helps with that
             if shot.name in asked_for:
                 shot.begin()

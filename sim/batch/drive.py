@@ -49,7 +49,7 @@ class Capsules(NamedTuple):
 
 @njit(cache=True, nogil=True)
 def drive_step(
-    going: Numbers,
+    active: Numbers,
     joined: JoinedWorlds,
     vehicle: Vehicle,
     gears: Gears,
@@ -62,7 +62,7 @@ def drive_step(
     """Do what `World.step` does physics step by physics step, for the worlds of some numbers.
 
     Args:
-        going: (G,) numbers of the worlds.
+        active: (G,) numbers of the worlds.
         joined: changed in place.
         vehicle: all robots.
         gears: of all robots, with worlds first; `command`, `turned` and `odometry` are changed in place.
@@ -72,8 +72,8 @@ def drive_step(
         steps: how many of them.
         touched: one for each body of `joined`, gets True for what its robot touched.
     """
-    for row in range(len(going)):
-        world = going[row]
+    for row in range(len(active)):
+        world = active[row]
         bodies, solids = slice_world(joined, world)
         first, end = joined.first_body[world], joined.first_body[world + 1]
         met = np.zeros(end - first, np.bool_)
@@ -206,7 +206,7 @@ class BatchDrive:
         config = worlds[0].config
         self._dt_s, self._steps = 1.0 / config.physics_hz, config.physics_hz // config.control_hz
 
-    def command(self, going: Numbers, commands: Array) -> None:
+    def command(self, active: Numbers, commands: Array) -> None:
         """Ask for velocities (G, 2) [m/s, rad/s] in worlds of some numbers (G,), as `PeopleBot.command`.
 
         Raises:
@@ -214,9 +214,9 @@ class BatchDrive:
         """
         if not np.isfinite(commands).all():
             raise BadInput("velocity commands must be finite")
-        limits = self._limits[going]
-        self.gears.target[going] = np.clip(commands, -limits, limits)
-        self.gears.rise[going] = self._rise[going]
+        limits = self._limits[active]
+        self.gears.target[active] = np.clip(commands, -limits, limits)
+        self.gears.rise[active] = self._rise[active]
 
     @property
     def are_solid(self) -> NDArray[np.bool_]:
@@ -224,26 +224,26 @@ class BatchDrive:
         are_solid: NDArray[np.bool_] = ~self._joined.bodies.hidden[self._bodies]
         return are_solid
 
-    def drive(self, going: Numbers, before: Array) -> NDArray[np.bool_]:
+    def drive(self, active: Numbers, before: Array) -> NDArray[np.bool_]:
         """Let physics do a control step, and count what the wheels have turned.
 
         Args:
-            going: (G,) numbers of the worlds.
+            active: (G,) numbers of the worlds.
             before: (Q, 2) [m] where all people stood at its start.
 
         Returns:
             One for each body of all worlds: whether a robot touched it.
         """
-        noise = np.empty((len(going), 2))
-        for row, number in enumerate(going.tolist()):
+        noise = np.empty((len(active), 2))
+        for row, number in enumerate(active.tolist()):
             self._robots[number].draw_noise(noise[row])
-        noise *= self._noise_m[going, None]
+        noise *= self._noise_m[active, None]
         # Packed, as those of a single person are anyway, or kernels would be compiled for both layouts.
         before, after = np.ascontiguousarray(before), np.ascontiguousarray(self._walks.records["position"])
         capsules = self._capsules._replace(is_solid=self.are_solid, before=before, after=after)
         touched = np.zeros(len(self._joined.bodies.places), np.bool_)
         drive_step(
-            going, self._joined, self._vehicle, self.gears, noise, capsules, self._dt_s, self._steps, touched
+            active, self._joined, self._vehicle, self.gears, noise, capsules, self._dt_s, self._steps, touched
         )
         return touched
 

@@ -1,4 +1,4 @@
-"""The states of many kinematic worlds in arrays of which each world keeps looking at its own part."""
+"""The states of many kinematic worlds, joined in arrays of which each world keeps using its own slice."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from peopleboy.sim.physics.solid_shapes import Array, Placements, Solids, cast_into, refresh
+from peopleboy.sim.physics.solid_shapes import Array, Placements, Solids, refresh
 from peopleboy.sim.physics.vehicle import Motion, State
 from peopleboy.sim.shapes.joined_tables import JoinedTables, Numbers, ends, join_tables, table_of
 
@@ -77,69 +77,9 @@ def slice_world(joined: JoinedWorlds, number: int) -> tuple[Placements, Solids]:
     return bodies, Solids(table_of(joined.tables, number), joined.poses[s:s_end], joined.boxes[s:s_end])
 
 
-# Rays in many worlds (numba kernels).
-
-
 @njit(cache=True, nogil=True)
-def refresh_worlds(going: Numbers, joined: JoinedWorlds) -> None:
+def refresh_worlds(active: Numbers, joined: JoinedWorlds) -> None:
     """Bring some of the worlds up to date, as `refresh` does with one."""
-    for number in going:
+    for number in active:
         bodies, solids = slice_world(joined, number)
         refresh(bodies, solids)
-
-
-@njit(cache=True, nogil=True)
-def hear_worlds(
-    going: Numbers, joined: JoinedWorlds, starts: Array, ends: Array, reach_m: Array, nearest_m: Array
-) -> None:
-    """Find the nearest solid in the cones of sonars in some of the worlds, as `SonarRing.read` does in one.
-
-    Args:
-        going: (G,) numbers of the worlds.
-        joined: up to date.
-        starts: (G, S, 3) [m] of the sonars, world frame.
-        ends: (G, S * N, 3) [m] of their rays, one sonar's after the other's.
-        reach_m: (S, N) lengths of the rays.
-        nearest_m: (G, S) gets the distances, inf for nothing.
-    """
-    sonars, rays = reach_m.shape
-    begin, part = np.empty((sonars * rays, 3)), np.empty(sonars * rays, np.int64)
-    fraction = np.empty(sonars * rays)
-    for row in range(len(going)):
-        bodies, solids = slice_world(joined, going[row])
-        for ray in range(sonars * rays):
-            for i in range(3):
-                begin[ray, i] = starts[row, ray // rays, i]
-        fraction[:] = 1.0
-        cast_into(begin, ends[row], bodies, solids, joined.own[going[row]], fraction, part)
-        for sonar in range(sonars):
-            nearest_m[row, sonar] = np.inf
-            for k in range(rays):
-                share = fraction[sonar * rays + k]
-                if share < 1.0:
-                    nearest_m[row, sonar] = min(nearest_m[row, sonar], share * reach_m[sonar, k])
-
-
-@njit(cache=True, nogil=True)
-def cast_eyes(
-    looked: Numbers, world: Numbers, joined: JoinedWorlds, eyes: Array, points: Array, fraction: Array
-) -> None:
-    """Do as `cast` from one eye to several points for each of Q people, through robots.
-
-    Args:
-        looked: numbers of the people who are looked for.
-        world: (Q,) where they are.
-        joined: up to date.
-        eyes: (Q, 3) [m] world frame.
-        points: (Q, N, 3) [m].
-        fraction: (Q, N) 1 at first, gets the share of its way at which a ray hits something.
-    """
-    count = points.shape[1]
-    starts, part = np.empty((count, 3)), np.empty(count, np.int64)
-    for person in looked:
-        bodies, solids = slice_world(joined, world[person])
-        for n in range(count):
-            for i in range(3):
-                starts[n, i] = eyes[person, i]
-        own = joined.own[world[person]]
-        cast_into(starts, points[person], bodies, solids, own, fraction[person], part)

@@ -60,31 +60,31 @@ class BatchWalks:
                 crowd.rebind(self.records[first:end])
         self._follow(np.arange(len(worlds)))
 
-    def step(self, going: Numbers, times_s: Array, dt_s: float, robots: Array) -> None:
+    def step(self, active: Numbers, times_s: Array, dt_s: float, robots: Array) -> None:
         """Let all walk on who are guided by scripts; the others have just walked.
 
         Args:
-            going: (G,) numbers of the worlds.
+            active: (G,) numbers of the worlds.
             times_s: (G,) [s] in each of them at the start of the step.
             dt_s: [s] length of the step.
             robots: (G, 5) their robots, as of `RobotMotion`; velocities count where somebody makes way.
         """
         _walk_worlds(
-            going, self.is_scripted, self.first, self.records, self._scripts, times_s, dt_s,
+            active, self.is_scripted, self.first, self.records, self._scripts, times_s, dt_s,
             robots, self._walls, self._first_wall, _TWO,
         )  # fmt: skip
         records = self.records
         headings, present = records["heading"].tolist(), records["is_present"].tolist()
         postures = records["posture"].tolist()
         borders = self.first.tolist()
-        for number in going[self.is_scripted[going]].tolist():
+        for number in active[self.is_scripted[active]].tolist():
             first, end = borders[number], borders[number + 1]
             self._crowds[number].take_over(headings[first:end], present[first:end], postures[first:end])
-        self._follow(going)
+        self._follow(active)
 
-    def _follow(self, going: Numbers) -> None:
+    def _follow(self, active: Numbers) -> None:
         """Write down where those are now who walk by themselves."""
-        for number in going[~self.is_scripted[going]].tolist():
+        for number in active[~self.is_scripted[active]].tolist():
             own = self.records[self.first[number] : self.first[number + 1]]
             for record, person in zip(own, self._crowds[number].people, strict=True):
                 record["position"], record["velocity"] = person.position, person.velocity
@@ -93,7 +93,7 @@ class BatchWalks:
 
 @njit(cache=True, nogil=True)
 def _walk_worlds(
-    going: Numbers,
+    active: Numbers,
     is_scripted: NDArray[np.bool_],
     first: Numbers,
     walks: Records,
@@ -105,8 +105,8 @@ def _walk_worlds(
     first_wall: Numbers,
     two: float,
 ) -> None:
-    for row in range(len(going)):
-        world = going[row]
+    for row in range(len(active)):
+        world = active[row]
         if is_scripted[world]:
             robot = (robots[row, 0], robots[row, 1], robots[row, 2], robots[row, 3], robots[row, 4])
             own = walls[first_wall[world] : first_wall[world + 1]]
@@ -156,11 +156,11 @@ class BatchLimbs:
         self._unit_stride_m = np.array([gait.unit_stride_m for gait in gaits])
         self._parts = self._know_parts(worlds)
 
-    def move(self, going: Numbers, times_s: Array, dt_s: float) -> None:
+    def move(self, active: Numbers, times_s: Array, dt_s: float) -> None:
         """Advance gaits and postures of all in some worlds who walk by records, and have just walked on.
 
         Args:
-            going: (G,) numbers of the worlds.
+            active: (G,) numbers of the worlds.
             times_s: (G,) [s] in each of them at the start of the step.
             dt_s: [s] length of the step.
         """
@@ -169,15 +169,15 @@ class BatchLimbs:
         velocities, turns = records["velocity"].tolist(), records["turn_rate"].tolist()
         paces = [pace_m_s(velocity, turn) for velocity, turn in zip(velocities, turns, strict=True)]
         _move(
-            going[walks.is_scripted[going]], walks.first, records, self._stances, self._unit_stride_m,
-            self._builds.root_scale, np.array(paces), times_s[walks.is_scripted[going]], dt_s,
+            active[walks.is_scripted[active]], walks.first, records, self._stances, self._unit_stride_m,
+            self._builds.root_scale, np.array(paces), times_s[walks.is_scripted[active]], dt_s,
         )  # fmt: skip
 
-    def place(self, going: Numbers) -> None:
+    def place(self, active: Numbers) -> None:
         """Put the parts of all who are in some worlds where they are now, but of those who handle a thing."""
         walks = self._walks
         is_going = np.zeros(len(walks.is_scripted), np.bool_)
-        is_going[going] = True
+        is_going[active] = True
         who = np.flatnonzero(walks.records["is_present"] & is_going[walks.world])
         if self._handle_things:
             who = who[[not self._people[q].is_handling for q in who.tolist()]]
@@ -212,7 +212,7 @@ def _number_of(world: World, person: Person, part: str) -> int:
 
 @njit(cache=True, nogil=True)
 def _move(
-    going: Numbers,
+    active: Numbers,
     first: Numbers,
     walks: Records,
     stances: Stances,
@@ -222,8 +222,8 @@ def _move(
     times_s: Array,
     dt_s: float,
 ) -> None:
-    for row in range(len(going)):
-        for q in range(first[going[row]], first[going[row] + 1]):
+    for row in range(len(active)):
+        for q in range(first[active[row]], first[active[row] + 1]):
             walk = walks[q]
             stances[q].time_s = times_s[row] + dt_s
             if walk.has_moved and walk.is_present:

@@ -1,27 +1,30 @@
-"""The sonars of many robots, heard together."""
+"""What many robots sense together: their sonars, and how much of people they could see."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
+from numba import njit
 
-from peopleboy.sim.batch.joined_worlds import JoinedWorlds, cast_eyes, hear_worlds
+from peopleboy.sim.batch.joined_worlds import JoinedWorlds, slice_world
 from peopleboy.sim.batch.people import BatchWalks
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.geometry.pinhole import Matrix
-from peopleboy.sim.robot.sonar import read_echoes
+from peopleboy.sim.physics.solid_shapes import Array, cast_into
+from peopleboy.sim.robot.sonar import read_rings
 from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.truth.scenes import BYSTANDER, Records
-from peopleboy.sim.truth.visibility import look_at, stand_before
+from peopleboy.sim.truth.visibility import known_people, look_at_people
 from peopleboy.sim.world import World
 
 
-class Ears:
+class BatchSonar:
     """The sonar rings of B worlds, all of one kind.
 
     Args:
-        worlds: of a fleet.
+        worlds: of a batch.
         joined: where all is that they hear.
     """
 
@@ -29,31 +32,17 @@ class Ears:
         self._rings = [world.robot.ring for world in worlds]
         self._joined = joined
 
-    def hear(self, going: Numbers, poses: Matrix) -> Matrix:
-        """(G, 16) [m] readings in worlds of some numbers (G,), which are up to date.
-
-        Args:
-            going: numbers of the worlds.
-            poses: (G, 4, 4) of their robots.
-        """
-        ring = self._rings[0]
-        turns, shifts = poses[:, :3, :3].transpose(0, 2, 1), poses[:, None, :3, 3]
-        starts, ends = ring.starts @ turns + shifts, ring.ends @ turns + shifts
-        nearest_m, noise, chance = np.empty((3, len(going), len(ring.starts)))
-        hear_worlds(going, self._joined, starts, ends, ring.reach, nearest_m)
-        for row, number in enumerate(going.tolist()):
-            self._rings[number].draw_noise(noise[row], chance[row])
-        return read_echoes(nearest_m, noise, chance, ring.config)
-
-
-# Who could be seen from many robots, told together.
+    def read(self, active: Numbers, poses: Matrix) -> Matrix:
+        """(G, 16) [m] readings in some worlds (G,), which are up to date, of robots at poses (G, 4, 4)."""
+        rings = [self._rings[number] for number in active.tolist()]
+        return read_rings(rings, poses, partial(_cast, self._joined, active))
 
 
 class PeopleVisibility:
-    """Everybody in B worlds, before the thermal cameras of their robots, all of one kind.
+    """The people of B worlds before the thermal cameras of their robots, all of one kind.
 
     Args:
-        worlds: of a fleet.
+        worlds: of a batch.
         walks: where everybody goes.
         joined: where all is that may hide them.
     """
@@ -61,18 +50,15 @@ class PeopleVisibility:
     def __init__(self, worlds: Sequence[World], walks: BatchWalks, joined: JoinedWorlds) -> None:
         self._walks, self._joined = walks, joined
         self._camera = flat_geometry(worlds[0].config.robot.cameras, "thermal")
-        counts = [len(world.crowd.people) for world in worlds]
-        people = [person for world in worlds for person in world.crowd.people]
-        self._known = np.zeros(len(people), BYSTANDER)
-        self._known["id"] = [number for count in counts for number in range(1, count + 1)]
-        self._known["height_m"] = [person.config.height_m for person in people]
-        self._known["radius_m"] = [person.radius_m for person in people]
+        self._known = np.concatenate(
+            [np.zeros(0, BYSTANDER), *(known_people(world.crowd.people) for world in worlds)]
+        )
 
-    def see(self, going: Numbers, poses: Matrix, robots: Matrix) -> tuple[Records, Numbers]:
-        """Tell of everybody who is present in some worlds, as `bystanders` does of one.
+    def look(self, active: Numbers, poses: Matrix, robots: Matrix) -> tuple[Records, Numbers]:
+        """Return where all are who are present in some worlds, and how much of them could be seen.
 
         Args:
-            going: (G,) numbers of the worlds, rising, which are up to date.
+            active: (G,) numbers of the worlds, rising, which are up to date.
             poses: (G, 4, 4) of their robots.
             robots: (G, 3) [m, m, rad] the same.
 
@@ -81,22 +67,31 @@ class PeopleVisibility:
         """
         walks, records = self._walks, self._walks.records
         row = np.full(len(walks.is_scripted), -1)
-        row[going] = np.arange(len(going))
-        who = np.flatnonzero(records["is_present"] & (row[walks.world] >= 0))
-        row = row[walks.world[who]]
-        first = np.searchsorted(row, np.arange(len(going) + 1))
-        found = self._known[who]
-        if len(who) == 0:
-            return found, first
-        present = records[who]
-        found["position_m"], found["velocity_m_s"] = present["position"], present["velocity"]
-        found["heading_rad"] = present["heading"]
+        row[active] = np.arange(len(active))
+        present = np.flatnonzero(records["is_present"] & (row[walks.world] >= 0))
+        row = row[walks.world[present]]
+        found, walking = self._known[present], records[present]
+        found["position_m"], found["velocity_m_s"] = walking["position"], walking["velocity"]
+        found["heading_rad"] = walking["heading"]
+
+        def cast(looked: Numbers, starts: Matrix, ends: Matrix) -> Matrix:
+            return _cast(self._joined, active[row[looked]], starts, ends)
+
         cameras = (poses @ self._camera.robot_from_camera)[row]
-        uprights = stand_before(
-            found["position_m"], found["height_m"], found["radius_m"], self._camera, cameras
-        )
-        fraction = np.ones(uprights.points.shape[:2])
-        looked = np.flatnonzero(uprights.reaches_in)
-        cast_eyes(looked, going[row], self._joined, uprights.eyes, uprights.points, fraction)
-        look_at(found, robots[row], uprights, fraction)
-        return found, first
+        look_at_people(found, robots[row], self._camera, cameras, cast)
+        return found, np.searchsorted(row, np.arange(len(active) + 1))
+
+
+def _cast(joined: JoinedWorlds, worlds: Numbers, starts: Matrix, ends: Matrix) -> Matrix:
+    """(G, R) shares of their ways at which rays (G, R, 3) in worlds (G,) hit something besides the robots."""
+    fraction = np.ones(starts.shape[:2])
+    _cast_rays(worlds, joined, starts, ends, fraction)
+    return fraction
+
+
+@njit(cache=True, nogil=True)
+def _cast_rays(worlds: Numbers, joined: JoinedWorlds, starts: Array, ends: Array, fraction: Array) -> None:
+    part = np.empty(starts.shape[1], np.int64)
+    for row in range(len(worlds)):
+        bodies, solids = slice_world(joined, worlds[row])
+        cast_into(starts[row], ends[row], bodies, solids, joined.own[worlds[row]], fraction[row], part)

@@ -13,7 +13,7 @@ from peopleboy.sim.batch.cameras import BatchCameras, WorkerPool, shared_cameras
 from peopleboy.sim.batch.drive import BatchDrive
 from peopleboy.sim.batch.joined_worlds import join_worlds, refresh_worlds
 from peopleboy.sim.batch.people import BatchLimbs, BatchWalks
-from peopleboy.sim.batch.sensing import Ears, PeopleVisibility
+from peopleboy.sim.batch.sensing import BatchSonar, PeopleVisibility
 from peopleboy.sim.batch.snapshot import BatchImages, SeparateImages, Snapshot, take_snapshot
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.geometry.pinhole import Matrix
@@ -50,8 +50,8 @@ class KinematicBatch:
         self._control_s = 1.0 / worlds[0].config.control_hz
         self._walks = BatchWalks(worlds)
         self._drives = BatchDrive(worlds, self._walks, self._joined, states[0].vehicle)
-        self._ears = Ears(worlds, self._joined)
-        self._watch = PeopleVisibility(worlds, self._walks, self._joined)
+        self._sonar = BatchSonar(worlds, self._joined)
+        self._visibility = PeopleVisibility(worlds, self._walks, self._joined)
         self._moves_things = np.array([bool(world.config.place.movers) for world in worlds])
         self._names = [world.crowd.names for world in worlds]
         shows = worlds[0].has_images and any(self._names)
@@ -60,11 +60,11 @@ class KinematicBatch:
         makes_images = shared_cameras(worlds[0]) is not None
         self._eyes = BatchCameras(worlds, self._joined, wheels, workers) if makes_images else None
 
-    def step(self, going: Numbers, commands: Array) -> None:
+    def step(self, active: Numbers, commands: Array) -> None:
         """Step some of the worlds, as `World.step` does.
 
         Args:
-            going: (G,) numbers of the worlds, rising.
+            active: (G,) numbers of the worlds, rising.
             commands: (G, 2) speeds [m/s, rad/s].
 
         Raises:
@@ -72,86 +72,86 @@ class KinematicBatch:
         """
         if self._eyes is not None:
             self._eyes.finish()
-        self._drives.command(going, commands)
+        self._drives.command(active, commands)
         before = self._walks.records.copy()
-        self._walk(going, commands)
+        self._walk(active, commands)
         if self._limbs is not None:
-            self._limbs.place(going)
-        touched = self._drives.drive(going, before["position"])
+            self._limbs.place(active)
+        touched = self._drives.drive(active, before["position"])
         # Who was there and is there no more, or the other way round, or waits for the robot to make room.
         are_present = self._walks.records["is_present"]
         is_other = (are_present != before["is_present"]) | (are_present != self._drives.are_solid)
-        self._end(going, touched, is_other)
+        self._end(active, touched, is_other)
 
-    def _walk(self, going: Numbers, commands: Array) -> None:
+    def _walk(self, active: Numbers, commands: Array) -> None:
         """Let people walk on."""
-        for number, command in zip(going.tolist(), commands.tolist(), strict=True):
+        for number, command in zip(active.tolist(), commands.tolist(), strict=True):
             if not self._walks.is_scripted[number]:
                 self._worlds[number].begin_step(*command)
-        times_s = self._times(going)
-        self._walks.step(going, times_s, self._control_s, self._robots(going))
+        times_s = self._times(active)
+        self._walks.step(active, times_s, self._control_s, self._robots(active))
         if self._limbs is not None:
-            self._limbs.move(going, times_s, self._control_s)
+            self._limbs.move(active, times_s, self._control_s)
 
-    def _robots(self, going: Numbers) -> Array:
+    def _robots(self, active: Numbers) -> Array:
         """(G, 5) where robots are and how they move, as people see them, and how wide they are."""
-        robots = np.zeros((len(going), 5))
-        robots[:, :2], robots[:, 4] = self._joined.bodies.places[self._own[going], :2], RADIUS_M
-        for row in np.flatnonzero(self._walks.makes_way[going]).tolist():
-            robots[row, 2:4] = self._worlds[going[row]].robot_state().velocity
+        robots = np.zeros((len(active), 5))
+        robots[:, :2], robots[:, 4] = self._joined.bodies.places[self._own[active], :2], RADIUS_M
+        for row in np.flatnonzero(self._walks.makes_way[active]).tolist():
+            robots[row, 2:4] = self._worlds[active[row]].robot_state().velocity
         return robots
 
-    def _end(self, going: Numbers, touched: NDArray[np.bool_], is_other: NDArray[np.bool_]) -> None:
+    def _end(self, active: Numbers, touched: NDArray[np.bool_], is_other: NDArray[np.bool_]) -> None:
         """Tell worlds what came of the step, by which bodies were touched and which people come or go."""
         changes, any_touched = self._moves_things.copy(), bool(touched.any())
         changes[self._walks.world[is_other]] = True
-        for number, is_changed in zip(going.tolist(), changes[going].tolist(), strict=True):
+        for number, is_changed in zip(active.tolist(), changes[active].tolist(), strict=True):
             world, names = self._worlds[number], set[str]()
             if any_touched:
                 first, end = self._joined.first_body[number : number + 2]
                 names = _kinematic(world).names_of(touched[first:end])
             world.end_step(names, is_settled=not is_changed)
 
-    def look(self, going: Numbers) -> Snapshot:
+    def look(self, active: Numbers) -> Snapshot:
         """Sense and tell the truth in some of the worlds, as `World.sense` and `World.scene` do.
 
         Args:
-            going: (G,) numbers of the worlds, rising.
+            active: (G,) numbers of the worlds, rising.
         """
-        places = self._joined.bodies.places[self._own[going]]
+        places = self._joined.bodies.places[self._own[active]]
         poses = pose_matrices(places[:, :3], places[:, 3:])
-        refresh_worlds(going, self._joined)
-        scenes = np.zeros(len(going), SCENE)
-        scenes["time_s"], scenes["robot"] = self._times(going), _planar(poses)
-        scenes["velocity"] = self._speeds(going, poses)
-        pictures = self._take_images(going, poses, scenes["velocity"][:, 1])
-        sonar_m = self._ears.hear(going, poses)
-        people, first = self._watch.see(going, poses, scenes["robot"])
+        refresh_worlds(active, self._joined)
+        scenes = np.zeros(len(active), SCENE)
+        scenes["time_s"], scenes["robot"] = self._times(active), _planar(poses)
+        scenes["velocity"] = self._speeds(active, poses)
+        pictures = self._take_images(active, poses, scenes["velocity"][:, 1])
+        sonar_m = self._sonar.read(active, poses)
+        people, first = self._visibility.look(active, poses, scenes["robot"])
         scenes["first"], scenes["end"] = first[:-1], first[1:]
-        contacts = tuple([self._worlds[number].touching for number in going.tolist()])
+        contacts = tuple([self._worlds[number].touching for number in active.tolist()])
         scenes["is_touching"] = [bool(names) for names in contacts]
-        names = tuple([self._names[number] for number in going.tolist()])
+        names = tuple([self._names[number] for number in active.tolist()])
         return Snapshot(
-            numbers=going,
+            numbers=active,
             sonar_m=sonar_m,
-            odometry=self._drives.gears.odometry[going],
-            wheel_speeds_m_s=self._joined.motion.speeds[going] * WHEEL_RADIUS_M,
+            odometry=self._drives.gears.odometry[active],
+            wheel_speeds_m_s=self._joined.motion.speeds[active] * WHEEL_RADIUS_M,
             scenes=Scenes(scenes, people, names, contacts),
             pictures=pictures,
         )
 
-    def _take_images(self, going: Numbers, poses: Matrix, turn_rad_s: Array) -> BatchImages | None:
+    def _take_images(self, active: Numbers, poses: Matrix, turn_rad_s: Array) -> BatchImages | None:
         if self._eyes is not None:
-            return self._eyes.look(going, poses, turn_rad_s)
-        worlds = [self._worlds[number] for number in going.tolist()]
+            return self._eyes.look(active, poses, turn_rad_s)
+        worlds = [self._worlds[number] for number in active.tolist()]
         return SeparateImages([world.take_images() for world in worlds]) if worlds[0].has_images else None
 
-    def _times(self, going: Numbers) -> Array:
-        return np.array([self._worlds[number].time_s for number in going.tolist()])
+    def _times(self, active: Numbers) -> Array:
+        return np.array([self._worlds[number].time_s for number in active.tolist()])
 
-    def _speeds(self, going: Numbers, poses: Matrix) -> Array:
+    def _speeds(self, active: Numbers, poses: Matrix) -> Array:
         """(G, 2) true forward speed [m/s] and turn rate [rad/s] of each robot."""
-        velocity = self._joined.motion.velocity[going]
+        velocity = self._joined.motion.velocity[active]
         linear = velocity.copy()
         linear[:, 2] = 0.0
         ahead = (linear[:, None, :] @ poses[:, :3, 0][:, :, None])[:, 0, 0]
@@ -196,11 +196,11 @@ class WorldBatch:
             for group in kinds.values()
         ]
 
-    def step(self, going: Numbers, commands: Array) -> list[Snapshot]:
+    def step(self, active: Numbers, commands: Array) -> list[Snapshot]:
         """Step some of the worlds, and take_snapshot what is in them then.
 
         Args:
-            going: (G,) numbers of the worlds, rising.
+            active: (G,) numbers of the worlds, rising.
             commands: (G, 2) speeds [m/s, rad/s].
 
         Returns:
@@ -211,12 +211,12 @@ class WorldBatch:
         """
         found = []
         for number in self._alone:
-            for k in np.flatnonzero(going == number).tolist():
+            for k in np.flatnonzero(active == number).tolist():
                 world = self._worlds[number]
                 world.step(*commands[k].tolist())
-                found.append(take_snapshot(world)._replace(numbers=going[k : k + 1]))
+                found.append(take_snapshot(world)._replace(numbers=active[k : k + 1]))
         row = np.full(len(self._worlds), -1)
-        row[going] = np.arange(len(going))
+        row[active] = np.arange(len(active))
         for fleet, group in self._fleets:
             own = np.flatnonzero(row[group] >= 0)
             if len(own):

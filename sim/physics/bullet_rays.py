@@ -1,4 +1,4 @@
-"""What rays of a PyBullet world meet without asking PyBullet: bodies of given shapes, and boxes round the rest."""
+"""What rays meet without asking PyBullet: bodies of given shapes, and boxes round the rest."""
 
 from __future__ import annotations
 

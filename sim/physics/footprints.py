@@ -1,4 +1,4 @@
-"""Footprints of shapes between two heights, convex outlines with a radius, and how deep they overlap a box."""
+"""Footprints of shapes between two heights: convex outlines with a radius, and their overlap with a box."""
 
 from __future__ import annotations
 

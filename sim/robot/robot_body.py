@@ -1,11 +1,14 @@
-"""The robot's body: the file that describes it, its wheels, its outline on the floor."""
+"""The robot's body: the file that describes it, its wheels, outline and sonars, and its materials."""
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
 
+import numpy as np
+
 from peopleboy.sim.geometry.planar import Planar
+from peopleboy.sim.shapes.materials import Material
 
 NAME = "robot"
 URDF = Path(__file__).with_name("peoplebot.urdf")
@@ -29,3 +32,38 @@ def outline_gap(pose: Planar, point_m: tuple[float, float]) -> float:
     x, y = point_m[0] - pose.x, point_m[1] - pose.y
     ahead, aside = cos * x + sin * y, cos * y - sin * x
     return math.hypot(max(_REAR_M - ahead, ahead - _FRONT_M, 0.0), max(abs(aside) - _HALF_WIDTH_M, 0.0))
+
+
+# x, y [m] and angle [deg] of each sonar of the lower rings: ARIA's parameter file peoplebot-sh.p, SonarUnit
+# 0..15 (its 16..31, up on the deck, are left out).
+_UNITS = np.array(
+    [
+        (0.069, 0.136, 90.0),
+        (0.114, 0.119, 50.0),
+        (0.148, 0.078, 30.0),
+        (0.166, 0.027, 10.0),
+        (0.166, -0.027, -10.0),
+        (0.148, -0.078, -30.0),
+        (0.114, -0.119, -50.0),
+        (0.069, -0.136, -90.0),
+        (-0.157, -0.136, -90.0),
+        (-0.203, -0.119, -130.0),
+        (-0.237, -0.078, -150.0),
+        (-0.255, -0.027, -170.0),
+        (-0.255, 0.027, 170.0),
+        (-0.237, 0.078, 150.0),
+        (-0.203, 0.119, 130.0),
+        (-0.157, 0.136, 90.0),
+    ]
+)
+SONAR_POSITION_M = _UNITS[:, :2].copy()
+SONAR_ANGLE_RAD = np.radians(_UNITS[:, 2])
+
+
+_BODY = Material(temperature_c=26.0, emissivity=0.9, variation_k=0.8, variation_m=0.4, rgb=(0.45, 0.04, 0.05))
+_WHEEL = Material(temperature_c=22.0, rgb=(0.04, 0.04, 0.045))
+
+
+def robot_material(link_name: str) -> Material:
+    """Return the material of one link of the robot: warm electronics in the body, cool wheels."""
+    return _WHEEL if "wheel" in link_name or "caster" in link_name else _BODY

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.physics.physics import Physics
+from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, SONAR_POSITION_M
 from peopleboy.sim.robot.robot_config import SonarConfig
-from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD, SONAR_POSITION_M
 
 CastRays: TypeAlias = Callable[[Matrix, Matrix], Matrix]
 """Takes starts and ends (G, R, 3) [m] of rays, gives the shares (G, R) of their ways at which they hit."""
@@ -62,7 +62,8 @@ class SonarRing:
 
     def read(self, world_from_robot: Matrix) -> NDArray[np.float64]:
         """Read all sonars once: (16,) [m], from a pose (4, 4) of the robot; see `read_rings`."""
-        return read_rings([self], world_from_robot[None], self._cast)[0]
+        readings: Matrix = read_rings([self], world_from_robot[None], self._cast)[0]
+        return readings
 
     def _cast(self, starts: Matrix, ends: Matrix) -> Matrix:
         return self._physics.cast_rays(starts[0], ends[0], ignore=self._owner)[0][None]

@@ -15,7 +15,7 @@ from peopleboy.behaviours.command import Command
 from peopleboy.behaviours.following.follow_person import FollowPerson
 from peopleboy.behaviours.percept import Percept, SeenPerson
 from peopleboy.behaviours.registry import make_behaviour
-from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD
+from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD
 
 TINY = """
 name: tiny

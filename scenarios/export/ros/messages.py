@@ -27,9 +27,8 @@ from peopleboy.sim.cameras.thermal import encode_16bit
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.geometry.planar import Planar
-from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
+from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, SONAR_POSITION_M, WHEEL_DISTANCE_M
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD, SONAR_POSITION_M
 from peopleboy.sim.truth.truth import Box, Truth
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import FloorPlace, Status, Track, confirmed

@@ -9,8 +9,7 @@ from peopleboy.behaviours.percept import Percept
 from peopleboy.behaviours.safety.guard import Guarded
 from peopleboy.behaviours.scripted import Scripted
 from peopleboy.scenarios.files.load import parse_scenario
-from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M, outline_gap
-from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD
+from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, WHEEL_DISTANCE_M, outline_gap
 from peopleboy.sim.world import World
 from tests.helpers.some_of import some_of
 

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.random_streams import stream
+from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, SONAR_POSITION_M
 from peopleboy.sim.robot.robot_config import SonarConfig
 from peopleboy.sim.robot.sonar import SonarRing, cone_rays
-from peopleboy.sim.robot.sonar_units import SONAR_ANGLE_RAD, SONAR_POSITION_M
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 EXACT = SonarConfig(noise_m=0.0, drop_out=0.0)
