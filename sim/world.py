@@ -36,7 +36,7 @@ from peopleboy.sim.robot.robot_body import NAME as ROBOT
 from peopleboy.sim.robot.robot_body import RADIUS_M, robot_material
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shape_table import ShapeTable, make_shape_table
-from peopleboy.sim.truth.scenes import SCENE, ImageFreeTruth, Scenes
+from peopleboy.sim.truth.scenes import SCENE, ImageFreeTruth, Records, Scenes
 from peopleboy.sim.truth.truth import BORDER, Box, Truth
 from peopleboy.sim.truth.truth_maker import TruthMaker
 from peopleboy.sim.truth.visibility import known_people, look_at_people

@@ -50,7 +50,7 @@ from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Matrix, transform
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.shapes.shapes import Vector
-from peopleboy.sim.truth.things import ThingTruth
+from peopleboy.sim.truth.truth import ThingTruth
 
 APPLICATION = "peopleboy"
 

@@ -13,7 +13,7 @@ from peopleboy.scenarios.run_folder.image_files import millimetres, write_png
 from peopleboy.scenarios.run_folder.tables import Row, write_table
 from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig
 from peopleboy.sim.truth.backgrounds import Backgrounds
-from peopleboy.sim.truth.things import ThingTruth
+from peopleboy.sim.truth.truth import ThingTruth
 
 _EDGES = ("left_px", "top_px", "width_px", "height_px")
 

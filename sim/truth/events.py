@@ -7,8 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from peopleboy.sim.shapes.shapes import Vector
-from peopleboy.sim.truth.things import ThingTruth
-from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth
+from peopleboy.sim.truth.truth import BORDER, PersonTruth, ThingTruth, Truth
 
 _Told = tuple[str, str, str]  # what, to whom, by whom
 

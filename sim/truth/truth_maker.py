@@ -20,17 +20,19 @@ from peopleboy.sim.places.moving import Mover
 from peopleboy.sim.rendering.cover import Cover
 from peopleboy.sim.rendering.sight import Seen
 from peopleboy.sim.shapes.materials import Material
-from peopleboy.sim.truth.things import NOTHING, Owners, things_truth
 from peopleboy.sim.truth.truth import (
     BORDER,
+    NOTHING,
     Box,
     Edges,
+    Owners,
     PersonTruth,
     Truth,
     box_between,
     box_of_pixels,
     is_counted,
     is_cut_off,
+    things_truth,
 )
 
 A = TypeVar("A", bound=NDArray[Any])

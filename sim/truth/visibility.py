@@ -188,8 +188,9 @@ def look_at_people(
     fraction = np.ones(uprights.points.shape[:2])
     in_view = np.flatnonzero(uprights.reaches_in)
     if len(in_view):
-        starts = uprights.eyes[in_view][:, None].repeat(fraction.shape[1], axis=1)
-        fraction[in_view] = cast(in_view, starts, uprights.points[in_view])
+        ends = uprights.points[in_view]
+        starts = uprights.eyes[in_view].repeat(ends.shape[1], axis=0).reshape(ends.shape)
+        fraction[in_view] = cast(in_view, starts, ends)
     gaps = people["position_m"] - robots[:, :2]
     across, up = gaps[:, 0].tolist(), gaps[:, 1].tolist()
     people["distance_m"] = list(map(math.hypot, across, up))

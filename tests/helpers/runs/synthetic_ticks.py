@@ -19,8 +19,7 @@ from peopleboy.sim.observation import Observation
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.waypoint import Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
-from peopleboy.sim.truth.things import Owners
-from peopleboy.sim.truth.truth import PersonTruth, Truth
+from peopleboy.sim.truth.truth import Owners, PersonTruth, Truth
 from peopleboy.tracker.thermal.ellipse import Ellipse
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.thermal.particles import Particles
