@@ -21,8 +21,7 @@ from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.on_demand import OnDemand
-from peopleboy.sim.people.crowd import Crowd
-from peopleboy.sim.people.handling import Handling
+from peopleboy.sim.people.crowd import Crowd, Handling
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.physics.physics import Physics, open_physics
 from peopleboy.sim.places.painting.paint_place import paint_place

@@ -14,8 +14,8 @@ from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.narrow import is_number, narrowed
 from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.people.appearance.traits import usual_clothes
 from peopleboy.sim.people.body.clothes import Clothes, random_clothes
-from peopleboy.sim.people.looks.wardrobe import usual_clothes
 from peopleboy.sim.people.person_config import SPEEDS_M_S, PersonConfig
 from peopleboy.sim.places.place import Fixture, Place, air_of
 from peopleboy.sim.robot.robot_config import RobotConfig

@@ -44,7 +44,7 @@ from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.kinds import image_folders, with_boxes
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
-from peopleboy.sim.people.body.joints import JOINT_NAMES
+from peopleboy.sim.people.body.skeleton import JOINT_NAMES
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 

@@ -32,7 +32,7 @@ from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.run_files import read_table
 from peopleboy.scenarios.run_folder.tables import TRUTH, Row
 from peopleboy.sim.cameras.kinds import kind_of
-from peopleboy.sim.people.body.joints import JOINT_NAMES
+from peopleboy.sim.people.body.skeleton import JOINT_NAMES
 from peopleboy.sim.truth.truth import Box
 
 EVERYTHING: Final = "all"

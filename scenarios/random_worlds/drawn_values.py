@@ -12,7 +12,7 @@ import numpy as np
 from peopleboy.scenarios.files.cast_people import make_config
 from peopleboy.scenarios.files.schema.people import PersonSpec
 from peopleboy.scenarios.random_worlds.distribution import RANGES, SHARES, Range
-from peopleboy.sim.people.looks.finish_person import draw_bearing, looks_stream
+from peopleboy.sim.people.appearance.finisher import draw_bearing, looks_stream
 
 Values = dict[str, list[float] | list[str]]
 """By name of what was drawn: a value, or as many as there are."""

@@ -15,8 +15,8 @@ from peopleboy.sim.geometry.poses import quaternions
 from peopleboy.sim.people.body.placing import carry, put_on_floor
 from peopleboy.sim.people.body.stance import STANCE, Builds, Stances, hold, move_limbs
 from peopleboy.sim.people.person import Person, pace_m_s
-from peopleboy.sim.people.scripted.script import WALK, Records, Script, Scripts, join_records, join_scripts
-from peopleboy.sim.people.scripted.walk_scripts import walk_on
+from peopleboy.sim.people.walking.script import WALK, Records, Script, Scripts, join_records, join_scripts
+from peopleboy.sim.people.walking.walk_kernels import walk_on
 from peopleboy.sim.physics.kinematic import Kinematic
 from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.shapes.joined_tables import Numbers, ends

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.sim.people.appearance.finisher import Finisher
 from peopleboy.sim.people.body.anthropometry import HAND_LENGTH, BodySize, measure
 from peopleboy.sim.people.body.body_shapes import ARM_PARTS as _LIMBS
 from peopleboy.sim.people.body.body_shapes import (
@@ -23,25 +24,27 @@ from peopleboy.sim.people.body.body_shapes import (
 )
 from peopleboy.sim.people.body.clothes import dress
 from peopleboy.sim.people.body.gait import Gait
-from peopleboy.sim.people.body.gaze import Gaze
-from peopleboy.sim.people.body.joints import joint_points
 from peopleboy.sim.people.body.manner import USUAL, held_arms
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
-from peopleboy.sim.people.body.placing import Frame, carry, put_on_floor
+from peopleboy.sim.people.body.placing import (
+    Frame,
+    arm_length,
+    carry,
+    least_stoop,
+    put_on_floor,
+    stoop,
+    turn_arm,
+)
 from peopleboy.sim.people.body.postures import Posture
-from peopleboy.sim.people.body.reaching import arm_length, least_stoop, stoop, turn_arm
-from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, joint_offsets
-from peopleboy.sim.people.body.stance import POSTURES, STANCE, Builds, Stances, hold, move_limbs
-from peopleboy.sim.people.looks.finish_person import Finisher
+from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, joint_offsets, joint_points
+from peopleboy.sim.people.body.stance import POSTURES, STANCE, Builds, Gaze, Stances, hold, move_limbs
+from peopleboy.sim.people.conducts import Situation
+from peopleboy.sim.people.mind import Mind
 from peopleboy.sim.people.person_config import Arms, PersonConfig
-from peopleboy.sim.people.reacting.encounter import Situation
-from peopleboy.sim.people.reacting.mind import Mind
-from peopleboy.sim.people.timetable import timetable
+from peopleboy.sim.people.walking.path import Waypoint
 from peopleboy.sim.people.walking.social_force import PlanarState
-from peopleboy.sim.people.walking.surroundings import Present, Surroundings
-from peopleboy.sim.people.walking.walk import Walker
-from peopleboy.sim.people.walking.waypoint import Waypoint
-from peopleboy.sim.people.walking.wish import AS_PLANNED, Wish
+from peopleboy.sim.people.walking.surroundings import AS_PLANNED, Present, Surroundings, Wish
+from peopleboy.sim.people.walking.walker import Walker, timetable
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import Part
 

@@ -11,8 +11,8 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.people.body.anthropometry import Build, Sex
 from peopleboy.sim.people.body.clothes import Clothes
 from peopleboy.sim.people.body.postures import Posture
-from peopleboy.sim.people.reacting.reaction import FROM_M, Lead, Reaction
-from peopleboy.sim.people.walking.waypoint import Waypoint
+from peopleboy.sim.people.reaction import FROM_M, Lead, Reaction
+from peopleboy.sim.people.walking.path import Waypoint
 
 Arms = Literal["swinging", "crossed", "raised"]
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.drawing.labels import Labels
 from peopleboy.sim.people.person import PersonConfig
 from peopleboy.sim.people.walking.surroundings import ALONE
-from peopleboy.sim.people.walking.walk import Walker
+from peopleboy.sim.people.walking.walker import Walker
 
 _STEP_S = 0.05
 _MARK_EVERY_S = 5.0

@@ -14,7 +14,7 @@ from peopleboy.scenarios.files.cast_people import make_way
 from peopleboy.scenarios.files.schema.people import PersonSpec
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.walking.surroundings import ALONE
-from peopleboy.sim.people.walking.walk import Walker
+from peopleboy.sim.people.walking.walker import Walker
 from peopleboy.sim.places.moving import Action, Mover
 from peopleboy.sim.places.place import HEAD_M, STEP_M, Place
 from peopleboy.sim.places.solid_boxes import Boxes, boxes_of, overlaps

@@ -9,7 +9,7 @@ from pydantic import Field
 from peopleboy.scenarios.files.schema.reactions import LeadSpec, ReactionSpec
 from peopleboy.scenarios.files.schema.values import Colour, Face, Name, Point, Seconds, Strict
 from peopleboy.sim.people.body.clothes import BOTTOMS, HAIR, SHOES, TOPS
-from peopleboy.sim.people.reacting.reaction import FROM_M
+from peopleboy.sim.people.reaction import FROM_M
 
 
 class ClothesSpec(Strict):

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import ConfigDict, Field, model_validator
 
 from peopleboy.scenarios.files.schema.values import Strict
-from peopleboy.sim.people.reacting.reaction import FROM_M, KEEP_M, LASTS_S, USUAL, WORDS, Lead, Way
+from peopleboy.sim.people.reaction import FROM_M, KEEP_M, LASTS_S, USUAL, WORDS, Lead, Way
 
 
 class ReactionSpec(Strict):

@@ -2,19 +2,114 @@
 
 from __future__ import annotations
 
+import functools
+import json
 import math
+from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
+from typing import Final
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from peopleboy.sim.people.body.body_shapes import SIDES, sole_points
-from peopleboy.sim.people.body.gait_tables import AMPLITUDES, PHASES, gait_pose
 from peopleboy.sim.people.body.manner import USUAL, Manner, bearing
-from peopleboy.sim.people.body.motion_capture import CLIP_LEG_M, fourier_basis, load_walking_clip
 from peopleboy.sim.people.body.postures import standing_rotations
 from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, BONES, lateral
+
+# Where a gait is tabulated, and how its tables are looked up (numba kernels).
+
+PHASES: Final = 48
+AMPLITUDES: Final = np.array([0.0, 0.15, 0.3, 0.5, 0.75, 1.0, 1.2, 1.4])
+_FULL_SPEED_M_S = 1.1  # a stride as long as the clip's, for a leg as long as the clip's
+
+
+@njit(cache=True, nogil=True)
+def amplitude_of(speed_m_s: float, root_scale: float) -> float:
+    """Length of the stride against the clip's at a walking speed, for legs of a scale of this root.
+
+    It grows with the root of speed, as cadence does.
+    """
+    return min(math.sqrt(abs(speed_m_s) / (_FULL_SPEED_M_S * root_scale)), 1.4)
+
+
+@njit(cache=True, nogil=True)
+def gait_pose(
+    rotations: Array, sway: Array, phase: float, amplitude: float, turns: Array
+) -> tuple[float, float]:
+    """Look a pose up in tables (A, P, 17, 3) and (A, P, 3) of `Gait`, at a phase [cycles].
+
+    Returns:
+        The pelvis' offset [m] to the front and to the left; `turns` (17, 3) gets the rotation vectors.
+    """
+    last = len(AMPLITUDES) - 1
+    i = last
+    while i > 0 and amplitude < AMPLITUDES[i]:
+        i -= 1
+    row = float(i)
+    if i < last:
+        row = 1.0 / (AMPLITUDES[i + 1] - AMPLITUDES[i]) * (amplitude - AMPLITUDES[i]) + i
+    column = (phase % 1.0) * PHASES
+    i, j = min(int(row), last - 1), int(column) % PHASES
+    di, dj, following = row - i, column - int(column), (j + 1) % PHASES
+    turns[:] = 0.0
+    front = left = 0.0
+    for corner in range(4):
+        a, p = i + corner // 2, following if corner % 2 else j
+        weight = (di if corner // 2 else 1.0 - di) * (dj if corner % 2 else 1.0 - dj)
+        front += weight * sway[a, p, 0]
+        left += weight * sway[a, p, 1]
+        for bone in range(turns.shape[0]):
+            for axis in range(3):
+                turns[bone, axis] += weight * rotations[a, p, bone, axis]
+    return front, left
+
+
+# One cycle of walking, motion-captured, in our frames and as smooth functions of the gait's phase.
+
+_CLIP = Path(__file__).with_name("walking_clip.json")
+_HARMONICS = 5
+# Thigh and shin of the clip's figure [m]: DeepMimic's humanoid.
+CLIP_LEG_M = 0.421546 + 0.409870
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WalkingClip:
+    """One cycle of walking as Fourier series in the phase; phase 0 is about the right heel's strike.
+
+    Attributes:
+        rotations: (2K+1, 17, 3) [rad] coefficients of 1, cos, sin, cos 2, ... of the bones' rotation vectors.
+        sway: (2K+1, 3) [m] the same of the pelvis' deviation from a steady walk; x front, y left, z up.
+        stride_m: [m] travel in a cycle.
+    """
+
+    rotations: Array
+    sway: Array
+    stride_m: float
+
+
+def fourier_basis(phase: Array) -> Array:
+    """(..., 2K+1) the functions 1, cos, sin, cos 2, sin 2, ... at phases given in cycles."""
+    angles = 2.0 * math.pi * np.asarray(phase)[..., None] * np.arange(1, _HARMONICS + 1)
+    waves = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    return np.concatenate([np.ones((*waves.shape[:-2], 1)), waves.reshape(*waves.shape[:-2], -1)], axis=-1)
+
+
+@functools.cache
+def load_walking_clip() -> WalkingClip:
+    """Read what five harmonics make of the clip, which tests fit anew.
+
+    Source: humanoid3d_walk.txt of pybullet_data, which is DeepMimic's (Peng et al., 2018; MIT licence).
+    """
+    data = json.loads(_CLIP.read_text("utf-8"))
+    rotations, sway = np.array(data["rotations"]), np.array(data["sway"])
+    for array in (rotations, sway):
+        array.setflags(write=False)
+    return WalkingClip(rotations=rotations, sway=sway, stride_m=data["stride_m"])
+
 
 Array = NDArray[np.float64]
 

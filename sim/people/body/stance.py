@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.people.body.gait_tables import amplitude_of, gait_pose
-from peopleboy.sim.people.body.gaze import SHARES as GAZE_SHARES
+from peopleboy.sim.people.body.gait import amplitude_of, gait_pose
 from peopleboy.sim.people.body.postures import (
     RISE_S,
     WAVE_HZ,
@@ -20,6 +20,31 @@ from peopleboy.sim.people.body.postures import (
     posture_rotations,
 )
 from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, BONES
+
+# Where somebody looks: how far head, neck and chest are turned for it.
+
+# How far round one looks without turning the body, how fast, and what share of it which bone turns: ours.
+_FARTHEST_RAD: Final = math.radians(100.0)
+_RATE_RAD_S: Final = math.radians(200.0)
+GAZE_SHARES: Final[Mapping[str, float]] = {"chest": 0.2, "neck": 0.3, "head": 0.5}
+_BEHIND_RAD: Final = math.radians(150.0)  # beyond which one keeps looking over the same shoulder
+
+
+class Gaze:
+    """How far a person looks to the left [rad], which follows what is to be looked at."""
+
+    def __init__(self) -> None:
+        self.left_rad = 0.0
+
+    def update(self, dt_s: float, bearing_rad: float | None) -> None:
+        """Turn towards a bearing from the body's front, positive left, or back to the front for None."""
+        off = 0.0 if bearing_rad is None else math.remainder(bearing_rad, math.tau)
+        if abs(off) > _BEHIND_RAD and self.left_rad:
+            off = math.copysign(off, self.left_rad)
+        wanted = min(max(off, -_FARTHEST_RAD), _FARTHEST_RAD)
+        step = _RATE_RAD_S * dt_s
+        self.left_rad += min(max(wanted - self.left_rad, -step), step)
+
 
 Array = NDArray[np.float64]
 Stances = NDArray[Any]

@@ -10,6 +10,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.sim.people.body.postures import Posture
+
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 
@@ -125,3 +127,58 @@ def abreast(path: Sequence[Point], offset_m: float) -> tuple[Point, ...]:
         shifted.append(points[i] + offset_m * (left[i - 1] + left[i]) / (1.0 + cosine))
     shifted.append(points[-1] + offset_m * left[-1])
     return tuple((float(x), float(y)) for x, y in shifted)
+
+
+# A place of a script: where to go, and what to do there.
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Waypoint:
+    """A place to go to.
+
+    Attributes:
+        at_m: (x, y) [m] in the world frame.
+        speed_m_s: [m/s] on the way to it.
+        pause_s: [s] waits there.
+        face: while pausing, turn to a point, to "robot", or to a person by name; None keeps the direction.
+        posture: while pausing.
+        until_robot_within_m: [m] the pause lasts until the robot is so near, too; None does not wait for it.
+        waits_at_most_s: [s] after the pause, for the robot.
+    """
+
+    at_m: tuple[float, float]
+    speed_m_s: float = 1.2
+    pause_s: float = 0.0
+    face: tuple[float, float] | str | None = None
+    posture: Posture = Posture.STANDING
+    until_robot_within_m: float | None = None
+    waits_at_most_s: float = 60.0
+
+
+# Whether walls and things stand between two points of the floor.
+
+
+def is_free(start: Array, end: Array, walls: Array, margin_m: float = 0.0) -> bool:
+    """Tell whether a straight line keeps clear of all rectangles.
+
+    One in which the line starts is passed over, such as the chair that somebody sits on, and to one that is
+    nearer to the start than the margin the line may come as near as it is at the start.
+
+    Args:
+        start: (2,) [m].
+        end: (2,) [m].
+        walls: (K, 4) [m] min_x, min_y, max_x, max_y.
+        margin_m: [m] clearance to keep.
+    """
+    if not len(walls):
+        return True
+    low, high = walls[:, :2], walls[:, 2:]
+    gaps = np.linalg.norm(np.maximum(np.maximum(low - start, start - high), 0.0), axis=1)  # (K,)
+    margin = np.minimum(margin_m, 0.9 * gaps)[:, None]
+    way = end - start
+    safe = np.where(np.abs(way) < 1e-9, 1e-9, way)
+    near, far = (low - margin - start) / safe, (high + margin - start) / safe  # (K, 2)
+    first = np.minimum(near, far).max(axis=1)
+    last = np.maximum(near, far).min(axis=1)
+    is_hit = (gaps > 0.0) & (np.maximum(first, 0.0) < np.minimum(last, 1.0))
+    return not bool(is_hit.any())

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.people.body.joints import JOINT_NAMES
+from peopleboy.sim.people.body.skeleton import JOINT_NAMES
 from peopleboy.sim.people.person import Person, PlanarState
 from peopleboy.sim.people.walking.surroundings import NOBODY
 from tests.helpers.worlds.walkers import NO_WALLS

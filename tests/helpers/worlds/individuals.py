@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from peopleboy.sim.people.looks.finish_person import Finisher
+from peopleboy.sim.people.appearance.finisher import Finisher
 from peopleboy.sim.people.person import Person, PersonConfig, Waypoint
 from peopleboy.sim.random_streams import stream
 

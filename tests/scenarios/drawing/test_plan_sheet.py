@@ -17,7 +17,7 @@ from peopleboy.scenarios.drawing.plan.plan import draw_plan
 from peopleboy.scenarios.drawing.plan.sheet import MARGIN_M, lay_out, sections
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.people.person import PersonConfig
-from peopleboy.sim.people.walking.walk import Waypoint
+from peopleboy.sim.people.walking.walker import Waypoint
 
 
 @given(st.floats(2.0, 100.0), st.floats(2.0, 20.0))

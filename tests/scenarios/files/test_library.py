@@ -16,7 +16,7 @@ from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.schema.robot import RobotSpec
 from peopleboy.scenarios.files.schema.scenario_file import json_schema
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.people.timetable import timetable
+from peopleboy.sim.people.walking.walker import timetable
 from tests.helpers.calls.refused import refused
 from tests.helpers.some_of import some_of
 

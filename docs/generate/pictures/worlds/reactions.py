@@ -19,7 +19,7 @@ from peopleboy.scenarios.drawing.plan.place import draw_floor, draw_walls
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.running.run import RunOptions, run
-from peopleboy.sim.people.body.joints import JOINT_NAMES
+from peopleboy.sim.people.body.skeleton import JOINT_NAMES
 
 SCENES: Final = {
     "reacts_ignores": "ignores",

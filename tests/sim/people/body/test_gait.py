@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from peopleboy.sim.people.body.body_shapes import sole_points
-from peopleboy.sim.people.body.motion_capture import fourier_basis, load_walking_clip
+from peopleboy.sim.people.body.gait import fourier_basis, load_walking_clip
 from peopleboy.sim.people.body.skeleton import mirror
 from peopleboy.sim.people.person import Posture, Waypoint
 from tests.helpers.worlds.walkers import make_person, settle, walk

@@ -1,14 +1,12 @@
 import numpy as np
 import pytest
 
+from peopleboy.sim.people.appearance.finisher import Finisher
 from peopleboy.sim.people.body.anthropometry import measure
 from peopleboy.sim.people.body.body_shapes import sole_points
-from peopleboy.sim.people.body.gait import Gait
-from peopleboy.sim.people.body.gait_tables import amplitude_of
-from peopleboy.sim.people.body.joints import JOINT_NAMES
+from peopleboy.sim.people.body.gait import Gait, amplitude_of
 from peopleboy.sim.people.body.manner import Manner, draw_manner
-from peopleboy.sim.people.body.skeleton import BONE_INDEX, joint_offsets, mirror, place_bones
-from peopleboy.sim.people.looks.finish_person import Finisher
+from peopleboy.sim.people.body.skeleton import BONE_INDEX, JOINT_NAMES, joint_offsets, mirror, place_bones
 from peopleboy.sim.people.person import Person, PersonConfig, Waypoint
 from peopleboy.sim.random_streams import stream
 from tests.helpers.worlds.individuals import make_individual

@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from peopleboy.sim.people.body.motion_capture import fourier_basis, load_walking_clip
+from peopleboy.sim.people.body.gait import fourier_basis, load_walking_clip
 from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES
 from peopleboy.sim.physics.model_files import data_folder
 

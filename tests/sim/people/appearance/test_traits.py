@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from peopleboy.sim.people.appearance.traits import Traits, draw_traits
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit
-from peopleboy.sim.people.looks.traits import Traits, draw_traits
 from peopleboy.sim.people.person import PersonConfig, Waypoint
 from peopleboy.sim.random_streams import stream
 

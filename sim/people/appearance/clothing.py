@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.sim.people.appearance.textures import Mesh, Paint, Sheet, Soft, blob
+from peopleboy.sim.people.appearance.traits import Traits
 from peopleboy.sim.people.body.clothes import Garment
-from peopleboy.sim.people.looks.paint import Paint, Soft, blob
-from peopleboy.sim.people.looks.sheets import Mesh, Sheet
-from peopleboy.sim.people.looks.traits import Traits
 
 Grid = NDArray[np.float64]
 

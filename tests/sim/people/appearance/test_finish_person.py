@@ -3,8 +3,8 @@ from functools import cache
 import numpy as np
 import pytest
 
+from peopleboy.sim.people.appearance.finisher import Finisher
 from peopleboy.sim.people.body.clothes import Clothes
-from peopleboy.sim.people.looks.finish_person import Finisher
 from peopleboy.sim.people.person import Person, PersonConfig, Waypoint
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.finishes import Finish

@@ -8,15 +8,22 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.sim.people.appearance.clothing import OPEN, Worn, add_trimmings, paint_cloth, paint_shoes
+from peopleboy.sim.people.appearance.faces import paint_face, paint_hair, paint_skin
+from peopleboy.sim.people.appearance.textures import Mesh, crumple, make_mesh
+from peopleboy.sim.people.appearance.traits import draw_traits
+from peopleboy.sim.people.appearance.warmth import (
+    ROOM_C,
+    bare_c,
+    cloth_c,
+    share_of_skin,
+    under_cloth_c,
+    wind_loss,
+)
 from peopleboy.sim.people.body.body_shapes import BAG_PART, PartGeometry
 from peopleboy.sim.people.body.clothes import COLOURS, Garment
 from peopleboy.sim.people.body.manner import Manner, draw_manner
 from peopleboy.sim.people.body.outfit import Outfit, draw_outfit
-from peopleboy.sim.people.looks.cloth import OPEN, Worn, add_trimmings, paint_cloth, paint_shoes
-from peopleboy.sim.people.looks.faces import paint_face, paint_hair, paint_skin
-from peopleboy.sim.people.looks.sheets import Mesh, crumple, make_mesh
-from peopleboy.sim.people.looks.traits import draw_traits
-from peopleboy.sim.people.looks.warmth import ROOM_C, bare_c, cloth_c, share_of_skin, under_cloth_c, wind_loss
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.finishes import Finish

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from peopleboy.sim.people.crowd import those_present
+from peopleboy.sim.people.mind import pace_among
 from peopleboy.sim.people.person import Waypoint
-from peopleboy.sim.people.reacting.keeping_together import pace_among
 from tests.helpers.worlds.walkers import NO_WALLS, make_person
 
 WAY = ((0.0, 0.0), (4.0, 0.0), (4.0, 2.0))

@@ -4,8 +4,8 @@ from functools import cache
 
 import pytest
 
+from peopleboy.sim.people.appearance.traits import usual_clothes
 from peopleboy.sim.people.body.clothes import BOTTOMS, COLOURS, HAIR, SHOES, TOPS, Clothes
-from peopleboy.sim.people.looks.wardrobe import usual_clothes
 from peopleboy.sim.random_streams import stream
 
 DRAWS = 1000

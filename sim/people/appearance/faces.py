@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.sim.people.appearance.textures import Mesh, Paint, Sheet, Soft, blob, streaks
+from peopleboy.sim.people.appearance.traits import Traits
 from peopleboy.sim.people.body.anthropometry import CHIN_HEIGHT, EYE_HEIGHT
 from peopleboy.sim.people.body.skeleton import ATLAS_HEIGHT
-from peopleboy.sim.people.looks.paint import Paint, Soft, blob
-from peopleboy.sim.people.looks.sheets import Mesh, Sheet, streaks
-from peopleboy.sim.people.looks.traits import Traits
 
 Grid = NDArray[np.float64]
 

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from peopleboy.sim.people.body.clothes import BOTTOMS, SHOES, SKIN_C, TOPS
-from peopleboy.sim.people.looks.warmth import (
+from peopleboy.sim.people.appearance.warmth import (
     ROOM_C,
     WARMEST_SKIN_C,
     bare_c,
@@ -11,6 +10,7 @@ from peopleboy.sim.people.looks.warmth import (
     under_cloth_c,
     wind_loss,
 )
+from peopleboy.sim.people.body.clothes import BOTTOMS, SHOES, SKIN_C, TOPS
 
 AIR_C = np.arange(-5.0, 40.5, 0.5)
 GARMENTS = {**TOPS, **BOTTOMS, **SHOES}

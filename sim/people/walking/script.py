@@ -12,7 +12,7 @@ from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.body.stance import POSTURES
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.path import PathPiece, route
-from peopleboy.sim.people.walking.walk import Walker
+from peopleboy.sim.people.walking.walker import Walker
 
 Records = NDArray[Any]
 

@@ -1,1 +1,0 @@
-"""How people take to the robot: reactions, leading it, and keeping together."""

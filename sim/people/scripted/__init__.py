@@ -1,1 +1,0 @@
-"""People whom nothing but their scripts and the robot guide, as arrays for kernels."""
