@@ -12,8 +12,7 @@ import numpy as np
 
 from peopleboy.sim.cameras.electronics.thermal_presets import THERMAL_PRESETS
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.people.person_config import PersonConfig
-from peopleboy.sim.people.walking.path import Waypoint
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World

@@ -15,8 +15,9 @@ from peopleboy.sim.people.appearance.traits import usual_clothes
 from peopleboy.sim.people.body.clothes import Clothes, random_clothes
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.person import PersonConfig
+from peopleboy.sim.people.person_config import Waypoint
 from peopleboy.sim.people.reaction import USUAL, Lead, Reaction
-from peopleboy.sim.people.walking.path import Waypoint, abreast
+from peopleboy.sim.people.walking.path import abreast
 from peopleboy.sim.random_streams import stream
 
 # Stature of adults [m]: mean and standard deviation (NCD-RisC 2016, young adults of central Europe, rounded).

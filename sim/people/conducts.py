@@ -1,8 +1,4 @@
-"""What people do while they have met the robot, a class for each way to take to it.
-
-Every one has `wish(dt_s, now)`, asked once a control step of dt_s [s] as long as an encounter lasts, and is
-made anew for the next encounter.
-"""
+"""How people behave towards the robot: what they know when they meet it, their reactions, and leading it."""
 
 from __future__ import annotations
 
@@ -17,8 +13,6 @@ from peopleboy.sim.people.reaction import Lead, Reaction
 from peopleboy.sim.people.walking.path import is_free
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.people.walking.surroundings import Wish
-
-# What a person knows when it meets the robot, and from when to when it does.
 
 _FORGOTTEN_M: Final = 1.0  # so much farther than where it began an encounter ends
 _ROOM_M: Final = 0.3  # that a person keeps from walls
@@ -267,8 +261,6 @@ def _lateral_m(place: Array, now: Situation, keep_m: float) -> float | None:
     is_coming = -keep_m < ahead < keep_m + speed * _FORESEEN_S
     return left if is_coming and abs(left) < keep_m else None
 
-
-# Leading the robot: walking ahead, looking back, and waiting for it where it falls behind.
 
 _GLANCE_EVERY_S: Final = 4.0
 _GLANCE_S: Final = 1.2

@@ -1,4 +1,4 @@
-"""The people of a world: they walk by their scripts, and their bodies in the physics world go with them."""
+"""The people of a world: they walk by their scripts, and their bodies and hands move in the physics world."""
 
 from __future__ import annotations
 
@@ -214,8 +214,6 @@ def those_present(people: Sequence[Person]) -> Present:
     motion = np.array([(*person.position, *person.velocity) for person in there], np.float64)
     return Present({person.name: row for row, person in enumerate(there)}, motion.reshape(-1, 4))
 
-
-# Things that are moved, in the physics world, and the hands that move them.
 
 REACH_S = 0.6  # for a hand to get to a thing, and back
 

@@ -23,8 +23,6 @@ from peopleboy.sim.people.conducts import (
 from peopleboy.sim.people.reaction import Lead, Reaction, Way
 from peopleboy.sim.people.walking.surroundings import AS_PLANNED, Wish
 
-# Groups keep together: who is ahead slows for who is behind.
-
 Point = tuple[float, float]
 
 _EASY_M: Final = 0.4  # up to which nobody cares who is ahead

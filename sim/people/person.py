@@ -40,8 +40,7 @@ from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, joint_offsets,
 from peopleboy.sim.people.body.stance import POSTURES, STANCE, Builds, Gaze, Stances, hold, move_limbs
 from peopleboy.sim.people.conducts import Situation
 from peopleboy.sim.people.mind import Mind
-from peopleboy.sim.people.person_config import Arms, PersonConfig
-from peopleboy.sim.people.walking.path import Waypoint
+from peopleboy.sim.people.person_config import Arms, PersonConfig, Waypoint
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.people.walking.surroundings import AS_PLANNED, Present, Surroundings, Wish
 from peopleboy.sim.people.walking.walker import Walker, timetable

@@ -13,8 +13,7 @@ import peopleboy.sim.world as world_module
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.people.person_config import PersonConfig
-from peopleboy.sim.people.walking.path import Waypoint
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.physics import bullet
 from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.robot.robot_config import RobotConfig

@@ -12,8 +12,7 @@ from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import DepthConfig, ThermalConfig
 from peopleboy.sim.cameras.depth_image import show_depth
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.people.person_config import PersonConfig
-from peopleboy.sim.people.walking.path import Waypoint
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.truth import Truth

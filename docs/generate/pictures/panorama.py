@@ -12,8 +12,7 @@ from peopleboy.scenarios.drawing.overlay import draw_truth, enlarge, people_part
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.sim.cameras.camera_config import PanoramaConfig, ThermalConfig
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.people.person_config import PersonConfig
-from peopleboy.sim.people.walking.path import Waypoint
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World

@@ -1,4 +1,4 @@
-"""Crumpled cloth to be wrapped round a body: where it lies on, where it creases, how it shades."""
+"""Grids wrapped round the parts of a body: crumpled cloth, and the paint that becomes a finish."""
 
 from __future__ import annotations
 
@@ -105,8 +105,6 @@ def _unit(grid: Grid) -> Grid:
     centred = grid - grid.mean()
     return np.asarray(centred / max(float(centred.std()), 1e-9))
 
-
-# What is painted on a person's part before it becomes a finish.
 
 _MOST_K = 14.0
 

@@ -1,4 +1,4 @@
-"""What sets one person apart from the next: warmth, glasses, straps, how they wear their clothes."""
+"""What sets one person apart from the next: usual clothes by sex and warmth, glasses, straps, body warmth."""
 
 from __future__ import annotations
 
@@ -81,8 +81,6 @@ def _normal(rng: np.random.Generator) -> float:
     """A normal draw whose tails are cut off."""
     return float(np.clip(rng.normal(), -2.0, 2.0))
 
-
-# What people usually wear, by sex and by how warm it is: frequencies, each with a source or a reason.
 
 Shares = Mapping[str, float]
 

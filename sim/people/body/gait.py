@@ -1,4 +1,4 @@
-"""Walking: motion capture above the hips, feet that stand still on the floor below them."""
+"""Gait: a motion-captured cycle of walking, tabulated by stride length and phase, and its look-up."""
 
 from __future__ import annotations
 
@@ -67,8 +67,6 @@ def gait_pose(
                 turns[bone, axis] += weight * rotations[a, p, bone, axis]
     return front, left
 
-
-# One cycle of walking, motion-captured, in our frames and as smooth functions of the gait's phase.
 
 _CLIP = Path(__file__).with_name("walking_clip.json")
 _HARMONICS = 5

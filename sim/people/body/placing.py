@@ -1,4 +1,4 @@
-"""From turns of joints to bones above the floor, and to the parts that they carry (numba kernels)."""
+"""From turns of joints to bones above the floor and the parts that they carry, and reaching for a point."""
 
 from __future__ import annotations
 
@@ -87,8 +87,6 @@ def carry(bones: Array, bone: NDArray[np.int64], offset_m: Array, poses: Array) 
         for i in range(3):
             pose[i, 3] += (own[i, 0] * x + own[i, 2] * z) + own[i, 1] * y
 
-
-# Reaching for something: how far one stoops, and how the arm is turned, so that a hand is there.
 
 _PALM = 0.5  # of the hand's length, from the wrist
 _STRETCHED = 0.97  # of the arm's length, beyond which one stoops

@@ -158,8 +158,6 @@ def place_bones(rotations: Array, offsets: Array) -> Array:
     return poses
 
 
-# The 17 points of the COCO skeleton on a body.
-
 JOINT_NAMES = (
     "nose", "left_eye", "right_eye", "left_ear", "right_ear", "left_shoulder", "right_shoulder", "left_elbow",
     "right_elbow", "left_wrist", "right_wrist", "left_hip", "right_hip", "left_knee", "right_knee",

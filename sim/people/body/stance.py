@@ -21,9 +21,7 @@ from peopleboy.sim.people.body.postures import (
 )
 from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, BONES
 
-# Where somebody looks: how far head, neck and chest are turned for it.
-
-# How far round one looks without turning the body, how fast, and what share of it which bone turns: ours.
+# How far the head turns against the body, how fast, and which bone turns by what share of it: our choice.
 _FARTHEST_RAD: Final = math.radians(100.0)
 _RATE_RAD_S: Final = math.radians(200.0)
 GAZE_SHARES: Final[Mapping[str, float]] = {"chest": 0.2, "neck": 0.3, "head": 0.5}

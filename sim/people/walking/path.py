@@ -1,4 +1,4 @@
-"""Ways over the floor: straight lines joined by arcs."""
+"""Paths over the floor: straight lines joined by arcs, and whether walls stand in between."""
 
 from __future__ import annotations
 
@@ -9,8 +9,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-
-from peopleboy.sim.people.body.postures import Posture
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
@@ -127,35 +125,6 @@ def abreast(path: Sequence[Point], offset_m: float) -> tuple[Point, ...]:
         shifted.append(points[i] + offset_m * (left[i - 1] + left[i]) / (1.0 + cosine))
     shifted.append(points[-1] + offset_m * left[-1])
     return tuple((float(x), float(y)) for x, y in shifted)
-
-
-# A place of a script: where to go, and what to do there.
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Waypoint:
-    """A place to go to.
-
-    Attributes:
-        at_m: (x, y) [m] in the world frame.
-        speed_m_s: [m/s] on the way to it.
-        pause_s: [s] waits there.
-        face: while pausing, turn to a point, to "robot", or to a person by name; None keeps the direction.
-        posture: while pausing.
-        until_robot_within_m: [m] the pause lasts until the robot is so near, too; None does not wait for it.
-        waits_at_most_s: [s] after the pause, for the robot.
-    """
-
-    at_m: tuple[float, float]
-    speed_m_s: float = 1.2
-    pause_s: float = 0.0
-    face: tuple[float, float] | str | None = None
-    posture: Posture = Posture.STANDING
-    until_robot_within_m: float | None = None
-    waits_at_most_s: float = 60.0
-
-
-# Whether walls and things stand between two points of the floor.
 
 
 def is_free(start: Array, end: Array, walls: Array, margin_m: float = 0.0) -> bool:

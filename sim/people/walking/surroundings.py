@@ -1,4 +1,4 @@
-"""What is around somebody who walks: people, the robot, walls."""
+"""What guides a walker besides its script: people, robot and walls around it, and its own wishes."""
 
 from __future__ import annotations
 
@@ -56,9 +56,6 @@ class Surroundings:
 
 
 ALONE: Final = Surroundings(people=NOBODY, walker=-1, robot=None, walls=np.empty((0, 4)))
-
-
-# What a person would rather do now than what its script says.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

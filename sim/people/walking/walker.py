@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.postures import RISE_S, Posture
-from peopleboy.sim.people.person_config import PersonConfig
-from peopleboy.sim.people.walking.path import PathPiece, Point, Waypoint, is_about_turn, route, turn_between
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
+from peopleboy.sim.people.walking.path import PathPiece, Point, is_about_turn, route, turn_between
 from peopleboy.sim.people.walking.social_force import (
     HURRY,
     NO_ROBOT,

@@ -16,8 +16,7 @@ from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
-from peopleboy.sim.people.person_config import PersonConfig
-from peopleboy.sim.people.walking.path import Waypoint
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.truth.truth import Owners, PersonTruth, Truth
 from peopleboy.tracker.thermal.ellipse import Ellipse

@@ -6,8 +6,7 @@ from functools import cache
 from peopleboy.sim.cameras.camera_config import ColourConfig, ThermalConfig
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.people.person_config import PersonConfig
-from peopleboy.sim.people.walking.path import Waypoint
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.place import Fixture, Place
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig, SonarConfig
