@@ -20,8 +20,6 @@ from peopleboy.sim.people.body.manner import USUAL, Manner, bearing
 from peopleboy.sim.people.body.postures import standing_rotations
 from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, BONES, lateral
 
-# Where a gait is tabulated, and how its tables are looked up (numba kernels).
-
 PHASES: Final = 48
 AMPLITUDES: Final = np.array([0.0, 0.15, 0.3, 0.5, 0.75, 1.0, 1.2, 1.4])
 _FULL_SPEED_M_S = 1.1  # a stride as long as the clip's, for a leg as long as the clip's
