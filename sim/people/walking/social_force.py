@@ -171,7 +171,7 @@ def _push_of_wall(at: tuple[float, float], walls: Array) -> tuple[float, float]:
     return push * gap_x, push * gap_y
 
 
-# What follows from the force: the next velocity, the side on which to pass, when a waypoint counts as reached.
+# What follows from the force: the next velocity, the side on which to pass, when a waypoint is reached.
 
 HURRY: Final = 1.3  # who gives way may be this much faster than planned (Helbing and Molnar 1995, eq. 11)
 TAKEN_WITHIN_M: Final = 1.0  # how near to a waypoint one looks whether somebody stands on it
