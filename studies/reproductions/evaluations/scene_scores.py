@@ -23,7 +23,7 @@ from peopleboy.scenarios.watching.true_events import TrueEvent, WhoIsWho, matchi
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.backgrounds import Backgrounds
-from peopleboy.sim.truth.thing_events import ThingLog
+from peopleboy.sim.truth.events import ThingLog
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.studies.reproductions.evaluations.playback import with_cameras
 from peopleboy.tracker.frame import DEPTH, Frame
