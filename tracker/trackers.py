@@ -10,12 +10,11 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import load_own
-from peopleboy.tracker.attention.attend import PersonLook
+from peopleboy.tracker.attention.attend import PersonModel
 from peopleboy.tracker.attention.attention_config import PRINTED as PRINTED_ATTENTION
 from peopleboy.tracker.attention.people.attentive_config import AS_FOUND
 from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
-from peopleboy.tracker.attention.people.colour_look import ColourLook
-from peopleboy.tracker.attention.people.recogniser import ByColour, ByFocus, Spotted
+from peopleboy.tracker.attention.people.recogniser import ByColour, ByFocus, ColourLook, Spotted
 from peopleboy.tracker.frame import Calibration, Frame
 from peopleboy.tracker.fusion.fused_tracker import FusedTracker, ThermalDepthTracker
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
@@ -132,7 +131,7 @@ def _attentive_tracker(rng: np.random.Generator) -> AttentiveTracker[ColourLook,
     return AttentiveTracker(_contour_tracker(CONTOUR_TRACKER, rng), ByColour())
 
 
-def _attentive_printed_tracker(rng: np.random.Generator) -> AttentiveTracker[PersonLook, Spotted]:
+def _attentive_printed_tracker(rng: np.random.Generator) -> AttentiveTracker[PersonModel, Spotted]:
     return AttentiveTracker(_contour_tracker(CONTOUR_TRACKER, rng), ByFocus(PRINTED_ATTENTION), AS_FOUND)
 
 

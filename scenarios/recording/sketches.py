@@ -20,8 +20,8 @@ from peopleboy.tracker.attention.people.attentive_explanation import AttentiveEx
 from peopleboy.tracker.frame import DEPTH, PANORAMA
 from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplanation
 from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure
-from peopleboy.tracker.panoramic.paper.panoramic_explanation import PanoramicExplanation
-from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
+from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicExplanation
+from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation
 from peopleboy.tracker.track import Box, FloorPlace, Track
 

@@ -17,8 +17,8 @@ from peopleboy.scenarios.report.findings.sentences import seconds
 from peopleboy.scenarios.report.findings.summary import RunFindings
 from peopleboy.scenarios.report.pictures import PagePicture, page_jpeg
 from peopleboy.tracker.attention.attend import Focus
-from peopleboy.tracker.attention.people.attended import Attended
 from peopleboy.tracker.attention.people.attentive_config import AttentiveConfig
+from peopleboy.tracker.attention.people.attentive_explanation import Attended
 from peopleboy.tracker.attention.people.views import LOOKED_AT, View, box_in
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Box, Status
@@ -90,7 +90,7 @@ def _pictures(
     start = Attended.learned(learned.number, View(learned.camera, images[learned.frame], learned.box))
     for frame, what in moments.items():
         if frame in images:
-            focus = Attended(start.number, start.camera, start.look, images[frame]).focus()
+            focus = Attended(start.number, start.camera, start.model, images[frame]).focus()
             caption = f"{seconds(found.run.time_s(frame))}, {what}: at most {focus.score:.2f}"
             picture = page_jpeg(_drawn(images[frame], focus, track_colour(learned.number)), _QUALITY)
             yield PagePicture(picture, f"image, and score of every place, {caption}", caption)

@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 from peopleboy.tracker.attention.attention_config import AttentionConfig
 from peopleboy.tracker.attention.box_scores import likenesses, mean_scores, pattern_scores
 from peopleboy.tracker.attention.feature_maps import CELL_PX, in_use
-from peopleboy.tracker.attention.part_look import Mask, PartLook
-from peopleboy.tracker.attention.parts import HEAD, TORSO, Part, cells_of, check_box
-from peopleboy.tracker.attention.sight import Sight
+from peopleboy.tracker.attention.image_sums import Sight
+from peopleboy.tracker.attention.part_model import HEAD, TORSO, Mask, Part, PartModel, cells_of, check_box
 from peopleboy.tracker.track import Box
 
 Doubles = NDArray[np.float64]
@@ -31,7 +30,7 @@ _BESIDE: Final = 0.25  # heights within which two heads are one
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PersonLook:
+class PersonModel:
     """A person as it looked: its parts, and how tall it appeared.
 
     Attributes:
@@ -40,7 +39,7 @@ class PersonLook:
     """
 
     height: float
-    parts: tuple[tuple[Part, PartLook], ...]
+    parts: tuple[tuple[Part, PartModel], ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,7 +89,7 @@ def middle_of(box: Box) -> tuple[float, float]:
     return left + width / 2.0, top + (TORSO.top + TORSO.height / 2.0) * height
 
 
-def learn(sight: Sight, box: Box, config: AttentionConfig, near: Mask | None = None) -> PersonLook:
+def learn(sight: Sight, box: Box, config: AttentionConfig, near: Mask | None = None) -> PersonModel:
     """Learn a person from its box.
 
     Args:
@@ -106,11 +105,11 @@ def learn(sight: Sight, box: Box, config: AttentionConfig, near: Mask | None = N
     """
     check_box(box, sight.image.shape)
     parts = (HEAD, TORSO) if config.head else (TORSO,)
-    looks = ((part, PartLook.learned(sight, cells_of(part, box), config, near)) for part in parts)
-    return PersonLook(height=box[3], parts=tuple(looks))
+    models = ((part, PartModel.learned(sight, cells_of(part, box), config, near)) for part in parts)
+    return PersonModel(height=box[3], parts=tuple(models))
 
 
-def search(sight: Sight, look: PersonLook, config: AttentionConfig) -> Focus:
+def search(sight: Sight, model: PersonModel, config: AttentionConfig) -> Focus:
     """Find where a person is most likely.
 
     The source multiplies the torso's score at the head's place by the head's at the torso's (equation 5.17);
@@ -118,10 +117,10 @@ def search(sight: Sight, look: PersonLook, config: AttentionConfig) -> Focus:
 
     Source: situation-awareness thesis, sections 5.4 and 5.5.
     """
-    found = [_searched(sight, look, scale, config) for scale in config.scales]
+    found = [_searched(sight, model, scale, config) for scale in config.scales]
     best = max(range(len(found)), key=lambda k: float(found[k][0].max()))
     scores, parts = found[best]
-    box, place = _box_at(scores, look.height * config.scales[best])
+    box, place = _box_at(scores, model.height * config.scales[best])
     every = np.max([one for one, _ in found], axis=0)
     score = float(scores[place])
     _blank(every, place, box)
@@ -129,36 +128,36 @@ def search(sight: Sight, look: PersonLook, config: AttentionConfig) -> Focus:
     return Focus(box, score, float(every[second_place]), second_box, scores, parts)
 
 
-def relearn(look: PersonLook, sight: Sight, focus: Focus, config: AttentionConfig) -> PersonLook:
+def relearn(model: PersonModel, sight: Sight, focus: Focus, config: AttentionConfig) -> PersonModel:
     """Take in a little of what the person looks like now, if it is likely that it is this one.
 
     Source: situation-awareness thesis, section 5.4.
     """
     if focus.score < config.least or focus.score - focus.second < config.ahead:
-        return look
+        return model
     new = learn(sight, focus.box, config)
-    pairs = zip(look.parts, new.parts, strict=True)
+    pairs = zip(model.parts, new.parts, strict=True)
     return replace(
-        look, parts=tuple((part, old.updated(fresh, config.rate)) for (part, old), (_, fresh) in pairs)
+        model, parts=tuple((part, old.updated(fresh, config.rate)) for (part, old), (_, fresh) in pairs)
     )
 
 
 def _searched(
-    sight: Sight, look: PersonLook, scale: float, config: AttentionConfig
+    sight: Sight, model: PersonModel, scale: float, config: AttentionConfig
 ) -> tuple[Doubles, tuple[PartScores, ...]]:
     rows = np.arange(0, sight.rows, STEP_CELLS)
     columns = np.arange(0, sight.columns, STEP_CELLS)
     parts = []
-    for part, known in look.parts:
-        cells = cells_of(part, (0.0, 0.0, 0.0, look.height), scale)
+    for part, known in model.parts:
+        cells = cells_of(part, (0.0, 0.0, 0.0, model.height), scale)
         at = rows + cells.row, columns + cells.column
         parts.append(_part_scores(sight, known, at, (cells.height, cells.width), config))
-    return _together(parts, look), tuple(parts)
+    return _together(parts, model), tuple(parts)
 
 
 def _part_scores(
     sight: Sight,
-    known: PartLook,
+    known: PartModel,
     at: tuple[NDArray[np.int64], NDArray[np.int64]],
     size: tuple[int, int],
     config: AttentionConfig,
@@ -181,7 +180,7 @@ def _part_scores(
     return PartScores(features, found, colour)
 
 
-def attention_map(sight: Sight, known: PartLook, config: AttentionConfig) -> Doubles:
+def attention_map(sight: Sight, known: PartModel, config: AttentionConfig) -> Doubles:
     """Give A (rows, columns): excitation minus inhibition, at least 0 (equations 5.9 to 5.11)."""
     assert sight.maps is not None
     weight = known.excites - known.inhibits
@@ -191,17 +190,17 @@ def attention_map(sight: Sight, known: PartLook, config: AttentionConfig) -> Dou
     return np.maximum(sight.maps @ weight, 0.0)
 
 
-def _attention(sight: Sight, known: PartLook, config: AttentionConfig) -> Doubles:
+def _attention(sight: Sight, known: PartModel, config: AttentionConfig) -> Doubles:
     return np.asarray(cv2.integral(attention_map(sight, known, config), sdepth=cv2.CV_64F), np.float64)
 
 
-def _together(parts: list[PartScores], look: PersonLook) -> Doubles:
+def _together(parts: list[PartScores], model: PersonModel) -> Doubles:
     """Multiply what all parts say by how likely their colours are the person's."""
     kinds = [[kind for kind in (one.features, one.patterns) if kind is not None] for one in parts]
     total = np.prod([np.mean(kind, axis=0) for kind in kinds if kind], axis=0)
     colours = [one.colour for one in parts if one.colour is not None]
     if colours:
-        areas = [part.width * part.height for part, _ in look.parts]
+        areas = [part.width * part.height for part, _ in model.parts]
         ratio = np.average(colours, axis=0, weights=areas)
         total = total / (1.0 + np.exp(-ratio - _COLOUR_BIAS))
     return np.asarray(total, np.float64)

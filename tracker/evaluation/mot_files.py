@@ -54,11 +54,11 @@ def read_rows(path: Path) -> Floats:
     Raises:
         BadInput: the file cannot be read, or a line has other than numbers, or not as many as the first.
     """
-    told = _read_table(path, TRUTH_COLUMNS, WIDTHS)
+    given = _read_table(path, TRUTH_COLUMNS, WIDTHS)
     columns = TRUTH_COLUMNS.count(",") + 1
-    told = told[:, : 7 if told.shape[1] == _PLACED else columns]
-    table = np.ones((len(told), columns))
-    table[:, : told.shape[1]] = told
+    given = given[:, : 7 if given.shape[1] == _PLACED else columns]
+    table = np.ones((len(given), columns))
+    table[:, : given.shape[1]] = given
     others = table[:, 6:]
     others[others == _UNTOLD] = 1.0
     return table

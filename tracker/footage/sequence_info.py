@@ -34,17 +34,17 @@ def rate_in(path: Path) -> float | None:
         parser.read_string(path.read_text(encoding="utf-8-sig"))
     except (OSError, UnicodeDecodeError, ConfigError) as error:
         raise BadInput(f"{path}: cannot be read; mend or remove it, or give --rate-hz") from error
-    told = parser.get("Sequence", "frameRate", fallback=None)
-    if told is None:
+    raw = parser.get("Sequence", "frameRate", fallback=None)
+    if raw is None:
         return None
     low, high = RATES_HZ
     try:
-        rate = float(told)
+        rate = float(raw)
     except ValueError:
         rate = 0.0
     if not low <= rate <= high:
         raise BadInput(
-            f"{path}: frameRate must be {low:g}..{high:g} pictures a second, got {told[:60]!r}; "
+            f"{path}: frameRate must be {low:g}..{high:g} pictures a second, got {raw[:60]!r}; "
             "mend it, or give --rate-hz"
         )
     return rate

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
+from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 

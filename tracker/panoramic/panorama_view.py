@@ -38,8 +38,8 @@ class PanoramaView:
         """Say why what was learned with this camera does not hold for another; empty if it does."""
         if (self.width_px, self.height_px) != (other.width_px, other.height_px):
             return f"panorama is {other.size}, but the network was trained on {self.size}"
-        looks = np.subtract(self.depression_deg, other.depression_deg)
-        if abs(self.centre_m - other.centre_m) > _SAME_M or np.any(np.abs(looks) > _SAME_DEG):
+        appearance = np.subtract(self.depression_deg, other.depression_deg)
+        if abs(self.centre_m - other.centre_m) > _SAME_M or np.any(np.abs(appearance) > _SAME_DEG):
             return f"panorama is of a mirror {other.mirror}, but the network was trained on one {self.mirror}"
         return ""
 

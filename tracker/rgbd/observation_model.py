@@ -125,7 +125,7 @@ class Glance:
 def look_at(view: RgbdView, places_m: Floats, body: Body, foreground_m: float) -> Glance:
     """Look at places (P, 2) in the robot's frame."""
     pose = view.geometry.calibration.robot_from_camera
-    told = _glances(
+    measured = _glances(
         view.depth,
         view.colour,
         np.ascontiguousarray(pose[:3, :3]),
@@ -137,7 +137,7 @@ def look_at(view: RgbdView, places_m: Floats, body: Body, foreground_m: float) -
         foreground_m if foreground_m > 0.0 else math.inf,
         bin_of_colour(),
     )
-    return Glance(told[:, 0], told[:, 1], told[:, 2], told[:, 3])
+    return Glance(measured[:, 0], measured[:, 1], measured[:, 2], measured[:, 3])
 
 
 def box_at(geometry: DepthView, place_m: Floats, body: Body) -> Box:

@@ -62,7 +62,7 @@ class Ledger:
         """Tell what is left, as nothing will follow."""
         return self._news(time_s, (), is_over=True)
 
-    def told(
+    def reported(
         self, time_s: float, come: Sequence[Thing], gone: Sequence[Thing], unseen: Container[int] = ()
     ) -> list[Happening]:
         """Take in what settled and what left, and tell what is clear by now.

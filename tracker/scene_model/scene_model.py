@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import DEPTH, Frame
-from peopleboy.tracker.scene_model.geometry import Geometry
+from peopleboy.tracker.scene_model.geometry import Geometry, shades_of
 from peopleboy.tracker.scene_model.happenings import Ledger
 from peopleboy.tracker.scene_model.layers import Layers
-from peopleboy.tracker.scene_model.past_colours import PastColours
 from peopleboy.tracker.scene_model.people import People, PeopleSeen
 from peopleboy.tracker.scene_model.readings import Readings
 from peopleboy.tracker.scene_model.scene import (
@@ -29,7 +28,6 @@ from peopleboy.tracker.scene_model.scene import (
     VistaScene,
 )
 from peopleboy.tracker.scene_model.scene_config import SceneConfig
-from peopleboy.tracker.scene_model.shades import shades_of
 from peopleboy.tracker.scene_model.things import (
     Thing,
     ThingMoment,
@@ -39,6 +37,34 @@ from peopleboy.tracker.scene_model.things import (
     standing,
 )
 from peopleboy.tracker.scene_model.vista_spaces import Pose, StaticMap, Surface
+
+# Which colours what is not there any more had.
+
+Colours = NDArray[np.uint8]
+
+
+class PastColours:
+    """Remembers the colours of the background, and of what was taken for it until it was seen through."""
+
+    def __init__(self) -> None:
+        self._now: Colours | None = None
+        self._past: Colours | None = None
+
+    def update(self, colour: Colours | None, layers: Layers, time_s: float) -> Colours | None:
+        """Take in the (H, W, C) colours of a frame, once its readings are sorted; give those of the past.
+
+        Returns:
+            (H, W, C); None without colours.
+        """
+        if colour is None:
+            return None
+        if self._now is None or self._past is None:
+            self._now, self._past = colour.copy(), colour.copy()
+            return self._past
+        has_opened = layers.is_opened(time_s)
+        self._past[has_opened] = self._now[has_opened]
+        np.copyto(self._now, colour, where=(layers.back_seen_s == np.float32(time_s))[:, :, None])
+        return self._past
 
 
 class SceneModel:
@@ -182,7 +208,7 @@ class SceneModel:
         behind = ThingMoment(frame.time_s, geometry, self._colours.update(colour, self._layers, frame.time_s))
         through, _ = self._opened.update(*opened(self._layers, config), behind, self._ids)
         unseen = self._standing.unseen(frame.time_s)
-        happenings = self._ledger.told(frame.time_s, come, [*left, *through], unseen)
+        happenings = self._ledger.reported(frame.time_s, come, [*left, *through], unseen)
         for one in happenings:
             if one.change is Change.MOVED:
                 self._rename(one)

@@ -135,8 +135,8 @@ def _stepped(pose: Pose, points: Floats, targets: Floats, normals: Floats) -> tu
     weight = 1.0 / np.maximum(np.abs(apart), 0.02)  # outliers count by their distance, not by its square
     matrix = rows.T @ (rows * weight[:, None])
     values, vectors = np.linalg.eigh(matrix)
-    told = values > 0.02 * values[-1]
-    move = vectors[:, told] @ ((vectors[:, told].T @ (rows.T @ (weight * apart))) / values[told])
+    known = values > 0.02 * values[-1]
+    move = vectors[:, known] @ ((vectors[:, known].T @ (rows.T @ (weight * apart))) / values[known])
     dx, dy, turn = move.tolist()
     heading = math.remainder(pose.heading_rad + turn, math.tau)
     return Pose(x_m=pose.x_m + dx, y_m=pose.y_m + dy, heading_rad=heading), float(np.abs(move).max())

@@ -30,10 +30,10 @@ from peopleboy.studies.training.place_learning.place_task import panorama_of
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
 from peopleboy.tracker.panoramic.foreground.foreground import Foreground
 from peopleboy.tracker.panoramic.people.figure_patch import ACROSS, BOTTOM_M, HALF_WIDTH_M, LAYERS, TOP_M, UP
+from peopleboy.tracker.panoramic.people.panorama_patches import Scene
+from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
-from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
 from peopleboy.tracker.panoramic.people.place_file import load_places
-from peopleboy.tracker.panoramic.people.scene import Scene
 from peopleboy.tracker.track import FloorPlace, Status, Track
 from peopleboy.tracker.trackers import make_tracker
 

@@ -19,11 +19,10 @@ from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.attention.attend import Focus
-from peopleboy.tracker.attention.people.attended import Attended
 from peopleboy.tracker.attention.people.attentive_config import AttentiveConfig
+from peopleboy.tracker.attention.people.attentive_explanation import Attended
 from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
-from peopleboy.tracker.attention.people.colour_look import ColourLook
-from peopleboy.tracker.attention.people.recogniser import ByColour
+from peopleboy.tracker.attention.people.recogniser import ByColour, ColourLook
 from peopleboy.tracker.attention.people.views import View, box_in
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.track import Box, Status, Track

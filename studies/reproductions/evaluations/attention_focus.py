@@ -20,10 +20,10 @@ from peopleboy.scenarios.loop.tracker_by_name import make_eyes
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth, Truth
-from peopleboy.tracker.attention.attend import Focus, PersonLook, learn, middle_of, search
+from peopleboy.tracker.attention.attend import Focus, PersonModel, learn, middle_of, search
 from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
-from peopleboy.tracker.attention.parts import check_box
-from peopleboy.tracker.attention.sight import Sight
+from peopleboy.tracker.attention.image_sums import Sight
+from peopleboy.tracker.attention.part_model import check_box
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import COLOUR, THERMAL
 from peopleboy.tracker.track import Box, Status, Track
@@ -127,7 +127,7 @@ def watch_focus(scenario: Scenario, seed: int, names: Sequence[str]) -> dict[str
         person, how often only the second best place was, and how often neither.
     """
     counts: dict[str, dict[str, list[int]]] = {name: {} for name in names}
-    looks: dict[str, dict[int, PersonLook]] = {name: {} for name in names}
+    looks: dict[str, dict[int, PersonModel]] = {name: {} for name in names}
     for moment in play_focus(scenario, seed):
         people = wanted(scenario, moment.truth)
         for name in names:
@@ -139,7 +139,7 @@ def _look(
     moment: FocusMoment,
     people: Sequence[PersonTruth],
     config: AttentionConfig,
-    looks: dict[int, PersonLook],
+    looks: dict[int, PersonModel],
     counts: dict[str, list[int]],
 ) -> None:
     sight: Sight | None = None

@@ -24,8 +24,7 @@ from peopleboy.sim.world import World
 from peopleboy.studies.training.distance_learning.distance_examples import panoramas
 from peopleboy.studies.training.distance_learning.image_errors import ErrorSummary
 from peopleboy.tracker.frame import PANORAMA
-from peopleboy.tracker.panoramic.paper.background import EMPTY_IMAGES, Background, learn_background
-from peopleboy.tracker.panoramic.paper.depth_cues import measure
+from peopleboy.tracker.panoramic.paper.depth_cues import EMPTY_IMAGES, Background, learn_background, measure
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig
 
 # From angles in webcams to a place on the floor, and from known places to the webcams' own (2003 paper).

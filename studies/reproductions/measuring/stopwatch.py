@@ -17,9 +17,9 @@ from peopleboy.studies.reproductions.measuring.tracker_settings import Setting
 from peopleboy.tracker.attention.attend import learn, search
 from peopleboy.tracker.attention.attention_config import AttentionConfig
 from peopleboy.tracker.attention.feature_maps import feature_maps
-from peopleboy.tracker.attention.people.colour_look import ColourLook
+from peopleboy.tracker.attention.image_sums import Sight
+from peopleboy.tracker.attention.people.recogniser import ColourLook
 from peopleboy.tracker.attention.people.views import View
-from peopleboy.tracker.attention.sight import Sight
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
 from peopleboy.tracker.thermal.appearance.appearance_model import ColourModel, likelihood
 from peopleboy.tracker.thermal.appearance.colour_view import ColourView, PowerSums

@@ -33,8 +33,13 @@ from peopleboy.studies.reproductions.pictures.canvas import canvas, label
 from peopleboy.studies.training.distance_learning.distance_examples import Examples, panoramas
 from peopleboy.studies.training.distance_learning.distance_trials import SplitTrial, told_in_turn
 from peopleboy.studies.training.distance_learning.walks import filtered
-from peopleboy.tracker.panoramic.paper.background import EMPTY_IMAGES, Background, learn_background
-from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure, measure
+from peopleboy.tracker.panoramic.paper.depth_cues import (
+    EMPTY_IMAGES,
+    Background,
+    MeasuredFigure,
+    learn_background,
+    measure,
+)
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig
 from peopleboy.tracker.panoramic.paper.position_filter import PRINTED, PositionFilter
 

@@ -31,10 +31,10 @@ from peopleboy.studies.reproductions.evaluations.scene_scores import (
     read_map,
 )
 from peopleboy.studies.reproductions.pictures.canvas import canvas, label
-from peopleboy.tracker.attention.attend import PersonLook, attention_map, learn, search
+from peopleboy.tracker.attention.attend import PersonModel, attention_map, learn, search
 from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
-from peopleboy.tracker.attention.parts import HEAD, TORSO, Part
-from peopleboy.tracker.attention.sight import Sight
+from peopleboy.tracker.attention.image_sums import Sight
+from peopleboy.tracker.attention.part_model import HEAD, TORSO, Part
 from peopleboy.tracker.track import Box
 
 Floats = NDArray[np.float64]
@@ -304,7 +304,7 @@ def draw_examples() -> Figure:
     return page
 
 
-def _place(moment: FocusMoment, look: PersonLook) -> tuple[float, float]:
+def _place(moment: FocusMoment, look: PersonModel) -> tuple[float, float]:
     return search(Sight.of(moment.image, _ALONE), look, _ALONE).place
 
 

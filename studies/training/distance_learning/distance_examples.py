@@ -17,8 +17,12 @@ from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.tracker.frame import PANORAMA, Frame
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
-from peopleboy.tracker.panoramic.paper.background import EMPTY_IMAGES, learn_background
-from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure, measure
+from peopleboy.tracker.panoramic.paper.depth_cues import (
+    EMPTY_IMAGES,
+    MeasuredFigure,
+    learn_background,
+    measure,
+)
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig
 
 Floats = NDArray[np.float64]

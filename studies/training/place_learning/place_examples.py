@@ -16,9 +16,8 @@ from peopleboy.studies.training.foreground_learning.masked_film import MaskedFil
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.foreground.foreground import Foreground
 from peopleboy.tracker.panoramic.people.figure_patch import PATCH, Map
+from peopleboy.tracker.panoramic.people.panorama_patches import Scene, promising_places
 from peopleboy.tracker.panoramic.people.place_model import with_distance
-from peopleboy.tracker.panoramic.people.scene import Scene
-from peopleboy.tracker.panoramic.people.search import promising_places
 
 Floats = NDArray[np.float64]
 

@@ -23,8 +23,8 @@ from peopleboy.tracker.panoramic.people.figure_patch import (
     UP,
     FigureMap,
 )
+from peopleboy.tracker.panoramic.people.panorama_patches import Scene
 from peopleboy.tracker.panoramic.people.place_model import Sightings
-from peopleboy.tracker.panoramic.people.scene import Scene
 from tests.helpers.images.as_taken import as_taken
 
 WIDTH, HEIGHT = 480, 120

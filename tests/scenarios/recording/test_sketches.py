@@ -20,13 +20,12 @@ from peopleboy.scenarios.recording.sketches import (
 )
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.geometry.panorama import Panorama
-from peopleboy.tracker.attention.people.attended import Attended
-from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
+from peopleboy.tracker.attention.people.attentive_explanation import Attended, AttentiveExplanation
 from peopleboy.tracker.attention.people.views import View
 from peopleboy.tracker.frame import COLOUR
 from peopleboy.tracker.fusion.explanations import BothExplanations
 from peopleboy.tracker.panoramic.paper.depth_cues import measure
-from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
+from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
 from peopleboy.tracker.track import FloorPlace
 from tests.helpers.runs.hand_made_tracks import track
 from tests.helpers.runs.synthetic_ticks import explain

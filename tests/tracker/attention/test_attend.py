@@ -5,8 +5,8 @@ import pytest
 
 from peopleboy.tracker.attention.attend import learn, middle_of, relearn, search
 from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
-from peopleboy.tracker.attention.parts import TORSO
-from peopleboy.tracker.attention.sight import Sight
+from peopleboy.tracker.attention.image_sums import Sight
+from peopleboy.tracker.attention.part_model import TORSO
 from tests.helpers.calls.refused import refused
 
 SIZE = (240, 320)
@@ -40,15 +40,15 @@ def is_on(place, left, top, height):
 
 @pytest.mark.parametrize("config", WAYS)
 def test_the_focus_is_on_who_was_learned_wherever_that_one_is(config):
-    look = learn(Sight.of(FIRST, config), BOX, config)
-    focus = search(Sight.of(LATER, config), look, config)
+    model = learn(Sight.of(FIRST, config), BOX, config)
+    focus = search(Sight.of(LATER, config), model, config)
     assert is_on(focus.place, 220, 70, 120)
     assert 0.0 <= focus.second <= focus.score <= 1.0
 
 
 def test_who_is_nearer_now_is_found_at_another_size():
-    look = learn(Sight.of(FIRST, DEFAULT), BOX, DEFAULT)
-    focus = search(Sight.of(scene((140, 50, 150, RED), seed=2), DEFAULT), look, DEFAULT)
+    model = learn(Sight.of(FIRST, DEFAULT), BOX, DEFAULT)
+    focus = search(Sight.of(scene((140, 50, 150, RED), seed=2), DEFAULT), model, DEFAULT)
     assert is_on(focus.place, 140, 50, 150)
 
 
@@ -56,8 +56,8 @@ def test_the_default_score_is_absolute_and_the_printed_one_is_not():
     nobody = scene((200, 60, 120, GREEN), seed=3)
     scores = {}
     for config in (DEFAULT, PRINTED):
-        look = learn(Sight.of(FIRST, config), BOX, config)
-        scores[config] = [search(Sight.of(image, config), look, config).score for image in (LATER, nobody)]
+        model = learn(Sight.of(FIRST, config), BOX, config)
+        scores[config] = [search(Sight.of(image, config), model, config).score for image in (LATER, nobody)]
     there, away = scores[DEFAULT]
     assert away < 0.5 * there
     there, away = scores[PRINTED]
@@ -85,12 +85,12 @@ def test_pixels_behind_the_person_are_no_part_of_what_is_learned():
 def test_little_is_learned_anew_and_only_of_a_sure_and_single_place():
     config = AttentionConfig(least=0.2, ahead=0.01)
     first, later = Sight.of(FIRST, config), Sight.of(LATER, config)
-    look = learn(first, BOX, config)
-    focus = search(later, look, config)
+    model = learn(first, BOX, config)
+    focus = search(later, model, config)
     new = learn(later, focus.box, config).parts[1][1].mean
-    old, mixed = look.parts[1][1].mean, relearn(look, later, focus, config).parts[1][1].mean
+    old, mixed = model.parts[1][1].mean, relearn(model, later, focus, config).parts[1][1].mean
     assert np.allclose(mixed, 0.98 * old + 0.02 * new)
-    assert relearn(look, later, focus, AttentionConfig(least=0.99)) is look
+    assert relearn(model, later, focus, AttentionConfig(least=0.99)) is model
 
 
 @pytest.mark.parametrize(

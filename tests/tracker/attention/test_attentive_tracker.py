@@ -8,8 +8,7 @@ import pytest
 from peopleboy.tracker.attention.attention_config import PRINTED
 from peopleboy.tracker.attention.people.attentive_config import AS_FOUND, AttentiveConfig
 from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
-from peopleboy.tracker.attention.people.colour_look import ColourLook
-from peopleboy.tracker.attention.people.recogniser import ByColour, ByFocus
+from peopleboy.tracker.attention.people.recogniser import ByColour, ByFocus, ColourLook
 from peopleboy.tracker.attention.people.views import View, box_in
 from peopleboy.tracker.frame import COLOUR, PANORAMA, THERMAL, Frame, PinholeCalibration
 from peopleboy.tracker.track import FloorPlace, Status, Track
@@ -122,17 +121,17 @@ def test_the_explanation_names_the_one_who_was_learned_first_and_finds_that_one(
 
 
 def test_looks_are_the_same_in_any_light_and_others_in_other_colours():
-    def look(colour, light=1.0):
+    def model(colour, light=1.0):
         image = (scene((60, 60, 120, colour)) * light).astype(np.uint8)
         return ColourLook.of(View(COLOUR, image, (60.0, 60.0, 36.0, 120.0)))
 
-    red, green = look(RED), look(GREEN)
+    red, green = model(RED), model(GREEN)
     assert red.likeness(red) == pytest.approx(1.0)
     assert red.shares.sum(axis=1) == pytest.approx([1.0, 1.0])
-    assert red.likeness(look(RED, 0.5)) > 0.9
+    assert red.likeness(model(RED, 0.5)) > 0.9
     assert red.likeness(green) == pytest.approx(green.likeness(red))
     assert red.likeness(green) < 0.5
-    assert look(RED, 0.02) is None
+    assert model(RED, 0.02) is None
 
 
 def test_a_box_in_the_colour_image_follows_rays_and_place():

@@ -6,11 +6,16 @@ import pytest
 
 from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
 from peopleboy.tracker.attention.box_scores import box_means, likenesses, mean_scores, pattern_scores, spreads
-from peopleboy.tracker.attention.channels import NAMES, _inhibited, basic_maps
-from peopleboy.tracker.attention.feature_maps import NAMES as ALL
-from peopleboy.tracker.attention.feature_maps import SURROUND, _by_peaks, feature_maps
-from peopleboy.tracker.attention.patterns import BINS, patterns
-from peopleboy.tracker.attention.sight import Sight
+from peopleboy.tracker.attention.feature_maps import (
+    BASIC_NAMES,
+    NAMES,
+    SURROUND,
+    _by_peaks,
+    _inhibited,
+    basic_maps,
+    feature_maps,
+)
+from peopleboy.tracker.attention.image_sums import BINS, Sight, patterns
 from tests.helpers.calls.refused import refused
 
 RNG = np.random.default_rng(5)
@@ -31,8 +36,8 @@ def plain(red, green, blue):
 )
 def test_a_pure_colour_is_in_its_own_map_alone(rgb, name, value):
     maps = basic_maps(plain(*rgb), inhibits=False)[24, 32, :4]
-    others = [k for k in range(4) if NAMES[k] != name and name != "yellow"]
-    assert maps[NAMES.index(name)] == pytest.approx(value, rel=0.01)
+    others = [k for k in range(4) if BASIC_NAMES[k] != name and name != "yellow"]
+    assert maps[BASIC_NAMES.index(name)] == pytest.approx(value, rel=0.01)
     assert np.allclose(maps[others], 0.0)
 
 
@@ -49,7 +54,7 @@ def test_lines_are_strongest_in_the_map_of_their_direction(turn):
     across = -u * np.sin(along) - v * np.cos(along)  # rows count downwards
     grey = (127.5 + 100.0 * np.cos(2.0 * np.pi * across / 6.0)).astype(np.uint8)
     maps = basic_maps(np.dstack([grey] * 3), inhibits=False)[20:40, 20:60].mean(axis=(0, 1))
-    assert NAMES[4 + int(maps[4:8].argmax())] == f"{turn} deg"
+    assert BASIC_NAMES[4 + int(maps[4:8].argmax())] == f"{turn} deg"
 
 
 def test_lateral_inhibition_gives_the_number_of_the_source():
@@ -111,8 +116,8 @@ def test_means_and_spreads_of_boxes_are_those_of_their_cells(sight):
 
 def test_scores_of_places_are_those_of_each_box_by_itself_and_0_outside(sight):
     rows, columns, size = np.array([-1, 4, 29]), np.array([20, 33]), (7, 8)
-    learned, spread = np.full(len(ALL), 0.1), np.full(len(ALL), 0.5)
-    used = np.arange(len(ALL)) % 3 > 0
+    learned, spread = np.full(len(NAMES), 0.1), np.full(len(NAMES), 0.5)
+    used = np.arange(len(NAMES)) % 3 > 0
     found = likenesses(sight.map_sums, rows, columns, size, learned, spread, used)
     box = sight.maps[4:11, 20:28].mean(axis=(0, 1), dtype=np.float64)[used]
     assert found[1, 0] == pytest.approx(np.exp(-np.minimum(((box - 0.1) / 0.5) ** 2, 9.0).mean()), abs=1e-5)

@@ -15,7 +15,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, PANORAMA, THERMAL, Frame, Odometry
 from peopleboy.tracker.fusion.fused_tracker import FusedTracker, ThermalDepthTracker
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
-from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
+from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
 from peopleboy.tracker.rgbd.observation_model import BINS, Body
 from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.thermal.variants import PEOPLEBOY

@@ -19,7 +19,7 @@ from peopleboy.tracker.fusion.handover_tracker import (
     PAUSE_S,
     HandoverTracker,
 )
-from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
+from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
 from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.thermal.whereabouts import standing_box

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from peopleboy.tracker.scene_model.evening import evened
+from peopleboy.tracker.scene_model.layers import evened
 
 
 def plane(shape: tuple[int, int] = (40, 60)) -> np.ndarray:

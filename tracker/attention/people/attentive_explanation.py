@@ -1,14 +1,53 @@
-"""What the attentive tracker believes beyond its tracks."""
+"""The person on whom attention is, for those who want to look over the tracker's shoulder."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import singledispatch
+from typing import Final
 
-from peopleboy.tracker.attention.people.attended import Attended
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.attention.attend import Focus, PersonModel, learn, search
+from peopleboy.tracker.attention.attention_config import AttentionConfig
+from peopleboy.tracker.attention.image_sums import Sight
+from peopleboy.tracker.attention.people.views import View
 from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplanation
 from peopleboy.tracker.thermal.explanation import ContourExplanation
+
+TRACKING_ATTENTION: Final = AttentionConfig(scales=(0.64, 0.8, 1.0, 1.25, 1.56))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Attended:
+    """A person who was learned, and the newest image.
+
+    Attributes:
+        number: of the person.
+        camera: in whose images it is looked for.
+        look: as it looked when it was learned.
+        image: (H, W, 3) RGB.
+    """
+
+    number: int
+    camera: str
+    model: PersonModel
+    image: NDArray[np.uint8]
+
+    @classmethod
+    def learned(cls, number: int, view: View) -> Attended:
+        """Learn somebody from one image."""
+        model = learn(Sight.of(view.image, TRACKING_ATTENTION), view.box, TRACKING_ATTENTION)
+        return cls(number, view.camera, model, view.image)
+
+    def focus(self) -> Focus:
+        """Look for the person in the newest image, wherever tracks are; this takes some ten milliseconds."""
+        return search(Sight.of(self.image, TRACKING_ATTENTION), self.model, TRACKING_ATTENTION)
+
+
+# What the attentive tracker believes beyond its tracks.
 
 
 @dataclass(frozen=True, slots=True, eq=False)

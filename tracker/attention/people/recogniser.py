@@ -3,32 +3,111 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import Final, Protocol, Self, TypeVar
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.attention.attend import PersonLook, learn, relearn, search
+from peopleboy.tracker.attention.attend import PersonModel, learn, relearn, search
 from peopleboy.tracker.attention.attention_config import AttentionConfig
-from peopleboy.tracker.attention.parts import check_box
-from peopleboy.tracker.attention.people.colour_look import ColourLook
+from peopleboy.tracker.attention.feature_maps import CELL_PX
+from peopleboy.tracker.attention.image_sums import Sight
+from peopleboy.tracker.attention.part_model import HEAD, TORSO, Cells, cells_of, check_box
 from peopleboy.tracker.attention.people.views import View
-from peopleboy.tracker.attention.sight import Sight
 
-Look = TypeVar("Look")
+# What a person's head and torso look like whatever the light: their colours over their common brightness.
+
+Doubles = NDArray[np.float64]
+
+_STEPS: Final = 8  # of each of red, green, blue
+_BRIGHTNESS: Final = 90.0  # [grey] to which the mean of both parts is brought
+_WEIGHTS: Final = (0.3, 0.7)  # of head and torso
+_DARKEST: Final = 8.0  # [grey] mean below which colours are noise
+_RANGE: Final = 256.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ColourLook:
+    """Colours of head and torso.
+
+    Attributes:
+        shares: (2, 512) of each part's pixels at each colour; a pixel counts for the eight that are nearest,
+            the more, the nearer, lest a little more light changes everything.
+    """
+
+    shares: Doubles
+
+    @classmethod
+    def of(cls, view: View) -> Self | None:
+        """Look at a person; None where head or torso are not all in the image, or it is too dark."""
+        rows, columns = (side // CELL_PX for side in view.image.shape[:2])
+        parts = [cells_of(part, view.box) for part in (HEAD, TORSO)]
+        if not all(cells.is_inside(rows, columns) for cells in parts):
+            return None
+        pixels = [_pixels(view.image, cells) for cells in parts]
+        light = float(np.concatenate(pixels).mean())
+        if light < _DARKEST:
+            return None
+        return cls(np.array([_histogram(part, _BRIGHTNESS / light) for part in pixels]))
+
+    def likeness(self, other: ColourLook) -> float:
+        """Tell how much of their colours two have in common: 1 for the same, 0 for nothing.
+
+        Source: Bhattacharyya's coefficient, as in the situation-awareness thesis, equation 4.25.
+        """
+        return float(np.sqrt(self.shares * other.shares).sum(axis=1) @ _WEIGHTS)
+
+    def updated(self, new: ColourLook, rate: float) -> ColourLook:
+        """Take in a share of how the person looks now (situation-awareness thesis, equation 5.15)."""
+        return ColourLook((1.0 - rate) * self.shares + rate * new.shares)
+
+
+def _pixels(image: NDArray[np.uint8], cells: Cells) -> NDArray[np.uint8]:
+    top, left = CELL_PX * cells.row, CELL_PX * cells.column
+    part = image[top : top + CELL_PX * cells.height, left : left + CELL_PX * cells.width]
+    return np.ascontiguousarray(part).reshape(-1, 3)
+
+
+@njit(cache=True, nogil=True)
+def _histogram(pixels: NDArray[np.uint8], scale: float) -> Doubles:
+    """Give the shares (512,) of the colours of pixels (N, 3), made brighter by a factor."""
+    shares = np.zeros(_STEPS**3)
+    low, over = np.zeros(3, np.int64), np.zeros(3)
+    for i in range(pixels.shape[0]):
+        for c in range(3):
+            place = min(pixels[i, c] * scale, _RANGE) * _STEPS / _RANGE - 0.5
+            place = min(max(place, 0.0), _STEPS - 1.001)
+            low[c] = int(place)
+            over[c] = place - low[c]
+        for corner in range(8):
+            weight, bin_ = 1.0, 0
+            for c in range(3):
+                is_upper = (corner >> c) & 1
+                weight *= over[c] if is_upper else 1.0 - over[c]
+                bin_ = bin_ * _STEPS + low[c] + is_upper
+            shares[bin_] += weight
+    shares /= max(pixels.shape[0], 1)
+    return shares
+
+
+Appearance = TypeVar("Appearance")
 Seen = TypeVar("Seen")
 
 
-class Recogniser(Protocol[Look, Seen]):
+class Recogniser(Protocol[Appearance, Seen]):
     """Whatever tells people by their looks."""
 
     def see(self, view: View) -> Seen | None:
         """Look at somebody in one image; None where there is not enough of the person in it."""
         ...
 
-    def learned(self, known: Look | None, seen: Seen, rate: float) -> Look:
+    def learned(self, known: Appearance | None, seen: Seen, rate: float) -> Appearance:
         """Learn somebody, or take in a share of how a known one looks now."""
         ...
 
-    def score(self, known: Look, seen: Seen) -> float:
+    def score(self, known: Appearance, seen: Seen) -> float:
         """Tell how likely somebody is a known person, 0..1, whoever else is there."""
         ...
 
@@ -83,13 +162,13 @@ class ByFocus:
             self._newest = Sight.of(view.image, self._config)
         return Spotted(self._newest, view)
 
-    def learned(self, known: PersonLook | None, seen: Spotted, rate: float) -> PersonLook:  # noqa: ARG002
+    def learned(self, known: PersonModel | None, seen: Spotted, rate: float) -> PersonModel:  # noqa: ARG002
         """Learn somebody from the first image; later ones count as little as the source has it."""
         if known is None:
             return learn(seen.sight, seen.view.box, self._config)
         return relearn(known, seen.sight, search(seen.sight, known, self._config), self._config)
 
-    def score(self, known: PersonLook, seen: Spotted) -> float:
+    def score(self, known: PersonModel, seen: Spotted) -> float:
         """Give the score of the focus if it is on this person."""
         focus = search(seen.sight, known, self._config)
         u, v = focus.place

@@ -68,10 +68,10 @@ class Foreground:
         floor = self._floor(calibration, image)
         memory = self._brought_along(image, odometry, floor)
         self.squares, self.novelty = compare(image, memory)
-        told = self.network.probability(self.squares)
-        learn(memory, image, told, max(time_s - self._time_s, _SHORTEST_S))
+        reported = self.network.probability(self.squares)
+        learn(memory, image, reported, max(time_s - self._time_s, _SHORTEST_S))
         self._memory, self._time_s = memory, time_s
-        return told
+        return reported
 
     @property
     def background(self) -> NDArray[np.uint8]:

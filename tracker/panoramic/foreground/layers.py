@@ -89,7 +89,7 @@ def tell(units: Linear, squares: Linear, weights: Linear, biases: Linear) -> Lin
     _, rows, columns = squares.shape
     number, _, wide = units.shape
     outputs = len(biases)
-    told = np.empty((rows * BLOCK, columns * BLOCK), np.float32)
+    reported = np.empty((rows * BLOCK, columns * BLOCK), np.float32)
     of_units = np.empty((outputs, _ROWS * wide), np.float32)
     of_squares = np.empty((outputs, _ROWS * columns), np.float32)
     for first in range(0, rows, _ROWS):
@@ -100,11 +100,11 @@ def tell(units: Linear, squares: Linear, weights: Linear, biases: Linear) -> Lin
         _add_all(of_squares, count * columns, squares, first * columns, weights, number)
         for k in range(count):
             for output in range(outputs):
-                line = told[(first + k) * BLOCK + output // BLOCK]
+                line = reported[(first + k) * BLOCK + output // BLOCK]
                 a = of_units[output, k * wide + _BORDER : (k + 1) * wide - _BORDER]
                 b = of_squares[output, k * columns : (k + 1) * columns]
                 _write_shares(line[output % BLOCK :], a, b, biases[output])
-    return told
+    return reported
 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")

@@ -113,8 +113,8 @@ def learn_in_order(
         for j in range(len(hidden)):
             units[j] = 1.0 / (1.0 + np.exp(-np.dot(hidden[j], inputs[example])))
             total += output[j] * units[j]
-        told = 1.0 / (1.0 + np.exp(-total))
-        blame = (targets[example] - told) * told * (1.0 - told)
+        reported = 1.0 / (1.0 + np.exp(-total))
+        blame = (targets[example] - reported) * reported * (1.0 - reported)
         for j in range(len(hidden)):
             passed = blame * output[j] * units[j] * (1.0 - units[j])
             output[j] += rate * blame * units[j]

@@ -13,15 +13,16 @@ from peopleboy.tracker.frame import PANORAMA, Calibration, Frame
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.panorama_view import choose_view
 from peopleboy.tracker.panoramic.paper.appearance_file import AppearanceModel
-from peopleboy.tracker.panoramic.paper.background import (
+from peopleboy.tracker.panoramic.paper.depth_cues import (
     CLEAN,
     EMPTY_IMAGES,
     Background,
+    Mask,
+    MeasuredFigure,
     Subtraction,
     learn_background,
+    measure,
 )
-from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure, measure
-from peopleboy.tracker.panoramic.paper.panoramic_explanation import PanoramicExplanation
 from peopleboy.tracker.panoramic.paper.position_filter import (
     PRINTED,
     STEP_S,
@@ -31,6 +32,27 @@ from peopleboy.tracker.panoramic.paper.position_filter import (
 )
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
+
+# What the panoramic tracker believes beyond its track.
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PanoramicExplanation:
+    """The inner life of the panoramic tracker at its newest image, for those who draw it or ask why.
+
+    Attributes:
+        background: what it takes for the empty scene.
+        silhouette: (H, W) what differs from that.
+        figure: histograms, angle and cues of the person; None while nobody is seen.
+        distance_m: what the network makes of the cues [m]; None while nobody is seen.
+        estimate: what the filter makes of it, in room coordinates; None while nobody is tracked.
+    """
+
+    background: Background
+    silhouette: Mask
+    figure: MeasuredFigure | None = None
+    distance_m: float | None = None
+    estimate: Estimate | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -145,7 +145,7 @@ def between(sums: Map, layer: int, left: float, right: float, top: float, bottom
 
 
 @njit(cache=True, nogil=True)
-def _at(sums: Map, x: float, y: float, told: Floats) -> None:
+def _at(sums: Map, x: float, y: float, reported: Floats) -> None:
     """Interpolate sums between corners; above and below the image nothing is added."""
     width = sums.shape[1] - 1
     turns = math.floor(x / width)
@@ -157,7 +157,7 @@ def _at(sums: Map, x: float, y: float, told: Floats) -> None:
         upper = (1.0 - a) * sums[j, i, layer] + a * sums[j, i + 1, layer] + turns * sums[j, width, layer]
         lower = (1.0 - a) * sums[j + 1, i, layer] + a * sums[j + 1, i + 1, layer]
         lower += turns * sums[j + 1, width, layer]
-        told[layer] = (1.0 - b) * upper + b * lower
+        reported[layer] = (1.0 - b) * upper + b * lower
 
 
 @njit(cache=True, nogil=True)

@@ -13,17 +13,13 @@ from peopleboy.tracker.frame import PANORAMA, Calibration, Frame, Odometry
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.foreground.foreground import Foreground
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
+from peopleboy.tracker.panoramic.people.band_colours import BandColours
 from peopleboy.tracker.panoramic.people.floor_motion import Motion
-from peopleboy.tracker.panoramic.people.identity import Register
-from peopleboy.tracker.panoramic.people.life import Life
-from peopleboy.tracker.panoramic.people.looks import Looks
+from peopleboy.tracker.panoramic.people.panorama_patches import Scene, person_box, promising_places
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
-from peopleboy.tracker.panoramic.people.panoramic_person import PanoramicPerson
-from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
+from peopleboy.tracker.panoramic.people.panoramic_observation import Onlooker, PeopleExplanation, Sighting
+from peopleboy.tracker.panoramic.people.panoramic_tracks import Life, PanoramicPerson, Register
 from peopleboy.tracker.panoramic.people.place_model import PlaceModel
-from peopleboy.tracker.panoramic.people.scene import Scene, person_box
-from peopleboy.tracker.panoramic.people.search import promising_places
-from peopleboy.tracker.panoramic.people.sighting import Onlooker, Sighting
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.track import FloorPlace, Status, Track
 
@@ -121,11 +117,11 @@ class PanoramicTracker:
             hidden = scene.hidden_share(bearing, distance)
             seen = looker.expected(person.motion, scene) if hidden < config.blind_share else None
             least = config.hidden_share if seen is None else config.partly_share
-            hider = _hider(bearing, found, looker) if hidden > least else None
+            occluder = _hider(bearing, found, looker) if hidden > least else None
             if seen is None:
-                found.append(life.unseen(person, hider))
+                found.append(life.unseen(person, occluder))
             else:
-                found.append(life.seen(person, seen, _taken(seen, scene), hider))
+                found.append(life.seen(person, seen, _taken(seen, scene), occluder))
         return found
 
     def _with_newcomers(
@@ -139,14 +135,16 @@ class PanoramicTracker:
                 continue
             if any(one.is_seen and _way(one, seen) < config.apart_m for one in everybody):
                 continue
-            looks = _taken(seen, scene)
-            lost = [one for one in everybody if life.may_be(one, seen.place_m, looks)]
+            clothing = _taken(seen, scene)
+            lost = [one for one in everybody if life.could_be(one, seen.place_m, clothing)]
             if lost:
                 back = min(lost, key=lambda one: _way(one, seen))
                 motion = Motion.begin(seen.place_m, seen.error_m2)
-                everybody[everybody.index(back)] = life.seen(replace(back, motion=motion), seen, looks, None)
+                everybody[everybody.index(back)] = life.seen(
+                    replace(back, motion=motion), seen, clothing, None
+                )
             else:
-                everybody.append(life.newcomer(seen, looks))
+                everybody.append(life.initiate(seen, clothing))
         return everybody
 
     def _kept(self, persons: Sequence[PanoramicPerson], life: Life) -> list[PanoramicPerson]:
@@ -161,11 +159,11 @@ class PanoramicTracker:
 
     def _named(self, persons: Sequence[PanoramicPerson], life: Life) -> tuple[PanoramicPerson, ...]:
         """Give numbers to those who are believed in: of who is hidden and may have come out, or new ones."""
-        known = list(self._register.put_right(persons, life.time_s))
+        known = list(self._register.resolve_swaps(persons, life.time_s))
         for one in [one for one in known if one.id == 0 and self._is_believed(one, life)]:
             known.remove(one)
             place_m = one.motion.place_m
-            hidden = [other for other in known if other.id and life.may_be(other, place_m, one.newest)]
+            hidden = [other for other in known if other.id and life.could_be(other, place_m, one.newest)]
             if hidden:
                 back = min(hidden, key=lambda other: _apart(other, one))
                 known[known.index(back)] = one.known_as(back)
@@ -211,11 +209,11 @@ def _hider(bearing: float, nearer: Sequence[PanoramicPerson], looker: Onlooker) 
     return min(off, key=lambda number: off[number], default=None)
 
 
-def _taken(seen: Sighting, scene: Scene) -> Looks:
+def _taken(seen: Sighting, scene: Scene) -> BandColours:
     """Tell what somebody looks like, and take that one out of the picture."""
-    looks = scene.looks(seen.bearing_rad, seen.distance_m)
+    clothing = scene.clothing(seen.bearing_rad, seen.distance_m)
     scene.cover(seen.bearing_rad, seen.distance_m)
-    return looks
+    return clothing
 
 
 def _way(person: PanoramicPerson, seen: Sighting) -> float:

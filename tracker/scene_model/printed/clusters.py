@@ -4,13 +4,121 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.frame import Floats
+from peopleboy.tracker.frame import DEPTH, Floats, Frame
+from peopleboy.tracker.scene_model.geometry import Geometry, grey_of
 from peopleboy.tracker.scene_model.pieces import Bools
-from peopleboy.tracker.scene_model.printed.cloud import Cloud
 from peopleboy.tracker.scene_model.printed.printed_config import PrintedConfig
+from peopleboy.tracker.scene_model.scene import Metres
+
+# The points of a frame, cleaned, with their velocities: 6-D data (SA 3.3, 3.4).
+
+Grey = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cloud:
+    """A frame's points, organised as its image.
+
+    Attributes:
+        depth_m: (H, W) depth [m]; 0 where a reading was dropped.
+        points_m: (H, W, 3) in the robot's frame.
+        velocity_m: (H, W, 3) way since the frame before [m]; 0 where it is not known.
+        grey: (H, W) what the flow is found in.
+    """
+
+    depth_m: Metres
+    points_m: Metres
+    velocity_m: Metres
+    grey: Grey
+
+    @property
+    def speed_m(self) -> Metres:
+        """(H, W) way since the frame before [m]."""
+        return np.asarray(np.sqrt(np.einsum("hwk,hwk->hw", self.velocity_m, self.velocity_m)), np.float32)
+
+
+class CloudMaker:
+    """Makes the cloud of each frame; it remembers the one before.
+
+    Args:
+        config: settings.
+    """
+
+    def __init__(self, config: PrintedConfig) -> None:
+        self._config = config
+        self._flow = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_FAST)
+        self._before: Cloud | None = None
+
+    def __call__(self, frame: Frame, geometry: Geometry) -> Cloud:
+        """Clean a frame's readings, and find how each point moved.
+
+        Raises:
+            BadInput: neither colours nor amplitude of the same pixels.
+        """
+        grey, amplitude = grey_of(frame)
+        depth = _cleaned(frame.depth(DEPTH), amplitude, self._config)
+        origin = geometry.calibration.robot_from_camera[:3, 3].astype(np.float32)
+        points = origin + geometry.rays * depth[:, :, None]
+        velocity = np.zeros_like(points)
+        if self._before is not None:
+            flow = self._flow.calc(grey, self._before.grey, np.zeros((*grey.shape, 2), np.float32))
+            velocity = _smoothed(_ways(points, depth, self._before.points_m, self._before.depth_m, flow))
+        self._before = Cloud(depth, points, velocity, grey)
+        return self._before
+
+
+def _cleaned(depth: NDArray[np.uint16], amplitude: Metres, config: PrintedConfig) -> Metres:
+    """Smooth (H, W) depths [mm], the nearer the more; drop what is dark or mixed (SA 3.3)."""
+    fine, coarse = (cv2.medianBlur(depth, size) for size in (3, 5))
+    smooth = np.where(fine < 1000.0 * config.near_m, coarse, fine).astype(np.float32) / np.float32(1000.0)
+    smooth[(depth == 0) | (amplitude < config.dark * float(amplitude.mean()))] = 0.0
+    return np.asarray(
+        _without_flying(smooth, config.neighbours, np.float32(config.edge_m), np.float32(config.edge_share)),
+        np.float32,
+    )
+
+
+@njit(cache=True, nogil=True)
+def _without_flying(depth, fewest, near_m, near_share):  # type: ignore[no-untyped-def]
+    height, width = depth.shape
+    kept = depth.copy()
+    for v in range(1, height - 1):
+        for u in range(1, width - 1):
+            z = depth[v, u]
+            near, count = max(near_m, near_share * z), -1
+            for row in range(v - 1, v + 2):
+                for column in range(u - 1, u + 2):
+                    count += abs(depth[row, column] - z) < near
+            if count < fewest:
+                kept[v, u] = 0.0
+    return kept
+
+
+@njit(cache=True, nogil=True)
+def _ways(points, depth, before, depth_before, flow):  # type: ignore[no-untyped-def]
+    """Look up the point that each one was in the frame before; the flow leads there."""
+    height, width = depth.shape
+    ways = np.zeros((height, width, 3), np.float32)
+    for v in range(height):
+        for u in range(width):
+            column, row = round(u + flow[v, u, 0]), round(v + flow[v, u, 1])
+            if depth[v, u] <= 0.0 or not (0 <= column < width and 0 <= row < height):
+                continue
+            if depth_before[row, column] > 0.0:
+                for k in range(3):
+                    ways[v, u, k] = points[v, u, k] - before[row, column, k]
+    return ways
+
+
+def _smoothed(ways: Metres) -> Metres:
+    """Take the median of 5 x 5 of each component (SA 3.4)."""
+    return np.stack([cv2.medianBlur(np.ascontiguousarray(ways[:, :, k]), 5) for k in range(3)], axis=2)
+
 
 _STRIDE = 1 << 12  # of cells' numbers, more than there are in a row
 

@@ -11,8 +11,7 @@ from numba import njit
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.scene_model.geometry import Geometry
 from peopleboy.tracker.scene_model.pieces import Bools, Span, pieces_of, pixels_by_label
-from peopleboy.tracker.scene_model.printed.cloud import Cloud, CloudMaker
-from peopleboy.tracker.scene_model.printed.clusters import Clusters, find_clusters
+from peopleboy.tracker.scene_model.printed.clusters import Cloud, CloudMaker, Clusters, find_clusters
 from peopleboy.tracker.scene_model.printed.ellipses import Ellipses, MovingEllipse, inside
 from peopleboy.tracker.scene_model.printed.printed_config import PrintedBackground, PrintedConfig
 from peopleboy.tracker.scene_model.scene import Happening, Labels, SceneObject, SeenPerson, State, VistaScene

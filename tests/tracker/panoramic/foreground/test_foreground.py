@@ -65,9 +65,9 @@ def test_images_rolled_by_whole_squares_give_the_same_answers_rolled(standing):
     for k in range(5):
         image, at = film.images[k], float(film.time_s[k])
         stood = None if k == 0 else Odometry()
-        told = eyes.update(image, at, stood, calibration)
+        reported = eyes.update(image, at, stood, calibration)
         again = rolled.update(np.ascontiguousarray(np.roll(image, 100, axis=1)), at, stood, calibration)
-        assert np.array_equal(again, np.roll(told, 100, axis=1))
+        assert np.array_equal(again, np.roll(reported, 100, axis=1))
 
 
 def test_the_same_images_give_the_same_answers(driving):

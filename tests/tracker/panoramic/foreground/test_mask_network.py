@@ -46,15 +46,15 @@ def by_definition(network, squares):
                 if 0 <= source < ROWS:
                     found[row] += np.roll(units[source], -(k % 3 - 1) * d, axis=0) @ weights[k]
         units = units + np.maximum(found + bias, 0)
-    told = 1 / (1 + np.exp(-(np.concatenate([units, x], axis=2) @ network.last + network.bias)))
-    return told.reshape(ROWS, COLUMNS, BLOCK, BLOCK).transpose(0, 2, 1, 3).reshape(ROWS * BLOCK, -1)
+    reported = 1 / (1 + np.exp(-(np.concatenate([units, x], axis=2) @ network.last + network.bias)))
+    return reported.reshape(ROWS, COLUMNS, BLOCK, BLOCK).transpose(0, 2, 1, 3).reshape(ROWS * BLOCK, -1)
 
 
 def test_it_is_what_its_definition_says(network):
     squares = drawn(INPUTS, ROWS, COLUMNS)
-    told = network.probability(squares)
-    assert told.dtype == np.float32
-    np.testing.assert_allclose(told, by_definition(network, squares), atol=1e-5)
+    reported = network.probability(squares)
+    assert reported.dtype == np.float32
+    np.testing.assert_allclose(reported, by_definition(network, squares), atol=1e-5)
 
 
 @pytest.mark.parametrize("columns", [1, 5, 23])

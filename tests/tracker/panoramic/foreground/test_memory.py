@@ -108,10 +108,10 @@ def novelty_of(off_sd, age_s=1e9):
     memory = first_memory(image)
     memory[3], memory[AGE] = 25.0, age_s
     image[50, 101] = 100 + round(5 * off_sd)
-    _, told = compare(as_taken(image), memory)
-    assert told.shape == (120, 480)
-    assert np.count_nonzero(told) <= 1
-    return float(told[50, 101])
+    _, reported = compare(as_taken(image), memory)
+    assert reported.shape == (120, 480)
+    assert np.count_nonzero(reported) <= 1
+    return float(reported[50, 101])
 
 
 def test_new_is_what_differs_by_more_than_two_standard_deviations_and_wholly_from_eight_on():
@@ -132,10 +132,10 @@ def test_before_a_patterned_floor_somebody_is_as_new_after_a_drive_as_before():
     memory[AGE] = 60.0
     someone = floor.copy()
     someone[20:80, 200:220] += 40
-    told = {}
+    reported = {}
     for doubt_px in (0.0, 25.0):
         memory[DOUBT] = doubt_px
-        _, told[doubt_px] = compare(as_taken(someone), memory)
-    assert np.array_equal(told[0.0], told[25.0])
-    assert (told[25.0][20:80, 200:220] > 0.5).mean() > 0.99
-    assert np.count_nonzero(told[25.0]) == np.count_nonzero(told[25.0][20:80, 200:220])
+        _, reported[doubt_px] = compare(as_taken(someone), memory)
+    assert np.array_equal(reported[0.0], reported[25.0])
+    assert (reported[25.0][20:80, 200:220] > 0.5).mean() > 0.99
+    assert np.count_nonzero(reported[25.0]) == np.count_nonzero(reported[25.0][20:80, 200:220])

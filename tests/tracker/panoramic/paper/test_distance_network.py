@@ -44,9 +44,9 @@ def test_its_answer_is_the_textbooks():
     cues, distances = examples()
     network = teach(cues, distances, np.random.default_rng(0), QUICK)
     low, high = cues.min(axis=0), cues.max(axis=0)
-    told = [forward([*(row - low) / (high - low), 1.0], network.hidden, network.output) for row in cues]
+    reported = [forward([*(row - low) / (high - low), 1.0], network.hidden, network.output) for row in cues]
     nearest, farthest = distances.min(), distances.max()
-    expected = nearest + (np.array(told) - 0.1) / 0.8 * (farthest - nearest)
+    expected = nearest + (np.array(reported) - 0.1) / 0.8 * (farthest - nearest)
     np.testing.assert_allclose(network.distance(cues), expected)
 
 

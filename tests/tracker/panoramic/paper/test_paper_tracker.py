@@ -119,10 +119,10 @@ def test_it_explains_what_it_saw(model):
     walker = Walker(model).learn()
     assert walker.tracker.explanation is None
     walker.see(3.0, 0.0)
-    told = walker.tracker.explanation
-    assert np.array_equal(told.silhouette.sum(axis=0), told.figure.columns)
-    assert told.distance_m == pytest.approx(model.network.distance(np.array([told.figure.cues]))[0])
-    assert told.background.mean.shape == (HEIGHT, WIDTH, 3)
+    reported = walker.tracker.explanation
+    assert np.array_equal(reported.silhouette.sum(axis=0), reported.figure.columns)
+    assert reported.distance_m == pytest.approx(model.network.distance(np.array([reported.figure.cues]))[0])
+    assert reported.background.mean.shape == (HEIGHT, WIDTH, 3)
     walker.see()
     assert walker.tracker.explanation.figure is None
 

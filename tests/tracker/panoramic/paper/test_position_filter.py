@@ -59,13 +59,13 @@ def test_with_velocity_each_step_repeats_the_last_estimated_one():
     _, measured = walk(12)
     p, x, u = R, measured[0], np.zeros(2)
     moving = PositionFilter(PRINTED, uses_velocity=True)
-    for z, told in zip(measured[1:], filtered(moving, measured)[1:], strict=True):
+    for z, reported in zip(measured[1:], filtered(moving, measured)[1:], strict=True):
         p = p + Q
         k = p @ np.linalg.inv(p + R)
         x, before = x + u + k @ (z - x - u), x
         u, p = x - before, p - k @ p
-        np.testing.assert_allclose(told.position_m, x)
-        np.testing.assert_allclose(told.covariance_m2, p)
+        np.testing.assert_allclose(reported.position_m, x)
+        np.testing.assert_allclose(reported.covariance_m2, p)
 
 
 def test_somebody_who_walks_evenly_is_followed_without_lag_by_velocity_alone():

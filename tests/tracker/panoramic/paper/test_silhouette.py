@@ -5,8 +5,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.tracker.panoramic.paper.background import CLEAN, LITERAL, Subtraction, learn_background
-from peopleboy.tracker.panoramic.paper.depth_cues import bearing, covering_arc, measure
+from peopleboy.tracker.panoramic.paper.depth_cues import (
+    CLEAN,
+    LITERAL,
+    Subtraction,
+    bearing,
+    covering_arc,
+    learn_background,
+    measure,
+)
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_panoramas import HEIGHT, WIDTH, draw, empty_hall, person_mask
 

@@ -54,10 +54,10 @@ def patch_by_counting(maps, bearing, distance, fine=24):
 @given(st.integers(0, 5), BEARINGS, DISTANCES)
 def test_a_cell_is_the_mean_of_the_pixels_below_it(seed, bearing, distance):
     maps = blots(seed)
-    told = FigureMap.build(*maps, CAMERA).patches(np.array([bearing]), np.array([distance]))
+    reported = FigureMap.build(*maps, CAMERA).patches(np.array([bearing]), np.array([distance]))
     counted = patch_by_counting(maps, bearing, distance)
-    np.testing.assert_allclose(told.reshape(LAYERS, UP, ACROSS), counted, atol=0.08)
-    assert np.abs(told.ravel() - counted.ravel()).mean() < 0.01
+    np.testing.assert_allclose(reported.reshape(LAYERS, UP, ACROSS), counted, atol=0.08)
+    assert np.abs(reported.ravel() - counted.ravel()).mean() < 0.01
 
 
 @settings(max_examples=40)
@@ -82,12 +82,12 @@ def test_whole_turns_make_no_difference(bearing, distance, turns):
 @pytest.mark.parametrize("distance", [1.2, 2.0, 4.0, 7.0])
 def test_a_person_looks_the_same_at_every_distance(distance, bearing):
     mask, _ = mask_of(Cardboard(distance, bearing))
-    told = figures_of(mask.astype(np.float32)).patches(np.array([bearing]), np.array([distance]))
-    people = told.reshape(LAYERS, UP, ACROSS)[PEOPLE]
+    reported = figures_of(mask.astype(np.float32)).patches(np.array([bearing]), np.array([distance]))
+    people = reported.reshape(LAYERS, UP, ACROSS)[PEOPLE]
     heights = TOP_M + (BOTTOM_M - TOP_M) * (np.arange(UP) + 0.5) / UP
     aside = HALF_WIDTH_M * np.abs(1 - 2 * (np.arange(ACROSS) + 0.5) / ACROSS)
     body, floor = np.ix_(heights > 0.1, aside < 0.12), heights < -0.12
-    in_image = told.reshape(LAYERS, UP, ACROSS)[KNOWN].min(axis=1) > 0.99
+    in_image = reported.reshape(LAYERS, UP, ACROSS)[KNOWN].min(axis=1) > 0.99
     assert people[body][in_image[heights > 0.1]].min() > 0.9
     assert people[floor].max() < 0.1
     assert people[:, aside > 0.36].max() < 0.1
@@ -101,7 +101,7 @@ def test_of_what_is_covered_nothing_counts():
 
 
 def test_beyond_the_lower_border_nothing_is_known():
-    told = figures_of(np.ones((HEIGHT, WIDTH), np.float32)).patches(np.zeros(1), np.full(1, 1.0))
-    known = told.reshape(LAYERS, UP, ACROSS)[KNOWN]
+    reported = figures_of(np.ones((HEIGHT, WIDTH), np.float32)).patches(np.zeros(1), np.full(1, 1.0))
+    known = reported.reshape(LAYERS, UP, ACROSS)[KNOWN]
     assert known[0] == pytest.approx(1.0, abs=1e-3)
     assert not known[-1].any()

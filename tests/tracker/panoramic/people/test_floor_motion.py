@@ -14,15 +14,15 @@ def drawn_error(rng):
 def batch(places, errors, times):
     """Least squares over all places at once, at a velocity that does not change: state at the end."""
     until = times[-1]
-    normal, told = np.zeros((4, 4)), np.zeros(4)
+    normal, reported = np.zeros((4, 4)), np.zeros(4)
     # What is believed of the speed at first; velocity is constant, so it is also that at the end.
     normal[2:, 2:] += np.eye(2) / FIRST_SPEED_SD_M_S**2
     for place, error, time in zip(places, errors, times, strict=True):
         row = np.hstack([np.eye(2), (time - until) * np.eye(2)])
         normal += row.T @ np.linalg.solve(error, row)
-        told += row.T @ np.linalg.solve(error, place)
+        reported += row.T @ np.linalg.solve(error, place)
     covariance = np.linalg.inv(normal)
-    return covariance @ told, covariance
+    return covariance @ reported, covariance
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.tracker.panoramic.people.looks import BANDS, NO_LOOKS, Looks, look_at
+from peopleboy.tracker.panoramic.people.band_colours import BANDS, NO_COLOURS, BandColours, look_at
 from tests.helpers.images.cardboard import (
     CAMERA,
     GREEN,
@@ -31,7 +31,7 @@ def looks_of(person, people=(), light=1.0):
 
 
 def drawn_looks(seed):
-    return Looks(np.random.default_rng(seed).uniform(0.1, 2.0, (BANDS, 3)).astype(np.float32))
+    return BandColours(np.random.default_rng(seed).uniform(0.1, 2.0, (BANDS, 3)).astype(np.float32))
 
 
 @pytest.mark.parametrize("bearing", [0.3, math.pi, -3.1])
@@ -57,14 +57,14 @@ def test_more_or_less_light_makes_no_difference(light, bearing, distance):
 def test_only_pixels_count_that_are_the_persons_own():
     back, front = Cardboard(4.0, 1.0, shirt=RED), Cardboard(2.0, 1.0 + 0.1, shirt=GREEN)
     scene = scene_of([back, front])
-    mixed = scene.looks(1.0, 4.0)
+    mixed = scene.clothing(1.0, 4.0)
     scene.cover(front.bearing_rad, front.distance_m)
-    assert scene.looks(1.0, 4.0).unlikeness(looks_of(back)) < 0.6 < mixed.unlikeness(looks_of(back))
+    assert scene.clothing(1.0, 4.0).unlikeness(looks_of(back)) < 0.6 < mixed.unlikeness(looks_of(back))
 
 
 def test_of_nobody_there_are_no_looks():
-    assert np.isnan(scene_of([]).looks(0.0, 3.0).colours).all()
-    assert math.isnan(NO_LOOKS.unlikeness(drawn_looks(0)))
+    assert np.isnan(scene_of([]).clothing(0.0, 3.0).colours).all()
+    assert math.isnan(NO_COLOURS.unlikeness(drawn_looks(0)))
 
 
 def test_nobody_is_unlike_itself_and_others_are_by_their_squared_difference_in_spreads():
@@ -74,7 +74,7 @@ def test_nobody_is_unlike_itself_and_others_are_by_their_squared_difference_in_s
     assert one.unlikeness(other) == pytest.approx(float((away**2).mean()), rel=1e-5)
     part = other.colours.copy()
     part[0] = np.nan
-    assert one.unlikeness(Looks(part)) == pytest.approx(float((away[1:] ** 2).mean()), rel=1e-5)
+    assert one.unlikeness(BandColours(part)) == pytest.approx(float((away[1:] ** 2).mean()), rel=1e-5)
 
 
 def test_looks_at_different_clothes_differ_by_far_more_than_those_of_one_person_elsewhere():
@@ -88,13 +88,13 @@ def test_looks_are_learned_slowly_and_what_was_never_seen_is_taken_over_at_once(
     known, newest = drawn_looks(3).colours, drawn_looks(4)
     gap = known.copy()
     gap[2] = np.nan
-    learned = Looks(gap).joined(newest).colours
+    learned = BandColours(gap).joined(newest).colours
     assert np.array_equal(learned[2], newest.colours[2])
     way = (learned - known) / (newest.colours - known)
     assert ((way[[0, 1, 3]] > 0) & (way[[0, 1, 3]] < 0.2)).all()
-    unseen = Looks(known).joined(NO_LOOKS)
+    unseen = BandColours(known).joined(NO_COLOURS)
     assert np.array_equal(unseen.colours, known)
-    many = Looks(known)
+    many = BandColours(known)
     for _ in range(400):
         many = many.joined(newest)
     np.testing.assert_allclose(many.colours, newest.colours, atol=1e-3)

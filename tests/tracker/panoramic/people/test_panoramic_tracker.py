@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.frame import Frame, Odometry, PinholeCalibration
+from peopleboy.tracker.panoramic.people.panorama_patches import person_box
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
-from peopleboy.tracker.panoramic.people.scene import person_box
 from peopleboy.tracker.track import Status
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.cardboard import (
@@ -72,13 +72,13 @@ def test_round_the_robot_and_over_the_seam_a_walker_is_one_track(rate_hz):
     def walker(time_s):
         return [Cardboard(2.5, begin + 0.35 * time_s)]
 
-    told = stage.play(18.0, walker)
+    reported = stage.play(18.0, walker)
     assert stage.ever == {1}
-    for k, tracks in enumerate(told):
+    for k, tracks in enumerate(reported):
         time_s = k / rate_hz
         if time_s > 1.0:
             assert number_at(tracks, walker(time_s)[0], within_m=0.3) == 1
-    boxes = [tracks[0].boxes["panorama"] for tracks in told if tracks]
+    boxes = [tracks[0].boxes["panorama"] for tracks in reported if tracks]
     assert any(left + width > WIDTH - 0.5 for left, _, width, _ in boxes)
 
 
@@ -90,12 +90,12 @@ def test_who_walks_behind_another_one_keeps_its_number(rate_hz):
     def scene(time_s):
         return front, Cardboard(3.5, 0.4 + 0.2 * time_s, shirt=RED)
 
-    told = stage.play(6.0, scene)
-    early, late = round(1.2 * rate_hz), len(told) - 1
-    number = number_at(told[early], scene(early / rate_hz)[1])
-    assert number == number_at(told[late], scene(late / rate_hz)[1])
+    reported = stage.play(6.0, scene)
+    early, late = round(1.2 * rate_hz), len(reported) - 1
+    number = number_at(reported[early], scene(early / rate_hz)[1])
+    assert number == number_at(reported[late], scene(late / rate_hz)[1])
     assert stage.ever == {1, 2}
-    assert all(1 in {track.id for track in tracks} for tracks in told[early:])
+    assert all(1 in {track.id for track in tracks} for tracks in reported[early:])
 
 
 @RATES
@@ -108,15 +108,15 @@ def test_who_is_hidden_stays_in_mind_and_is_told_who_hides_it(rate_hz):
         bearing = 1.5 + 0.25 * (min(time_s, 2.0) + max(time_s - 4.0, 0.0))
         return back, Cardboard(1.8, bearing, shirt=GREEN)
 
-    told = stage.play(6.0, scene)
-    number = number_at(told[round(1.0 * rate_hz)], back)
-    hider = 3 - number
-    for tracks in told[round(2.4 * rate_hz) : round(4.0 * rate_hz)]:
+    reported = stage.play(6.0, scene)
+    number = number_at(reported[round(1.0 * rate_hz)], back)
+    occluder = 3 - number
+    for tracks in reported[round(2.4 * rate_hz) : round(4.0 * rate_hz)]:
         hidden = next(track for track in tracks if track.id == number)
-        assert (hidden.status, hidden.occluder) == (Status.TOTALLY_OCCLUDED, hider)
+        assert (hidden.status, hidden.occluder) == (Status.TOTALLY_OCCLUDED, occluder)
         assert number_at([hidden], back) == number
-    assert number_at(told[-1], back) == number
-    assert told[-1][number - 1].status is Status.TRACKED
+    assert number_at(reported[-1], back) == number
+    assert reported[-1][number - 1].status is Status.TRACKED
     assert stage.ever == {1, 2}
 
 
@@ -143,11 +143,11 @@ def test_two_who_pass_each_other_keep_their_numbers(rate_hz):
             Cardboard(3.4, 0.7 - 0.18 * time_s, shirt=BLUE),
         )
 
-    told = stage.play(6.0, scene)
-    early, late = round(1.2 * rate_hz), len(told) - 1
+    reported = stage.play(6.0, scene)
+    early, late = round(1.2 * rate_hz), len(reported) - 1
     for k in range(2):
-        first = number_at(told[early], scene(early / rate_hz)[k])
-        assert first == number_at(told[late], scene(late / rate_hz)[k])
+        first = number_at(reported[early], scene(early / rate_hz)[k])
+        assert first == number_at(reported[late], scene(late / rate_hz)[k])
         assert first is not None
     assert stage.ever == {1, 2}
 
@@ -183,11 +183,11 @@ def test_numbers_that_two_people_took_from_each_other_are_put_right(rate_hz):
         left, right = (RED, BLUE) if time_s < meet_s else (BLUE, RED)
         return Cardboard(2.5, aside, shirt=left), Cardboard(2.5, -aside, shirt=right)
 
-    told = stage.play(5.0, scene)
-    early, late = round(1.8 * rate_hz), len(told) - 1
-    red, blue = (number_at(told[early], one) for one in scene(early / rate_hz))
+    reported = stage.play(5.0, scene)
+    early, late = round(1.8 * rate_hz), len(reported) - 1
+    red, blue = (number_at(reported[early], one) for one in scene(early / rate_hz))
     assert {red, blue} == {1, 2}
-    assert [number_at(told[late], one) for one in scene(late / rate_hz)] == [blue, red]
+    assert [number_at(reported[late], one) for one in scene(late / rate_hz)] == [blue, red]
     assert stage.ever == {1, 2}
 
 
@@ -243,7 +243,9 @@ def test_two_tracks_at_one_place_become_one():
     assert len(first) == 2
     persons, number = stage.tracker._persons, number_at(first, ANNA)
     anna = next(one for one in persons if one.id == number)
-    stage.tracker._persons = tuple(replace(one, motion=anna.motion, looks=anna.looks) for one in persons)
+    stage.tracker._persons = tuple(
+        replace(one, motion=anna.motion, clothing=anna.clothing) for one in persons
+    )
     (track,) = stage.show(ANNA)
     assert track.id in (1, 2)
     assert [one.id for one in stage.play(1.0, still(ANNA))[-1]] == [track.id]
@@ -259,11 +261,11 @@ def test_it_explains_who_was_taken_for_whom():
     stage = Stage()
     assert stage.tracker.explanation is None
     stage.play(1.0, still(ANNA, BERT))
-    told = stage.tracker.explanation
-    assert np.array_equal(told.foreground, is_cardboard(panorama([ANNA, BERT])))
-    assert told.covered[told.foreground > 0].mean() > 0.95
-    assert not told.covered[told.foreground == 0].any()
-    assert np.array_equal(told.background, HALL)
+    reported = stage.tracker.explanation
+    assert np.array_equal(reported.foreground, is_cardboard(panorama([ANNA, BERT])))
+    assert reported.covered[reported.foreground > 0].mean() > 0.95
+    assert not reported.covered[reported.foreground == 0].any()
+    assert np.array_equal(reported.background, HALL)
 
 
 @pytest.mark.parametrize("other", [

@@ -34,7 +34,7 @@ def patches(number):
 
 def test_a_network_is_sums_cut_off_below_zero_between_its_layers():
     inputs = np.random.default_rng(0).normal(0, 1, (5, INPUTS)).astype(np.float32)
-    for told, row in zip(MODEL.place.tell(inputs), inputs.astype(float), strict=True):
+    for reported, row in zip(MODEL.place.tell(inputs), inputs.astype(float), strict=True):
         units = row
         for number, (weights, bias) in enumerate(MODEL.place.layers):
             if number:
@@ -43,18 +43,18 @@ def test_a_network_is_sums_cut_off_below_zero_between_its_layers():
                 sum(u * w for u, w in zip(units, column, strict=True)) + b
                 for column, b in zip(weights.T.astype(float), bias, strict=True)
             ]
-        np.testing.assert_allclose(told, units, rtol=1e-4, atol=1e-4)
+        np.testing.assert_allclose(reported, units, rtol=1e-4, atol=1e-4)
 
 
 def test_places_are_read_each_for_itself():
     shown, distance = patches(6)
-    told = MODEL.look(shown, distance)
-    assert told.evidence.shape == (6,)
-    assert told.offset_m.shape == told.deviation_m.shape == (6, 2)
-    assert (told.deviation_m > 0).all()
+    reported = MODEL.look(shown, distance)
+    assert reported.evidence.shape == (6,)
+    assert reported.offset_m.shape == reported.deviation_m.shape == (6, 2)
+    assert (reported.deviation_m > 0).all()
     for k in range(6):
         alone = MODEL.look(shown[k : k + 1], distance[k : k + 1])
-        for one, all_of_them in ((alone.evidence, told.evidence), (alone.offset_m, told.offset_m)):
+        for one, all_of_them in ((alone.evidence, reported.evidence), (alone.offset_m, reported.offset_m)):
             np.testing.assert_allclose(one[0], all_of_them[k], rtol=1e-4, atol=1e-4)
 
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.panoramic.people.floor_motion import Motion
 from peopleboy.tracker.panoramic.people.panoramic_config import SightingConfig
-from peopleboy.tracker.panoramic.people.sighting import Onlooker
+from peopleboy.tracker.panoramic.people.panoramic_observation import Onlooker
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from tests.helpers.images.cardboard import Cardboard, CardboardModel, scene_of
 

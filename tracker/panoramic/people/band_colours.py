@@ -24,7 +24,7 @@ _SPREAD: Final = 0.055  # by which one person's colours differ from image to ima
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Looks:
+class BandColours:
     """Mean colours of a person.
 
     Attributes:
@@ -33,13 +33,13 @@ class Looks:
 
     colours: Map
 
-    def joined(self, newest: Looks) -> Looks:
+    def joined(self, newest: BandColours) -> BandColours:
         """Learn from one more image."""
         grown = self.colours + _LEARNING * (newest.colours - self.colours)
         known = np.where(np.isnan(self.colours), newest.colours, self.colours)
-        return Looks(np.where(np.isnan(grown), known, grown).astype(np.float32))
+        return BandColours(np.where(np.isnan(grown), known, grown).astype(np.float32))
 
-    def unlikeness(self, other: Looks) -> float:
+    def unlikeness(self, other: BandColours) -> float:
         """Compare two people: mean squared difference in spreads, 0 for the same; NaN if nothing compares."""
         return float(_unlikeness(self.colours, other.colours))
 
@@ -56,7 +56,7 @@ def _unlikeness(colours: Map, others: Map) -> float:
     return total / known if known > 0 else math.nan
 
 
-NO_LOOKS: Final = Looks(np.full((BANDS, 3), np.nan, np.float32))
+NO_COLOURS: Final = BandColours(np.full((BANDS, 3), np.nan, np.float32))
 
 
 def look_at(
@@ -66,7 +66,7 @@ def look_at(
     bearing_rad: float,
     distance_m: float,
     calibration: PanoramaCalibration,
-) -> Looks:
+) -> BandColours:
     """Describe who stands at a bearing and a distance in an RGB panorama (H, W, 3).
 
     Only pixels count that are more likely a person than not (foreground, (H, W)), and that nobody nearer
@@ -79,7 +79,7 @@ def look_at(
     light = max(float(image[::8, ::8].mean()), 1.0)
     with np.errstate(invalid="ignore", divide="ignore"):
         colours = np.where(sums[:, 3:] >= _LEAST_PX, sums[:, :3] / sums[:, 3:] / light, np.nan)
-    return Looks(colours.astype(np.float32))
+    return BandColours(colours.astype(np.float32))
 
 
 def _rows(distance_m: float, calibration: PanoramaCalibration) -> NDArray[np.float64]:

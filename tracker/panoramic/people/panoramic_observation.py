@@ -6,11 +6,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from peopleboy.tracker.panoramic.people.figure_patch import Map
 from peopleboy.tracker.panoramic.people.floor_motion import Floats, Motion
+from peopleboy.tracker.panoramic.people.panorama_patches import Scene
 from peopleboy.tracker.panoramic.people.panoramic_config import SightingConfig
 from peopleboy.tracker.panoramic.people.place_model import PlaceModel
-from peopleboy.tracker.panoramic.people.scene import Scene
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
 
 NEAREST_M = 0.5
@@ -76,17 +78,17 @@ class Onlooker:
         return math.atan2(y, x), max(math.hypot(x, y), NEAREST_M)
 
     def _best(self, scene: Scene, polar: Floats) -> Sighting | None:
-        told = self.model.look(scene.figures.patches(polar[:, 0], polar[:, 1]), polar[:, 1])
-        best = int(np.argmax(told.evidence))
-        along, across = told.offset_m[best].tolist()
+        reported = self.model.look(scene.figures.patches(polar[:, 0], polar[:, 1]), polar[:, 1])
+        best = int(np.argmax(reported.evidence))
+        along, across = reported.offset_m[best].tolist()
         bearing, distance = polar[best].tolist()
         if distance + along < NEAREST_M:
             return None
         bearing, distance = bearing + across / distance, distance + along
         axes = _axes(self.pose.heading + bearing)
-        deviation = self.config.error_share * told.deviation_m[best].astype(np.float64)
+        deviation = self.config.error_share * reported.deviation_m[best].astype(np.float64)
         return Sighting(
-            evidence=float(told.evidence[best]),
+            evidence=float(reported.evidence[best]),
             bearing_rad=bearing,
             distance_m=distance,
             place_m=self.pose.place(distance, bearing),
@@ -98,3 +100,21 @@ def _axes(angle: float) -> Floats:
     """Give unit vectors away from the robot and to the left, as columns."""
     cosine, sine = math.cos(angle), math.sin(angle)
     return np.array([[cosine, -sine], [sine, cosine]])
+
+
+# What the panoramic tracker believes beyond its tracks.
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PeopleExplanation:
+    """What the tracker sees in its newest image.
+
+    Attributes:
+        background: (H, W, 3) uint8 RGB, what it takes for the scene without people.
+        foreground: (H, W) how surely each pixel is on a person.
+        covered: (H, W) 1 where it is on a person who is tracked.
+    """
+
+    background: NDArray[np.uint8]
+    foreground: Map
+    covered: Map
