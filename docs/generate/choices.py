@@ -15,7 +15,7 @@ from peopleboy.scenarios.files.schema.place import (
     TCorridorSpec,
 )
 from peopleboy.sim.people.body.clothes import BOTTOMS, COLOURS, HAIR, SHOES, TOPS, Garment
-from peopleboy.sim.places.thing_kinds import KINDS, Kind
+from peopleboy.sim.places.furniture.thing_kinds import KINDS, Kind
 from peopleboy.sim.shapes.materials import Rgb
 
 _PLACES: Mapping[str, PlaceSpec] = {

@@ -26,10 +26,9 @@ from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import check_rate
 from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.config import CONTROL_HZ
-from peopleboy.sim.places.floor_plan import FloorPlan
+from peopleboy.sim.places.floor_plan import FloorPlan, Rectangle
+from peopleboy.sim.places.furniture.thing_kinds import KINDS
 from peopleboy.sim.places.place import Place
-from peopleboy.sim.places.rectangle import Rectangle
-from peopleboy.sim.places.thing_kinds import KINDS
 from peopleboy.sim.robot.robot_config import RobotConfig
 
 # Names that cameras must leave to other folders, entities and arrays.

@@ -19,9 +19,9 @@ from peopleboy.sim.physics.model_files import is_in_data
 from peopleboy.sim.physics.urdf import find_urdf
 from peopleboy.sim.places.extent import Extent, fixture_extent, urdf_extent
 from peopleboy.sim.places.floor_plan import FloorPlan, Wall
+from peopleboy.sim.places.furniture.build_thing import Thing, build_thing
+from peopleboy.sim.places.furniture.thing_kinds import KINDS
 from peopleboy.sim.places.place import Fixture
-from peopleboy.sim.places.thing_kinds import KINDS
-from peopleboy.sim.places.things import Thing, build_thing
 from peopleboy.sim.shapes.materials import Pattern, PatternKind, Rgb
 
 _GAP_M = 0.01  # between a wall and what stands against it

@@ -11,7 +11,7 @@ from peopleboy.scenarios.random_worlds.attempts import Data, rounded
 from peopleboy.scenarios.random_worlds.distribution import Draws
 from peopleboy.scenarios.random_worlds.draw_place import draw_point
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.places.thing_kinds import KINDS
+from peopleboy.sim.places.furniture.thing_kinds import KINDS
 
 _TRIES: Final = 12
 _NEAREST_M: Final = 1.0  # to the robot, at first

@@ -8,7 +8,7 @@ from peopleboy.scenarios.random_worlds.attempts import Data, colour, rounded
 from peopleboy.scenarios.random_worlds.distribution import Draws
 from peopleboy.scenarios.random_worlds.draw_place import air_of, draw_point, plan_of
 from peopleboy.scenarios.random_worlds.draw_robot import is_before
-from peopleboy.sim.places.thing_kinds import KINDS, Kind
+from peopleboy.sim.places.furniture.thing_kinds import KINDS, Kind
 
 _USUAL_AIR_C: Final = 21.5  # to which the kinds' own temperatures belong
 _IN_STREETS: Final = (

@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore, Leg, score_corridor
-from peopleboy.sim.places.floor_plan import FloorPlan
-from peopleboy.sim.places.rectangle import Rectangle
+from peopleboy.sim.places.floor_plan import FloorPlan, Rectangle
 from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.sim.truth.truth import Truth
 

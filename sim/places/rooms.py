@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.places.extent import fixture_extent
-from peopleboy.sim.places.floor_plan import Door, FloorPlan, Wall, check_doors
+from peopleboy.sim.places.floor_plan import Door, FloorPlan, Rectangle, Wall, check_doors
 from peopleboy.sim.places.moving import Mover
 from peopleboy.sim.places.place import Fixture, Place, Sun, is_in_the_way
-from peopleboy.sim.places.rectangle import Rectangle
 from peopleboy.sim.shapes.materials import Covering, Material, Pattern, PatternKind
 from peopleboy.sim.shapes.shapes import Part, Shape, ShapeKind
 

@@ -17,8 +17,8 @@ from peopleboy.scenarios.files.schema.values import (
     Size,
     Strict,
 )
+from peopleboy.sim.places.furniture.thing_kinds import KINDS
 from peopleboy.sim.places.moving import ActionKind
-from peopleboy.sim.places.thing_kinds import KINDS
 
 
 class PatternSpec(Strict):

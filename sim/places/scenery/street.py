@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from peopleboy.sim.places.floor_plan import WALL_M, FloorPlan, Side
+from peopleboy.sim.places.floor_plan import WALL_M, FloorPlan, Rectangle, Side
 from peopleboy.sim.places.place import Fixture
-from peopleboy.sim.places.rectangle import Rectangle
 from peopleboy.sim.places.rooms import SINK_M, Surfaces, block_fixture, build_door
 from peopleboy.sim.shapes.materials import Covering, Material, Pattern
 

@@ -8,8 +8,15 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.places.floor_plan import LOBBY_MARGIN_M, WALL_M, Door, FloorPlan, check_doors
-from peopleboy.sim.places.rectangle import Rectangle, subtract
+from peopleboy.sim.places.floor_plan import (
+    LOBBY_MARGIN_M,
+    WALL_M,
+    Door,
+    FloorPlan,
+    Rectangle,
+    check_doors,
+    subtract,
+)
 from peopleboy.sim.places.rooms import build_place, l_corridor, straight_corridor, t_corridor
 from tests.helpers.calls.refused import refused
 from tests.helpers.worlds.boxes import fighting_faces, first_hit, world_boxes

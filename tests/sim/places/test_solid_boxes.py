@@ -3,9 +3,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from peopleboy.sim.places.furniture.build_thing import Thing, build_thing
 from peopleboy.sim.places.moving import Stance
 from peopleboy.sim.places.solid_boxes import Boxes, boxes_of, overlaps
-from peopleboy.sim.places.things import Thing, build_thing
 
 
 def random_boxes(rng: np.random.Generator, count: int) -> Boxes:

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from peopleboy.sim.physics.urdf import find_urdf
 from peopleboy.sim.places.extent import fixture_extent, urdf_extent
+from peopleboy.sim.places.furniture.build_thing import Thing, build_thing
+from peopleboy.sim.places.furniture.thing_kinds import KINDS
 from peopleboy.sim.places.pieces import SINK_M
 from peopleboy.sim.places.place import Fixture
-from peopleboy.sim.places.thing_kinds import KINDS
-from peopleboy.sim.places.things import Thing, build_thing
 from tests.helpers.calls.refused import refused
 from tests.helpers.worlds.boxes import Box, fighting_faces, piece_boxes
 

@@ -8,10 +8,10 @@ import pytest
 
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.person import PersonConfig, Waypoint
+from peopleboy.sim.places.furniture.build_thing import Thing, build_thing
 from peopleboy.sim.places.moving import Action, ActionKind, Mover, Stance
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.places.rooms import build_place, straight_corridor
-from peopleboy.sim.places.things import Thing, build_thing
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.backgrounds import Backgrounds
 from peopleboy.sim.truth.events import STANDS_S, ThingLog

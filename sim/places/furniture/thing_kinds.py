@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from peopleboy.sim.places import furniture_pieces, household_pieces, warm_pieces
+from peopleboy.sim.places.furniture import furniture_pieces, household_pieces, warm_pieces
 from peopleboy.sim.places.pieces import BLACK, STEEL, WHITE, WOOD, Piece
 from peopleboy.sim.places.scenery import appliances, street_pieces
 from peopleboy.sim.shapes.materials import Rgb

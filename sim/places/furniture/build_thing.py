@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
+from peopleboy.sim.places.furniture.thing_kinds import KINDS, Kind
 from peopleboy.sim.places.pieces import Piece
 from peopleboy.sim.places.place import Fixture
-from peopleboy.sim.places.thing_kinds import KINDS, Kind
 from peopleboy.sim.shapes.materials import Material, Pattern, Rgb
 from peopleboy.sim.shapes.shapes import Part, Vector
 

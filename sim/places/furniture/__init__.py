@@ -1,0 +1,1 @@
+"""Furniture and other things: how each kind is made, and where those of a scenario stand."""
