@@ -24,9 +24,9 @@ from peopleboy.scenarios.likeness.tell_apart import Told
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import make_eyes
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
-from peopleboy.scenarios.run_folder.camera_truth import gt_lines
 from peopleboy.scenarios.run_folder.image_files import image_file, write_png
-from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.run_folder.output import whole
+from peopleboy.scenarios.run_folder.truth_files import gt_lines
 from peopleboy.sim.world import World
 
 OUT = Path("runs/realism")

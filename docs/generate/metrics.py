@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import fields
 
 from docs.generate.markdown import sentence, table
-from peopleboy.scenarios.scores.comfort.comfort_metrics import ComfortScore
+from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import FollowingScore
 from peopleboy.tracker.evaluation.table import FIGURES

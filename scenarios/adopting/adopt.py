@@ -17,9 +17,8 @@ from peopleboy.scenarios.files.schema.robot import ORACLE
 from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_whole_runs, read_run
 from peopleboy.scenarios.run_folder.folder import RunFolder
-from peopleboy.scenarios.run_folder.gains import about_gains
-from peopleboy.scenarios.run_folder.out_folder import check_out, writing_to
-from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.run_folder.image_files import about_gains
+from peopleboy.scenarios.run_folder.output import check_out, whole, writing_to
 from peopleboy.scenarios.running.watchers import Watchers
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
 from peopleboy.tracker.footage.box_kinds import BoxKind

@@ -47,7 +47,7 @@ def adopt(
     from peopleboy.scenarios.adopting.adopt import adopt as take
     from peopleboy.scenarios.adopting.sequences import sequences
     from peopleboy.scenarios.progress_bar import progress_bar
-    from peopleboy.scenarios.scores.headline import headline
+    from peopleboy.scenarios.scores.run_scores import headline
     from peopleboy.scenarios.scores.show_scores import print_scores
     from peopleboy.tracker.footage.box_kinds import BoxKind
 

@@ -31,7 +31,7 @@ def list_command() -> None:
 )
 def show(scenario: str, seed: int | None, out: Path | None) -> None:
     """Draw the plan of a scenario, with paths and times."""
-    from peopleboy.scenarios.drawing.plan.plan import draw_plan
+    from peopleboy.scenarios.drawing.draw_plan import draw_plan
     from peopleboy.scenarios.files.load import load_scenario
 
     loaded = load_scenario(scenario)

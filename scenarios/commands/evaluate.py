@@ -58,8 +58,12 @@ def evaluate(
     comfortable they were.
     """
     from peopleboy.scenarios.run_folder.finished_run import runs_in
-    from peopleboy.scenarios.scores.by_tracker import ScoredRun, figures_of_all, score_by_tracker
-    from peopleboy.scenarios.scores.comfort.comfort_of_runs import comfort_by_tracker
+    from peopleboy.scenarios.scores.by_tracker import (
+        ScoredRun,
+        comfort_by_tracker,
+        figures_of_all,
+        score_by_tracker,
+    )
     from peopleboy.scenarios.scores.evaluate_runs import evaluate_files
     from peopleboy.scenarios.scores.show_scores import print_comfort, print_runs
     from peopleboy.tracker.footage.box_kinds import BoxKind

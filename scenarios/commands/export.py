@@ -3,18 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from pathlib import Path
 
 import click
 
 from peopleboy.scenarios.commands.options import BOXES, Number, tell_note
+from peopleboy.scenarios.export.formats import format_names
 
-FORMATS = ("mot", "coco", "images", "yolo", "yolo-pose", "viper", "mcap", "mp4")
+
+class FormatName(click.Choice[str]):
+    """A format's name, of another package's too; these are looked for only when the command is used."""
+
+    def __init__(self) -> None:
+        self.case_sensitive = True
+
+    @cached_property
+    def choices(self) -> tuple[str, ...]:  # type: ignore[override]
+        """All names."""
+        return format_names()
 
 
 @click.command()
 @click.argument("runs", nargs=-1, required=True, type=click.Path(path_type=Path))
-@click.option("--format", "form", type=click.Choice(FORMATS), required=True, help="What to write.")
+@click.option("--format", "form", type=FormatName(), required=True, help="What to write.")
 @click.option(
     "--camera",
     metavar="NAME",
@@ -55,10 +67,10 @@ def export(
     Ultralytics. viper: ViPER XML. mcap: ROS 2 bags. mp4: films. coco, images and mcap tell of every camera.
     Images and masks are rendered again, and are those of the run. mcap needs the package rosbags, mp4 av.
     """
-    from peopleboy.scenarios.export.dataset.splits import refuse_unfinished
-    from peopleboy.scenarios.export.formats import export as write
-    from peopleboy.scenarios.export.formats import notes_on
+    from peopleboy.scenarios.export.export_runs import export as write
+    from peopleboy.scenarios.export.export_runs import notes_on
     from peopleboy.scenarios.export.replay import counted
+    from peopleboy.scenarios.export.splits import refuse_unfinished
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.scenarios.run_folder.finished_run import open_whole_runs, runs_in
     from peopleboy.tracker.footage.box_kinds import BoxKind

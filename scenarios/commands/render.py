@@ -65,8 +65,7 @@ def render(
     killed call goes on where it was; with more --seeds, or worlds, the set grows, and no run changes its
     split.
     """
-    from peopleboy.scenarios.export.dataset.contents import of_scenarios, of_worlds
-    from peopleboy.scenarios.export.dataset.make_dataset import render_set
+    from peopleboy.scenarios.export.make_dataset import of_scenarios, of_worlds, render_set
     from peopleboy.scenarios.running.engine.workers import chosen_workers
 
     who = chosen_workers(workers, scheduler)

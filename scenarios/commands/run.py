@@ -154,7 +154,7 @@ def _run_one(scenario: Scenario, options: RunOptions, output: Output) -> None:
 
 
 def _show(scores: RunScores, options: RunOptions) -> None:
-    from peopleboy.scenarios.scores.headline import headline
+    from peopleboy.scenarios.scores.run_scores import headline
     from peopleboy.scenarios.scores.show_scores import print_drive, print_scores
 
     print_scores(scores.people)

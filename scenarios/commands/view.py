@@ -21,7 +21,7 @@ from peopleboy.scenarios.commands.options import WholeNumber
 )
 def view(folder: Path, web: bool, port: int | None) -> None:
     """Open the recording of a run in the rerun viewer."""
-    from peopleboy.scenarios.recording.files.recording_file import is_whole, layers_in, recording_in
+    from peopleboy.scenarios.recording.recording_file import is_whole, layers_in, recording_in
     from peopleboy.scenarios.recording.viewer import open_viewer, serve
 
     if port is not None and not web:
@@ -54,7 +54,7 @@ def watch(folder: Path, out: Path | None, no_heat: bool, no_rrd: bool) -> None:
     """
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.scenarios.run_folder.finished_run import open_run
-    from peopleboy.scenarios.run_folder.out_folder import check_named, writing_to
+    from peopleboy.scenarios.run_folder.output import check_named, writing_to
     from peopleboy.scenarios.watching.watch_run import FOLDER, WatchOptions, watch_run
 
     run = open_run(folder)

@@ -10,9 +10,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.drawing.event_wording import describe
 from peopleboy.scenarios.loop.loop import Tick
-from peopleboy.scenarios.loop.run_events import LogLine
+from peopleboy.scenarios.loop.run_events import LogLine, describe
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import shown_to_people
 from peopleboy.sim.truth.events import TOTAL_STARTS

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import singledispatch
 from itertools import pairwise
 from typing import Any, Protocol
 
@@ -16,7 +17,6 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.drawing.contour_lines import lines_of
 from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, faded, track_colour
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import shown_to_people
@@ -25,9 +25,40 @@ from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.boxes import Box, corners
 from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.handover.both_explanations import BothExplanations
+from peopleboy.tracker.thermal.contour.outline import outline
+from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.track import Status, Track
+
+Line = NDArray[np.float64]  # (K, 2) [px] in the thermal image
+
+
+@singledispatch
+def lines_of(explanation: object, points: int = 48) -> Mapping[int, tuple[Line, ...]]:  # noqa: ARG001
+    """Give lines of so many points around people, by track id; none for a kind that nobody can draw.
+
+    A new kind of explanation registers here how it is drawn on still pictures.
+    """
+    return {}
+
+
+@lines_of.register
+def _(explanation: ContourExplanation, points: int = 48) -> Mapping[int, tuple[Line, ...]]:
+    return {number: outline(ellipse, points) for number, ellipse in explanation.ellipses.items()}
+
+
+@lines_of.register
+def _(explanation: BothExplanations, points: int = 48) -> Mapping[int, tuple[Line, ...]]:
+    return lines_of(explanation.thermal, points)
+
+
+@lines_of.register
+def _(explanation: AttentiveExplanation, points: int = 48) -> Mapping[int, tuple[Line, ...]]:
+    return lines_of(explanation.below, points)
+
 
 Picture = NDArray[np.uint8]  # (H, W, 3) RGB
 Plate = tuple[int, int, int, int]  # left, top, right, bottom of a label on the enlarged picture

@@ -11,10 +11,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.drawing.labels import Labels
 from peopleboy.scenarios.drawing.overlay import Picture, draw_tracks, show_thermal
 from peopleboy.scenarios.drawing.palette import ROBOT, Rgb, person_colour
-from peopleboy.scenarios.drawing.plan.place import draw_floor, draw_things, draw_walls
+from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_things, draw_walls
+from peopleboy.scenarios.drawing.plan_sheet import Labels
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.places.floor_plan import FloorPlan

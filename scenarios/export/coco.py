@@ -27,19 +27,23 @@ import numpy as np
 from numpy.typing import NDArray
 from pycocotools.mask import encode
 
-from peopleboy.scenarios.export.by_split import by_split
-from peopleboy.scenarios.export.from_corner import (
+from peopleboy.scenarios.export.one_camera import (
     CORNER_PX,
     OUTSIDE,
     from_corner,
     keypoints_from_corner,
 )
 from peopleboy.scenarios.export.replay import Play
+from peopleboy.scenarios.export.splits import by_split
 from peopleboy.scenarios.loop.calibrations import calibration_of
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
-from peopleboy.scenarios.run_folder.gains import thermal_span_c
-from peopleboy.scenarios.run_folder.image_files import image_file, make_image_folders, write_images
+from peopleboy.scenarios.run_folder.image_files import (
+    image_file,
+    make_image_folders,
+    thermal_span_c,
+    write_images,
+)
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.kinds import image_folders, with_boxes
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry

@@ -23,13 +23,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.export.by_split import by_split
-from peopleboy.scenarios.export.camera_images import write_camera_images
-from peopleboy.scenarios.export.one_camera import OneCamera, with_people
+from peopleboy.scenarios.export.one_camera import OneCamera, with_people, write_camera_images
 from peopleboy.scenarios.export.replay import Play
-from peopleboy.scenarios.run_folder.camera_truth import true_boxes, truth_files
+from peopleboy.scenarios.export.splits import by_split
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file
+from peopleboy.scenarios.run_folder.truth_files import true_boxes, truth_files
 from peopleboy.tracker.evaluation.mot_files import truth_line
 from peopleboy.tracker.footage.box_kinds import BoxKind
 

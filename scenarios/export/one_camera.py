@@ -1,15 +1,19 @@
-"""What one camera took in a run, as a sequence of its own for formats that have one kind of image."""
+"""Describe what one camera took in a run, as a sequence of its own for formats with one kind of image."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.scenarios.run_folder.image_files import image_file, write_png
 from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.truth.boxes import Box
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,4 +90,58 @@ def with_people(run: FinishedRun, name: str) -> OneCamera:
     found = one_camera(run, name)
     if not kind_of(run.robot.cameras[name]).has_boxes:
         raise BadInput(f"{run.folder}: camera {name!r} has no boxes of people; give another --camera")
+    return found
+
+
+def write_camera_images(shots: OneCamera, play: Play, place: Callable[[int], Path]) -> None:
+    """Copy a camera's images if the run has written them, else render them again.
+
+    Args:
+        shots: the camera and its run.
+        play: gives the run's ticks.
+        place: names the file of an image by its number, from 1.
+
+    Raises:
+        BadInput: a file cannot be written, or the run does not come out as it was.
+    """
+    written = [shots.run.folder / shots.name / image_file(frame) for frame in shots.frames]
+    if all(path.is_file() for path in written):
+        for number, path in enumerate(written, start=1):
+            place(number).write_bytes(path.read_bytes())
+        return
+    for tick in play(shots.run):
+        if tick.frame in shots.frames:
+            write_png(place(shots.number(tick.frame)), tick.observation.images[shots.name])
+
+
+CORNER_PX: Final = 0.5
+SEEN, HIDDEN, OUTSIDE = 2, 1, 0  # of keypoints, in both
+
+Keypoint = tuple[float, float, int]
+
+
+def from_corner(box: Box | None) -> list[float] | None:
+    """Count a box's pixels from the image's corner, to a thousandth."""
+    if box is None:
+        return None
+    left, top, width, height = box
+    return [round(edge, 3) for edge in (left + CORNER_PX, top + CORNER_PX, width, height)]
+
+
+def keypoints_from_corner(
+    joints_px: Sequence[Sequence[float]], is_visible: Sequence[bool], size: tuple[int, int]
+) -> list[Keypoint]:
+    """Give u, v and 2 for a joint that is seen, 1 for a hidden one, and zeros for one outside the image.
+
+    Args:
+        joints_px: (17, 2) u, v from the middle of the first pixel; NaN behind the camera.
+        is_visible: (17,) whether each is seen.
+        size: width and height of the image [px].
+    """
+    width, height = size
+    found: list[Keypoint] = []
+    for (u, v), is_seen in zip(joints_px, is_visible, strict=True):
+        is_inside = -CORNER_PX < u < width - CORNER_PX and -CORNER_PX < v < height - CORNER_PX
+        point = (round(u + CORNER_PX, 3), round(v + CORNER_PX, 3), SEEN if is_seen else HIDDEN)
+        found.append(point if is_inside else (0.0, 0.0, OUTSIDE))
     return found

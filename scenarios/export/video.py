@@ -19,7 +19,7 @@ from peopleboy.scenarios.drawing.overlay import (
     show_image,
 )
 from peopleboy.scenarios.drawing.palette import TRUTH, Rgb
-from peopleboy.scenarios.export.extra import need
+from peopleboy.scenarios.export.formats import need
 from peopleboy.scenarios.export.one_camera import OneCamera, one_camera
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.loop.loop import Tick

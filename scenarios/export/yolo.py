@@ -23,11 +23,17 @@ import yaml
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.overlay import box_parts
-from peopleboy.scenarios.export.by_split import by_split
-from peopleboy.scenarios.export.camera_images import write_camera_images
-from peopleboy.scenarios.export.from_corner import CORNER_PX, OUTSIDE, Keypoint, keypoints_from_corner
-from peopleboy.scenarios.export.one_camera import OneCamera, with_people
+from peopleboy.scenarios.export.one_camera import (
+    CORNER_PX,
+    OUTSIDE,
+    Keypoint,
+    OneCamera,
+    keypoints_from_corner,
+    with_people,
+    write_camera_images,
+)
 from peopleboy.scenarios.export.replay import Play
+from peopleboy.scenarios.export.splits import by_split
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.run_files import read_table
 from peopleboy.scenarios.run_folder.tables import TRUTH, Row

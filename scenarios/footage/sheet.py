@@ -13,6 +13,7 @@ import numpy as np
 from PIL import Image
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.drawing.contact_sheet import HEAD_PX, MARGIN_PX, PAGE, draw_head
 from peopleboy.scenarios.drawing.overlay import (
     Picture,
     Plate,
@@ -20,7 +21,6 @@ from peopleboy.scenarios.drawing.overlay import (
     draw_truth,
     enlarge,
 )
-from peopleboy.scenarios.drawing.sheet_head import HEAD_PX, MARGIN_PX, PAGE, draw_head
 from peopleboy.tracker.boxes import Box
 from peopleboy.tracker.track import Track
 

@@ -13,8 +13,7 @@ from peopleboy.scenarios.footage.footage_log import FootageLog
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.views import Views, open_views
 from peopleboy.scenarios.run_folder.folder import versions
-from peopleboy.scenarios.run_folder.out_folder import check_named
-from peopleboy.scenarios.run_folder.whole_folder import whole_folder
+from peopleboy.scenarios.run_folder.output import check_named, whole_folder
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.evaluation.evaluate import Scores

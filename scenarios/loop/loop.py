@@ -16,7 +16,6 @@ from peopleboy.behaviours.command import Command
 from peopleboy.behaviours.percept import Percept, SeenPerson
 from peopleboy.own_code import at_frame
 from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.thermal_box import thermal_box
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
@@ -24,8 +23,25 @@ from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, WHEEL_DISTANCE_M
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.boxes import image_shares
 from peopleboy.tracker.frame import THERMAL, Calibration, Frame, Odometry
+from peopleboy.tracker.thermal.whereabouts import standing_box
 from peopleboy.tracker.track import Box, Status, Track
 from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again
+
+
+def thermal_box(track: Track, calibration: Calibration) -> Box | None:
+    """Give a track's own box, or that of somebody who stands at its place; None for one without a place.
+
+    Args:
+        track: whose.
+        calibration: of the thermal camera.
+
+    Returns:
+        left, top, width, height [px], which may lie outside the image: to that side the person is then.
+    """
+    if THERMAL in track.boxes:
+        return track.boxes[THERMAL]
+    return None if track.place is None else standing_box(track.place, calibration)
+
 
 # Ways between two images beyond what the drive can do in a quarter of a second are jumps of the odometry.
 FARTHEST_TURN_RAD = math.radians(40.0)

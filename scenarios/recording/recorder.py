@@ -12,14 +12,16 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.drawing.event_wording import describe_fully
 from peopleboy.scenarios.drawing.overlay import encode_jpeg, encode_png, people_parts, track_parts
 from peopleboy.scenarios.loop.loop import Tick
-from peopleboy.scenarios.loop.run_events import LogLine
+from peopleboy.scenarios.loop.run_events import LogLine, describe_fully
 from peopleboy.scenarios.recording import marks
-from peopleboy.scenarios.recording.arrows import Arrows, believed_arrows, true_arrows, world_arrows
-from peopleboy.scenarios.recording.capsule_people import NOBODY, body_capsules
-from peopleboy.scenarios.recording.entities import (
+from peopleboy.scenarios.recording.explanations import (
+    explained_likeness,
+    explained_lines,
+    explained_points,
+)
+from peopleboy.scenarios.recording.layout import (
     BACKGROUND,
     EVENTS,
     OCCLUSIONS,
@@ -27,20 +29,16 @@ from peopleboy.scenarios.recording.entities import (
     THERMAL,
     TRAILS,
     camera_path,
+    lay_out,
     person_path,
     points_path,
     thing_path,
 )
-from peopleboy.scenarios.recording.explanations import (
-    explained_likeness,
-    explained_lines,
-    explained_points,
-)
-from peopleboy.scenarios.recording.files.packing import pack
-from peopleboy.scenarios.recording.layout import lay_out
-from peopleboy.scenarios.recording.rounding import METRE_STEP, PIXEL_STEP, TURN_STEP, rounded
-from peopleboy.scenarios.recording.rows import RowBuffer
+from peopleboy.scenarios.recording.marks import Arrows, believed_arrows, true_arrows, world_arrows
+from peopleboy.scenarios.recording.recording_file import pack
+from peopleboy.scenarios.recording.rows import METRE_STEP, PIXEL_STEP, TURN_STEP, RowBuffer, rounded
 from peopleboy.scenarios.recording.sketches import explained_sketches
+from peopleboy.scenarios.recording.solids import NOBODY, body_capsules
 from peopleboy.scenarios.recording.still import JPEG, Still
 from peopleboy.sim.cameras.camera_config import DepthConfig
 from peopleboy.sim.cameras.depth_image import points_of

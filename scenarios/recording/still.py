@@ -11,7 +11,7 @@ import rerun as rr
 from rerun.components import Colormap, FillMode
 
 from peopleboy.scenarios.drawing.palette import person_colour, track_colour
-from peopleboy.scenarios.recording.entities import (
+from peopleboy.scenarios.recording.layout import (
     LAYERS,
     OCCLUSIONS,
     ON_COLOUR,

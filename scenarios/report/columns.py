@@ -12,8 +12,8 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.report.findings.summary import RunFindings, look_into
 from peopleboy.scenarios.report.findings.verdict import headline, headline_of_many
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_run, runs_in
+from peopleboy.scenarios.scores.by_tracker import check_same_scenes
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
-from peopleboy.scenarios.scores.same_scenes import check_same_scenes
 from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.evaluation.occlusion_scores import Occlusion, score_occlusions
 from peopleboy.wording import counted

@@ -10,7 +10,6 @@ import jinja2
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.palette import TRACK_COLOURS
-from peopleboy.scenarios.export.image_words import describe_images
 from peopleboy.scenarios.report import tables
 from peopleboy.scenarios.report.attention_strip import attention_strip
 from peopleboy.scenarios.report.charts.error_curves import draw_error_curves
@@ -23,7 +22,8 @@ from peopleboy.scenarios.report.findings.sentences import listed
 from peopleboy.scenarios.report.page_file import check_place, write_page
 from peopleboy.scenarios.report.pictures import PicturedMoment, contact_sheet, pictured_moments
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
-from peopleboy.scenarios.scores.yardstick import Yardstick
+from peopleboy.scenarios.run_folder.image_files import describe_images
+from peopleboy.scenarios.scores.reference_boxes import Yardstick
 from peopleboy.tracker.frame import THERMAL
 
 HERE = Path(__file__).parent

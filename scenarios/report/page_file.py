@@ -6,8 +6,7 @@ import re
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.run_folder.out_folder import writing_to
-from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.run_folder.output import whole, writing_to
 
 _ENDINGS = (".html", ".htm")
 _REPORT = re.compile(rb"<title>[^<]*: PeopleBoy report</title>")

@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.drawing.event_wording import describe_move
+from peopleboy.scenarios.loop.run_events import describe_move
 from peopleboy.scenarios.report.charts.thing_timelines import THING
 from peopleboy.scenarios.report.columns import Column
 from peopleboy.scenarios.report.findings.sentences import seconds, spoken
@@ -19,7 +19,7 @@ from peopleboy.scenarios.report.findings.summary import RunFindings
 from peopleboy.scenarios.report.findings.verdict import headline
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.scores.bootstrap import bootstrap
-from peopleboy.scenarios.scores.comfort.comfort_metrics import ComfortScore
+from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.following_metrics import FollowingScore, Row
 from peopleboy.sim.truth.events import Move

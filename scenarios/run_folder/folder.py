@@ -17,10 +17,8 @@ import yaml
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import OwnCodeFailed, in_one_line, traceback_of
 from peopleboy.scenarios.loop.loop import Tick
-from peopleboy.scenarios.run_folder.behind import Behind
-from peopleboy.scenarios.run_folder.camera_truth import CameraTruth, further_cameras, gt_lines, open_text
-from peopleboy.scenarios.run_folder.image_files import images_to_write, make_image_folders, write_png
-from peopleboy.scenarios.run_folder.out_folder import check_out, writing_to
+from peopleboy.scenarios.run_folder.image_files import Behind, images_to_write, make_image_folders, write_png
+from peopleboy.scenarios.run_folder.output import check_out, writing_to
 from peopleboy.scenarios.run_folder.tables import (
     ROBOT,
     TRACKS,
@@ -31,7 +29,13 @@ from peopleboy.scenarios.run_folder.tables import (
     truth_rows,
     write_table,
 )
-from peopleboy.scenarios.run_folder.thing_files import ThingFiles
+from peopleboy.scenarios.run_folder.truth_files import (
+    CameraTruth,
+    ThingFiles,
+    further_cameras,
+    gt_lines,
+    open_text,
+)
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.tracker.evaluation.mot_files import track_line
 from peopleboy.tracker.frame import THERMAL

@@ -1,17 +1,21 @@
-"""A frame's images as lossless files, a folder for each image of each camera."""
+"""Write images as lossless files, in the background, and describe what they hold."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
+from typing import Any, Final
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.camera_config import CameraConfig, ThermalConfig
 from peopleboy.sim.cameras.kinds import Stored, image_folders
+from peopleboy.sim.config import CONTROL_HZ
 from peopleboy.sim.observation import Observation
 
 
@@ -60,3 +64,70 @@ def millimetres(depth_m: NDArray[np.floating]) -> NDArray[np.uint16]:
     """Give depth (H, W) [m] in whole millimetres; 0 where nothing is, and beyond 65 m."""
     whole = np.rint(1000.0 * np.where(np.isfinite(depth_m), depth_m, 0.0))
     return np.where(whole < 65536.0, whole, 0.0).astype(np.uint16)
+
+
+_KEYS: Mapping[str, tuple[str, ...]] = {
+    "fixed": ("lowest_c", "highest_c"),
+    "percentile": ("gain_follows_s", "tail_percent", "least_span_k"),
+    "plateau": ("gain_follows_s", "tail_percent", "least_span_k", "plateau_percent", "linear_share"),
+}
+
+
+def about_gains(cameras: Mapping[str, CameraConfig]) -> dict[str, dict[str, Any]]:
+    """Tell by which gain each thermal camera comes to its grey, and with which settings."""
+    return {
+        name: {"gain": config.gain} | {key: getattr(config, key) for key in _KEYS[config.gain]}
+        for name, config in cameras.items()
+        if isinstance(config, ThermalConfig)
+    }
+
+
+def thermal_span_c(config: ThermalConfig) -> list[float] | None:
+    """Give the span [degC] of 8-bit images; None where it changes from image to image."""
+    return [config.lowest_c, config.highest_c] if config.gain == "fixed" else None
+
+
+MOST: Final = 64
+"""How much work may wait; whoever brings more waits until some is done."""
+
+
+class Behind:
+    """Does one piece of work after the other, in the order in which they came, and drops none.
+
+    What a piece of work raises is raised by the next call of `add` or `flush` that finds it.
+    """
+
+    def __init__(self) -> None:
+        self._thread = ThreadPoolExecutor(1)
+        self._waiting: deque[Future[None]] = deque()
+
+    def add(self, work: Callable[[], None]) -> None:
+        """Let this be done after what was added before."""
+        while self._waiting and (len(self._waiting) >= MOST or self._waiting[0].done()):
+            self._waiting.popleft().result()
+        self._waiting.append(self._thread.submit(work))
+
+    def flush(self) -> None:
+        """Wait until all is done."""
+        while self._waiting:
+            self._waiting.popleft().result()
+
+    def close(self) -> None:
+        """Do what is left, and end the thread; errors of it are told nobody, who has one already."""
+        self._thread.shutdown()
+
+
+def describe_images(outfits: Iterable[Mapping[str, CameraConfig]]) -> str:
+    """Say how large cameras' images are, how many a second, and of which cameras if they differ.
+
+    Args:
+        outfits: the cameras of each robot.
+    """
+    names: dict[str, dict[str, None]] = {}
+    for name, config in (pair for cameras in outfits for pair in cameras.items()):
+        camera = config.camera
+        words = f"{camera.width}x{camera.height} pixels, {config.rate_hz or CONTROL_HZ} a second"
+        names.setdefault(words, {})[name] = None
+    if len(names) == 1:
+        return next(iter(names))
+    return ", or ".join(f"{words} ({', '.join(own)})" for words, own in names.items())

@@ -15,7 +15,6 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.run_folder.explained import read_explanation
 from peopleboy.scenarios.run_folder.tables import (
     MAY_BE_EMPTY,
     ROBOT,
@@ -23,6 +22,7 @@ from peopleboy.scenarios.run_folder.tables import (
     TRUTH,
     Row,
     is_in_image,
+    read_explanation,
     track_of,
 )
 from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth

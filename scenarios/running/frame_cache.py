@@ -24,11 +24,10 @@ from peopleboy import sim
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop, make_frame
-from peopleboy.scenarios.run_folder.camera_truth import gt_lines, true_boxes
 from peopleboy.scenarios.run_folder.folder import versions
-from peopleboy.scenarios.run_folder.out_folder import writing_to
+from peopleboy.scenarios.run_folder.output import whole, writing_to
 from peopleboy.scenarios.run_folder.tables import TRUTH, truth_rows
-from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.run_folder.truth_files import gt_lines, true_boxes
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.observation import Observation
 from peopleboy.tracker.evaluation.sequence import TrueBoxes

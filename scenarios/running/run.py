@@ -16,8 +16,8 @@ from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import check_cameras, make_eyes
 from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versions
-from peopleboy.scenarios.run_folder.gains import about_gains
-from peopleboy.scenarios.run_folder.termination import left_by_sigterm
+from peopleboy.scenarios.run_folder.image_files import about_gains
+from peopleboy.scenarios.run_folder.output import left_by_sigterm
 from peopleboy.scenarios.running.watchers import Watchers
 from peopleboy.scenarios.scores.following_score import following_task
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run

@@ -11,7 +11,7 @@ from pathlib import Path
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.tracker_by_name import camera_names
-from peopleboy.scenarios.run_folder.out_folder import check_out
+from peopleboy.scenarios.run_folder.output import check_out
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.task import Task, Tell
 from peopleboy.scenarios.running.engine.workers import Workers

@@ -18,7 +18,7 @@ from rich.table import Table
 
 from peopleboy.scenarios.running.compare_controllers import Controller, Figures, intervals
 from peopleboy.scenarios.scores.bootstrap import Interval
-from peopleboy.scenarios.scores.comfort.comfort_metrics import COMFORT_WORDS
+from peopleboy.scenarios.scores.comfort_metrics import COMFORT_WORDS
 
 _SHARES = {
     "found", "followed", "in_band", "facing", "in_band_and_facing", "followed_to_end", "path_efficiency"

@@ -10,8 +10,8 @@ from peopleboy.scenarios.files.schema.robot import FaultSpec
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine, RunEvents
 from peopleboy.scenarios.recording.recorder import Recorder
-from peopleboy.scenarios.scores.comfort.comfort_score import ComfortLog
-from peopleboy.scenarios.scores.corridor_score import CorridorLog
+from peopleboy.scenarios.scores.comfort_metrics import ComfortLog
+from peopleboy.scenarios.scores.corridor_metrics import CorridorLog
 from peopleboy.scenarios.scores.following_score import FollowingLog, whose_tracks
 from peopleboy.sim.config import WorldConfig
 from peopleboy.tracker.footage.box_kinds import BoxKind

@@ -1,25 +1,101 @@
-"""Runs by their trackers: those of one are taken together, those of several compared pair by pair."""
+"""Group scored runs by tracker, check that they show the same scenes, and compare trackers pair by pair."""
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.run_folder.finished_run import read_run
 from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
+from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
 from peopleboy.scenarios.scores.same_scenes import Scene, check_same_scenes
 from peopleboy.scenarios.scores.yardstick import Yardstick
 from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE
+from peopleboy.scenarios.scores.reference_boxes import Yardstick
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.evaluation.table import FIGURES, spread, to_json
 from peopleboy.tracker.footage.box_kinds import BoxKind
+
+Scene = tuple[str, int]
+"""Scenario, or footage, and seed."""
+
+_BESIDE: Final = ("drawn", "description", "physics")  # which make no other scene, or are an option of `run`
+_OF_ROBOT: Final = ("tracker", "behaviour", "cameras")  # the same; of cameras, those mounted for a tracker
+
+
+def check_same_scenes(sides: Sequence[Mapping[Path, Scene | None]]) -> None:
+    """Refuse runs of several sides that say to be of the same scene, but are not.
+
+    Args:
+        sides: what is compared with each other: the folders of runs, and what their run.json says to be seen.
+
+    Raises:
+        BadInput: scenarios of the same name and seed differ in more than tracker and behaviour.
+    """
+    first: dict[Scene, tuple[int, Path]] = {}
+    for side, runs in enumerate(sides):
+        for folder, scene in runs.items():
+            if scene is None:
+                continue
+            home, other = first.setdefault(scene, (side, folder))
+            if home != side and (change := _change(other, folder)):
+                raise BadInput(
+                    f"{folder}: is another {scene[0]}, seed {scene[1]}, than {other}: {change}; run both "
+                    "again, or give one of the scenarios another name"
+                )
+
+
+def _change(one: Path, other: Path) -> str:
+    """Say in what the scenes of two runs differ first; nothing if they do not, or one is not known."""
+    paths = one / "scenario.yaml", other / "scenario.yaml"
+    if not all(path.is_file() for path in paths) or paths[0].read_bytes() == paths[1].read_bytes():
+        return ""
+    before, after = map(_scene, paths)
+    return next(_changes(before, after, ""), "") if before and after else ""
+
+
+def _scene(path: Path) -> Mapping[str, Any]:
+    """Read what there is to be seen, the robot's own cameras included; nothing of a file that is spoilt."""
+    try:
+        data = read_yaml(path)
+    except BadInput:  # of which whoever plays the scene again tells
+        return {}
+    if "place" not in data:
+        return {}
+    robot = said if isinstance(said := data.get("robot"), dict) else {}
+    mounted = read_run(path.parent).get("mounted_for_tracker", ())
+    cameras = {name: said for name, said in robot.get("cameras", {}).items() if name not in mounted}
+    kept = {key: said for key, said in robot.items() if key not in _OF_ROBOT}
+    return {key: said for key, said in data.items() if key not in _BESIDE} | {
+        "robot": kept | {"cameras": cameras}
+    }
+
+
+def _changes(before: Any, after: Any, where: str) -> Iterator[str]:
+    """Tell key by key what differs."""
+    if isinstance(before, dict) and isinstance(after, dict):
+        for key in dict.fromkeys((*before, *after)):
+            yield from _changes(before.get(key), after.get(key), f"{where}.{key}" if where else str(key))
+    elif isinstance(before, list) and isinstance(after, list) and len(before) == len(after):
+        for number, pair in enumerate(zip(before, after, strict=True)):
+            yield from _changes(*pair, f"{where}[{number}]")
+    elif before != after:
+        yield f"{where} is {_shown(after)}, not {_shown(before)}"
+
+
+def _shown(value: Any) -> str:
+    return (
+        f"a list of {len(value)}" if isinstance(value, list) else "left out" if value is None else repr(value)
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -160,3 +236,38 @@ def _once(runs: Sequence[ScoredRun]) -> Mapping[Scene, Scores]:
         if run.scene is not None:
             found.setdefault(run.scene, []).append(run.scores)
     return {scene: scores[0] for scene, scores in found.items() if len(scores) == 1}
+
+
+_NAMES = tuple(field.name for field in fields(ComfortScore))
+
+
+def comfort_by_tracker(groups: Groups) -> Mapping[str, ComfortScore]:
+    """Give the means over the runs of each tracker; trackers whose runs tell nothing of it are left out.
+
+    What is undefined in a run is left out of the mean.
+
+    Raises:
+        BadInput: a run has other figures than this version.
+    """
+    found = {tracker: [_figures(Path(run.name)) for run in runs] for tracker, runs in groups.items()}
+    told = {tracker: [figures for figures in runs if figures is not None] for tracker, runs in found.items()}
+    return {tracker: _mean(runs) for tracker, runs in told.items() if runs}
+
+
+def _figures(folder: Path) -> list[float] | None:
+    """The figures of a run in the order of the score's; None if it has none."""
+    path = folder / "metrics.json"
+    if not path.is_file():
+        return None
+    group = json.loads(path.read_text(encoding="utf-8")).get("comfort")
+    if group is None:
+        return None
+    if not isinstance(group, dict) or set(group) != set(_NAMES):
+        raise BadInput(f"{path}: comfort: not the figures of this version; run the scenario again")
+    return [math.nan if group[name] is None else float(group[name]) for name in _NAMES]
+
+
+def _mean(runs: list[list[float]]) -> ComfortScore:
+    table = np.array(runs)
+    means = [float(np.nanmean(c)) if np.isfinite(c).any() else math.nan for c in table.T]
+    return ComfortScore(**dict(zip(_NAMES, means, strict=True)))

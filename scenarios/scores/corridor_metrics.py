@@ -1,4 +1,4 @@
-"""How well a corridor was followed: in its middle, along its direction, without touching anything."""
+"""Score how well a corridor was followed: in its middle, along its direction, without touching anything."""
 
 from __future__ import annotations
 
@@ -7,10 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.scores.contacts import count_contacts
-from peopleboy.scenarios.scores.following_metrics import Flags, Floats, Row
+from peopleboy.scenarios.scores.following_metrics import Flags, Floats, Row, count_contacts
+from peopleboy.sim.places.floor_plan import FloorPlan
+from peopleboy.sim.places.rectangle import Rectangle
+from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
+from peopleboy.sim.truth.truth import Truth
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,3 +124,44 @@ def _along_and_beside(points: Floats, leg: Leg) -> Floats:
     x, y = way / np.hypot(*way)
     places: Floats = (points - leg.start_m) @ np.array([[x, -y], [y, x]])
     return places
+
+
+class CorridorLog:
+    """Keeps what the scores of corridor following need, instant by instant."""
+
+    def __init__(self) -> None:
+        self._rows: list[tuple[float, ...]] = []
+
+    def add(self, truth: Truth | ImageFreeTruth) -> None:
+        """Take in one instant."""
+        robot = truth.robot
+        self._rows.append((truth.time_s, robot.x, robot.y, robot.heading, float(bool(truth.contacts))))
+
+    def score(self, plan: FloorPlan) -> CorridorScore:
+        """Score the way so far in the corridors of a floor plan."""
+        return score_way(np.array(self._rows, dtype=np.float64), plan)
+
+
+def score_way(table: NDArray[np.float64], plan: FloorPlan) -> CorridorScore:
+    """Score a way in the corridors of a floor plan.
+
+    Args:
+        table: (T, 5) of each instant the time [s], the robot's x, y [m] and heading [rad], and whether it
+            touched anything.
+        plan: of the place.
+    """
+    return score_corridor(
+        time_s=table[:, 0],
+        robot=table[:, 1:4],
+        is_contact=table[:, 4] > 0.0,
+        legs=tuple(centre_line(area) for _, area in plan.areas),
+    )
+
+
+def centre_line(area: Rectangle) -> Leg:
+    """Take an area for a corridor along its longer side."""
+    x, y = area.centre
+    across, up = area.max_x - area.min_x, area.max_y - area.min_y
+    if across >= up:
+        return Leg((area.min_x, y), (area.max_x, y), up)
+    return Leg((x, area.min_y), (x, area.max_y), across)

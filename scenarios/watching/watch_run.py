@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet as pq
 
-from peopleboy.scenarios.recording.scene.scene_layer import SceneRecording
+from peopleboy.scenarios.recording.scene_layer import SceneRecording
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
-from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.run_folder.output import whole
 from peopleboy.scenarios.watching.bodies import Bodies
 from peopleboy.scenarios.watching.run_frames import check_frames, run_frames
 from peopleboy.scenarios.watching.scene_files import (

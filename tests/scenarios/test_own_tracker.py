@@ -17,10 +17,10 @@ from mcap_ros2.decoder import DecoderFactory
 from rerun.chunk import RrdReader
 
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.thermal_box import thermal_box
+from peopleboy.scenarios.loop.loop import thermal_box
 from peopleboy.scenarios.running.run import RunOptions
 from peopleboy.scenarios.running.run import run as run_scenario
-from peopleboy.scenarios.scores.yardstick import Yardstick, boxes_held
+from peopleboy.scenarios.scores.reference_boxes import Yardstick, boxes_held
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.kinds import KINDS
 from peopleboy.sim.geometry.pinhole import Pinhole

@@ -24,7 +24,7 @@ from peopleboy.scenarios.loop.calibrations import calibration_of
 from peopleboy.scenarios.report.findings.summary import look_into
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
-from peopleboy.scenarios.scores.yardstick import Yardstick
+from peopleboy.scenarios.scores.reference_boxes import Yardstick
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.geometry.mirror import MIRRORS
 from peopleboy.sim.geometry.panorama import Panorama

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from docs.generate.pictures.paper import WIDTH_IN, show
 from peopleboy.behaviours.scripted import Stand
-from peopleboy.scenarios.drawing.labels import Labels
 from peopleboy.scenarios.drawing.palette import track_colour
-from peopleboy.scenarios.drawing.plan.place import draw_floor, draw_walls
-from peopleboy.scenarios.drawing.plan.robot import draw_robot
+from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_walls
+from peopleboy.scenarios.drawing.plan_robot import draw_robot
+from peopleboy.scenarios.drawing.plan_sheet import Labels
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop

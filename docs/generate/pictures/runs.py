@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 from PIL import Image
 
 from docs.generate.pictures.moments import CROSSING
-from peopleboy.scenarios.drawing.plan.plan import draw_plan
+from peopleboy.scenarios.drawing.draw_plan import draw_plan
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.run import RunOptions, run
 

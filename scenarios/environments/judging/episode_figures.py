@@ -7,8 +7,8 @@ from dataclasses import asdict
 
 import numpy as np
 
-from peopleboy.scenarios.scores.comfort.comfort_score import score_company
-from peopleboy.scenarios.scores.corridor_score import score_way
+from peopleboy.scenarios.scores.comfort_metrics import score_company
+from peopleboy.scenarios.scores.corridor_metrics import score_way
 from peopleboy.scenarios.scores.following_metrics import FollowingTask
 from peopleboy.scenarios.scores.following_score import TARGET, Spot, score_instants, track_on
 from peopleboy.sim.geometry.planar import Planar

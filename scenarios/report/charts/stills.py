@@ -30,10 +30,9 @@ from peopleboy.scenarios.drawing.overlay import (
     enlarge,
 )
 from peopleboy.scenarios.report.findings.summary import RunFindings
-from peopleboy.scenarios.run_folder.explained import read_explanation
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file
-from peopleboy.scenarios.run_folder.tables import Row
+from peopleboy.scenarios.run_folder.tables import Row, read_explanation
 from peopleboy.sim.cameras.kinds import kind_of, layers_of
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.tracker.boxes import Box
@@ -103,7 +102,7 @@ def _recorded(run: FinishedRun, camera: str, frames: Sequence[int]) -> dict[int,
     recording = run.folder / "recording.rrd"
     if run.about.images or not recording.is_file():
         return {}
-    from peopleboy.scenarios.recording.files.recorded_images import recorded_images
+    from peopleboy.scenarios.recording.recording_file import recorded_images
 
     return {**recorded_images(recording, camera, frames)}
 

@@ -7,8 +7,7 @@ from typing import Final
 
 from markupsafe import Markup
 
-from peopleboy.scenarios.drawing.event_wording import describe_move
-from peopleboy.scenarios.loop.run_events import LogLine
+from peopleboy.scenarios.loop.run_events import LogLine, describe_move
 from peopleboy.scenarios.report.charts.timelines import Look, TimelineRow, draw_rows
 from peopleboy.scenarios.report.findings.sentences import spoken
 from peopleboy.scenarios.report.findings.summary import RunFindings

@@ -7,9 +7,8 @@ from markupsafe import Markup
 from matplotlib.axes import Axes
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.drawing.labels import Labels
-from peopleboy.scenarios.drawing.plan.place import draw_floor, draw_things, draw_walls
-from peopleboy.scenarios.drawing.plan.sheet import PAPER, lay_out, sections
+from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_things, draw_walls
+from peopleboy.scenarios.drawing.plan_sheet import PAPER, Labels, lay_out, sections
 from peopleboy.scenarios.report.charts.svg import inline, lettered, new_figure
 from peopleboy.scenarios.report.findings.sentences import spoken
 from peopleboy.scenarios.report.findings.spans import Floats

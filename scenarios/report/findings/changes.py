@@ -8,7 +8,7 @@ from enum import Enum, auto
 from itertools import pairwise
 from typing import NamedTuple
 
-from peopleboy.scenarios.report.findings.plight import plight
+from peopleboy.scenarios.report.findings.causes import plight
 from peopleboy.scenarios.report.findings.spans import Span, spans
 from peopleboy.scenarios.report.findings.story import PersonView, RunStory, Story
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from peopleboy.scenarios.loop.track_events import KNOWN
+from peopleboy.scenarios.report.findings.causes import BEFORE_S, plight
 from peopleboy.scenarios.report.findings.changes import is_return
 from peopleboy.scenarios.report.findings.endings import Ending, how_it_ended, steadily_due
-from peopleboy.scenarios.report.findings.plight import BEFORE_S, plight
 from peopleboy.scenarios.report.findings.sentences import seconds, spoken
 from peopleboy.scenarios.report.findings.spans import Flags, Ints, settle, spans
 from peopleboy.scenarios.report.findings.story import STEADY_S, RunStory, Story

@@ -13,12 +13,12 @@ import pyarrow as pa
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.report.findings.spans import Flags, Floats, Ints, between, settle
-from peopleboy.scenarios.run_folder.camera_truth import truth_files
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun, cameras_of
-from peopleboy.scenarios.run_folder.on_floor import as_squares, is_on_floor_alone
+from peopleboy.scenarios.run_folder.floor_places import as_squares, is_on_floor_alone
 from peopleboy.scenarios.run_folder.run_files import RunFiles, read_table
 from peopleboy.scenarios.run_folder.tables import TRUTH
-from peopleboy.scenarios.scores.yardstick import (
+from peopleboy.scenarios.run_folder.truth_files import truth_files
+from peopleboy.scenarios.scores.reference_boxes import (
     Yardstick,
     boxed_cameras,
     boxes_held,

@@ -7,7 +7,7 @@ from contextlib import closing
 from typing import Any, TypeVar
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.run_folder.termination import left_by_sigterm
+from peopleboy.scenarios.run_folder.output import left_by_sigterm
 from peopleboy.scenarios.running.engine.processes import in_processes
 from peopleboy.scenarios.running.engine.tally import tally
 from peopleboy.scenarios.running.engine.task import Failure, Task, TasksFailed, Tell, attempt

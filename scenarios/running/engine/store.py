@@ -12,7 +12,7 @@ from typing import Any
 
 from peopleboy import sim, tracker
 from peopleboy.scenarios.run_folder.folder import versions
-from peopleboy.scenarios.run_folder.out_folder import writing_to
+from peopleboy.scenarios.run_folder.output import writing_to
 
 Result = dict[str, Any]
 

@@ -15,8 +15,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import Tick, closed_loop, make_frame
-from peopleboy.scenarios.loop.oracle_tracker import OracleTracker
-from peopleboy.scenarios.loop.tracker_by_name import make_eyes
+from peopleboy.scenarios.loop.tracker_by_name import OracleTracker, make_eyes
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth, Truth

@@ -8,7 +8,7 @@ from pathlib import Path
 import yaml
 
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.run_folder.output import whole
 from peopleboy.scenarios.running.engine.task import Tell
 from peopleboy.studies.training.foreground_learning.masked_film import film_people
 from peopleboy.studies.training.foreground_learning.random_scene import random_scene

@@ -13,8 +13,7 @@ from rich.console import Console
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.run_folder.out_folder import writing_to
-from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.run_folder.output import whole, writing_to
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.studies.training.foreground_learning.film_task import FilmTask

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.run_folder.output import whole
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.truth.truth import Truth

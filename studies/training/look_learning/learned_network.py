@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from peopleboy.scenarios.run_folder.out_folder import writing_to
-from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.run_folder.output import whole, writing_to
 from peopleboy.studies.training.look_learning.examples import LookExamples
 from peopleboy.tracker.boxes import Floats, iou
 from peopleboy.tracker.proposals.looks.closer_look import CloserLook

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.run_folder.output import whole
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.truth.truth import PersonTruth

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from peopleboy.scenarios.run_folder.out_folder import writing_to
-from peopleboy.scenarios.run_folder.whole import whole
+from peopleboy.scenarios.run_folder.output import whole, writing_to
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.studies.training.people_learning.boosting import Boosting

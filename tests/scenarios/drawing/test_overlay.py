@@ -16,10 +16,12 @@ from peopleboy.scenarios.drawing.overlay import (
     draw_truth,
     encode_jpeg,
     enlarge,
+    lines_of,
     map_box,
     show_thermal,
 )
 from peopleboy.scenarios.drawing.palette import TRUTH, track_colour
+from peopleboy.tracker.handover.both_explanations import BothExplanations
 from peopleboy.tracker.thermal.contour.outline import outline
 from peopleboy.tracker.track import Status
 from tests.helpers.runs import synthetic_ticks as made
@@ -128,3 +130,16 @@ def test_an_encoded_picture_has_its_colours_in_order() -> None:
     red[..., 0] = 250
     decoded = cv2.imdecode(np.frombuffer(encode_jpeg(red, 90), np.uint8), cv2.IMREAD_COLOR)
     assert decoded[8, 8].tolist() == pytest.approx([0, 0, 250], abs=6)
+
+
+def test_contours_of_the_handover_are_drawn_under_the_shared_numbers() -> None:
+    contours = made.explain()
+    both = lines_of(BothExplanations.of(contours, None, {1: 8}), 24)
+    assert list(both) == [8]
+    for one, other in zip(both[8], lines_of(contours, 24)[1], strict=True):
+        assert one.shape[1] == 2
+        assert (one == other).all()
+
+
+def test_of_other_explanations_nothing_is_drawn() -> None:
+    assert lines_of(None) == lines_of(object()) == {}

@@ -11,10 +11,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from peopleboy.scenarios.drawing.labels import Labels
-from peopleboy.scenarios.drawing.plan.people import draw_person
-from peopleboy.scenarios.drawing.plan.plan import draw_plan
-from peopleboy.scenarios.drawing.plan.sheet import MARGIN_M, lay_out, sections
+from peopleboy.scenarios.drawing.draw_plan import draw_plan
+from peopleboy.scenarios.drawing.plan_paths import draw_person
+from peopleboy.scenarios.drawing.plan_sheet import MARGIN_M, Labels, lay_out, sections
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.people.person import PersonConfig
 from peopleboy.sim.people.walking.walker import Waypoint

@@ -12,7 +12,7 @@ from pycocotools.coco import COCO
 from trackers.eval import evaluate_mot_sequences
 from trackeval.datasets import MotChallenge2DBox
 
-from peopleboy.scenarios.export.dataset.splits import SPLITS
+from peopleboy.scenarios.export.splits import SPLITS
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.runs.exported import SCENE, export

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import yaml
 
-from peopleboy.scenarios.drawing.plan.plan import draw_plan
+from peopleboy.scenarios.drawing.draw_plan import draw_plan
 from peopleboy.scenarios.files.load import LIBRARY, library, load_scenario, parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.schema.robot import RobotSpec

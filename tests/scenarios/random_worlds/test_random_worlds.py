@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
-from peopleboy.scenarios.export.dataset.contents import of_worlds
+from peopleboy.scenarios.export.make_dataset import of_worlds
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.random_worlds.distribution import ODDS, RANGES, SHARES
 from peopleboy.scenarios.random_worlds.drawn_values import drawn_values, histograms

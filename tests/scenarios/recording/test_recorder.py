@@ -16,10 +16,10 @@ from rerun.chunk import RrdReader
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
-from peopleboy.scenarios.recording.files.packing import pack
 from peopleboy.scenarios.recording.layout import lay_out
 from peopleboy.scenarios.recording.recorder import Recorder
-from peopleboy.scenarios.recording.rounding import PIXEL_STEP
+from peopleboy.scenarios.recording.recording_file import pack
+from peopleboy.scenarios.recording.rows import PIXEL_STEP
 from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.random_streams import stream

@@ -15,8 +15,8 @@ from urllib.request import urlopen
 
 import pytest
 
-from peopleboy.scenarios.recording.files.recording_file import is_whole
 from peopleboy.scenarios.recording.recorder import Recorder
+from peopleboy.scenarios.recording.recording_file import is_whole
 from peopleboy.scenarios.recording.viewer import live_viewer
 from tests.helpers.calls.command_line import refusal
 from tests.helpers.runs import synthetic_ticks as made

@@ -8,7 +8,7 @@ import pytest
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.report.charts.error_curves import curve, distance_edges, samples
 from peopleboy.scenarios.report.charts.stills import Origin, show_frames
-from peopleboy.scenarios.report.findings.plight import plight
+from peopleboy.scenarios.report.findings.causes import plight
 from peopleboy.scenarios.report.findings.summary import RunFindings, look_into
 from peopleboy.scenarios.report.findings.verdict import headline
 from peopleboy.scenarios.run_folder.finished_run import open_run

@@ -181,7 +181,7 @@ def test_an_interrupted_run_says_so_and_stays_readable(tmp_path: Path) -> None:
 def test_a_run_told_to_end_says_so_and_is_no_failure_of_its_tracker(tmp_path: Path) -> None:
     script = (
         "import os, signal, sys; from peopleboy.scenarios.cli import main\n"
-        "import peopleboy.scenarios.loop.oracle_tracker as oracle\n"
+        "import peopleboy.scenarios.loop.tracker_by_name as oracle\n"
         "oracle.OracleTracker.update = lambda *_: os.kill(os.getpid(), signal.SIGTERM)\n"
         "main(sys.argv[1:])"
     )

@@ -7,9 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.scores.by_tracker import ScoredRun
-from peopleboy.scenarios.scores.comfort.comfort_metrics import ComfortRun, score_comfort, times_to_collision
-from peopleboy.scenarios.scores.comfort.comfort_of_runs import comfort_by_tracker
+from peopleboy.scenarios.scores.by_tracker import ScoredRun, comfort_by_tracker
+from peopleboy.scenarios.scores.comfort_metrics import ComfortRun, score_comfort, times_to_collision
 from peopleboy.tracker.evaluation.evaluate import evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 

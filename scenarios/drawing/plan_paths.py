@@ -1,0 +1,205 @@
+"""Draw on a plan where people walk and where things are moved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle, Polygon
+from numpy.typing import NDArray
+
+from peopleboy.scenarios.drawing.plan_place import outlines
+from peopleboy.scenarios.drawing.plan_sheet import Labels
+from peopleboy.sim.people.person import PersonConfig
+from peopleboy.sim.people.walking.surroundings import ALONE
+from peopleboy.sim.people.walking.walker import Walker
+from peopleboy.sim.people.walking.walk import Walker
+from peopleboy.sim.places.moving import ActionKind, Mover, Stance
+from peopleboy.sim.places.place import Fixture, Place
+from peopleboy.sim.truth.thing_events import STANDS_S
+
+_STEP_S = 0.05
+_MARK_EVERY_S = 5.0
+_SHORTEST_PAUSE_S = 0.5
+_ARRIVED_M = 0.05
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Way:
+    """Where somebody undisturbed is: times (T,) [s], places (T, 2) [m]; and whether that one then leaves."""
+
+    times: NDArray[np.float64]
+    places: NDArray[np.float64]
+    leaves: bool
+
+    @property
+    def walks(self) -> bool:
+        """Whether the person goes anywhere."""
+        return bool(np.ptp(self.places, axis=0).max() > _ARRIVED_M)
+
+
+def draw_person(axes: Axes, labels: Labels, person: PersonConfig, end_s: float, colour: str) -> None:
+    """Draw a person's way, the time along it, the pauses, and the name at the start."""
+    way = _walk(person, end_s)
+    axes.plot(way.places[:, 0], way.places[:, 1], color=colour, lw=1.6, alpha=0.9, zorder=7)
+    _draw_arrows(axes, way, colour)
+    start = way.places[0]
+    axes.add_patch(Circle(start, 0.11, facecolor=colour, edgecolor="white", lw=1.0, zorder=8))
+    labels.block(start[0], start[1], 0.12)
+    for x, y in np.unique(np.round(way.places, 1), axis=0):  # once where the person stands
+        labels.block(x, y, 0.05)
+    name = f"{person.name} {person.height_m:.2f} m{_presence(person, way)}"
+    labels.write(start[0], start[1], name, size=8, color=colour, weight="bold")
+    _draw_pauses(axes, labels, person, way, colour)
+    _draw_times(axes, labels, way, colour)
+
+
+def _presence(person: PersonConfig, way: _Way) -> str:
+    """Say when somebody comes; of who walks, it stands at the end of the way when the person leaves."""
+    enters = f"from {person.enter_s:.1f}" if person.enter_s > 0.0 else ""
+    leaves = f"until {person.leave_s:.1f}" if way.leaves and not way.walks else ""
+    return f", {' '.join(filter(None, (enters, leaves)))} s" if enters or leaves else ""
+
+
+def _walk(person: PersonConfig, end_s: float) -> _Way:
+    walker = Walker(person.path, yields=False, radius_m=0.0)
+    end = end_s if person.leave_s is None else min(end_s, person.leave_s)
+    places = [walker.position.copy()]
+    for _ in range(max(round((end - person.enter_s) / _STEP_S), 1)):
+        walker.step(_STEP_S, ALONE)
+        places.append(walker.position.copy())
+    times = person.enter_s + _STEP_S * np.arange(len(places), dtype=np.float64)
+    leaves = person.leave_s is not None and person.leave_s < end_s
+    return _Way(times=times, places=np.array(places), leaves=leaves)
+
+
+def _draw_arrows(axes: Axes, way: _Way, colour: str) -> None:
+    """An arrow head every two metres walked, between the marks."""
+    steps = np.linalg.norm(np.diff(way.places, axis=0), axis=1)
+    walked = np.cumsum(steps)
+    for distance in np.arange(1.0, walked[-1], 2.0):
+        index = int(np.searchsorted(walked, distance))
+        tail, head = way.places[index], way.places[min(index + 2, len(way.places) - 1)]
+        if math.dist(tail, head) > 1e-3:
+            axes.annotate(
+                "",
+                head,
+                tail,
+                arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.2, "shrinkA": 0, "shrinkB": 0},
+                zorder=7,
+            )
+
+
+def _draw_pauses(axes: Axes, labels: Labels, person: PersonConfig, way: _Way, colour: str) -> None:
+    for waypoint in person.path[:-1]:
+        if waypoint.pause_s < _SHORTEST_PAUSE_S:
+            continue
+        gaps = np.linalg.norm(way.places - np.array(waypoint.at_m), axis=1)
+        if gaps.min() > 0.1:
+            continue  # the scenario ends before
+        axes.add_patch(Circle(waypoint.at_m, 0.16, facecolor="none", edgecolor=colour, lw=1.2, zorder=8))
+        labels.block(*waypoint.at_m, 0.16)
+        what = "" if waypoint.posture == "standing" else f" {waypoint.posture.replace('_', ' ')}"
+        facing = f", faces {waypoint.face}" if isinstance(waypoint.face, str) else ""
+        text = f"pauses {waypoint.pause_s:g} s{what}{facing}"
+        labels.write(*waypoint.at_m, text, size=6.5, color=colour, style="italic")
+
+
+def _draw_times(axes: Axes, labels: Labels, way: _Way, colour: str) -> None:
+    """Dots at whole multiples of five seconds on the way, and what becomes of the person at its end."""
+    far = np.linalg.norm(way.places - way.places[-1], axis=1)
+    on_the_way = np.flatnonzero(far > _ARRIVED_M)
+    if len(on_the_way) == 0:
+        return
+    arrival = int(on_the_way[-1]) + 1
+    before = way.places[0]
+    first = math.floor(way.times[0] / _MARK_EVERY_S) + 1
+    for time_s in np.arange(first * _MARK_EVERY_S, way.times[arrival] - 0.5, _MARK_EVERY_S):
+        place = way.places[round((time_s - way.times[0]) / _STEP_S)]
+        if math.dist(place, before) > 0.1:
+            axes.plot(*place, "o", ms=4.0, mfc="white", mec=colour, mew=1.1, zorder=8)
+            labels.write(place[0], place[1], f"{time_s:g} s", size=6.8, color=colour)
+        before = place
+    x, y = way.places[-1]
+    axes.plot(x, y, "s", ms=4.5, mfc=colour, mec="white", mew=0.8, zorder=8)
+    stays = way.times[-1] - way.times[arrival] > _SHORTEST_PAUSE_S
+    end = f"{'leaves' if way.leaves else 'run ends'} at {way.times[-1]:.0f} s"
+    what = f"stays from {way.times[arrival]:.0f} s{f', {end}' if way.leaves else ''}" if stays else end
+    labels.write(x, y, what, size=6.8, color=colour, weight="bold")
+
+
+COLOUR = "#8a5a00"
+_SHORTEST_M = 0.15
+_CLEAR_M = 0.2  # between the middle of an outline and its label
+
+
+@dataclass(frozen=True, slots=True)
+class _Leg:
+    """A thing's way from one rest to the next; from None it appears, and to None it vanishes."""
+
+    start: Stance | None
+    end: Stance | None
+    at_s: float
+    by: str | None
+
+
+def draw_moves(axes: Axes, labels: Labels, place: Place) -> None:
+    """Draw where moved things come to stand, the ways there, when they set off, and by whose hand."""
+    for mover in place.movers:
+        own = [fixture for fixture in place.fixtures if fixture.name.split("/")[0] == mover.name]
+        for leg in _legs(mover):
+            if leg.end is not None:
+                _draw_ghost(axes, own, leg.end)
+            _draw_arrow(axes, leg)
+            _label(labels, leg)
+
+
+def _legs(mover: Mover) -> Iterator[_Leg]:
+    """The ways of a thing, from rest to rest."""
+    here: Stance | None = None if mover.is_hidden_at_start else mover.start
+    setting_off: tuple[Stance | None, float, str | None] | None = None
+    for index, action in enumerate(mover.actions):
+        if setting_off is None:
+            setting_off = (here, action.at_s, action.by)
+        here = None if action.kind is ActionKind.VANISH else action.target
+        follows = mover.actions[index + 1 : index + 2]
+        lasts = bool(action.takes_s) and any(
+            after.takes_s and after.at_s - action.ends_s < STANDS_S for after in follows
+        )
+        if not lasts:
+            start, at_s, by = setting_off
+            yield _Leg(start, here, at_s, by)
+            setting_off = None
+
+
+def _draw_ghost(axes: Axes, fixtures: list[Fixture], stance: Stance) -> None:
+    for fixture in fixtures:
+        moved = replace(fixture, position=stance.position_m, orientation=stance.orientation)
+        for corners in outlines(moved):
+            axes.add_patch(
+                Polygon(corners, facecolor="none", edgecolor=COLOUR, lw=0.7, ls=(0, (2, 1.5)), zorder=5)
+            )
+
+
+def _draw_arrow(axes: Axes, leg: _Leg) -> None:
+    if leg.start is None or leg.end is None:
+        return
+    tail, head = leg.start.position_m[:2], leg.end.position_m[:2]
+    if math.dist(tail, head) > _SHORTEST_M:
+        axes.annotate(
+            "", head, tail, zorder=6,
+            arrowprops={"arrowstyle": "-|>", "color": COLOUR, "lw": 1.1, "shrinkA": 0, "shrinkB": 2},
+        )  # fmt: skip
+
+
+def _label(labels: Labels, leg: _Leg) -> None:
+    spot = leg.end if leg.end is not None else leg.start
+    assert spot is not None
+    what = "vanishes" if leg.end is None else "appears" if leg.start is None else "moved"
+    by = "" if leg.by is None else f" by {leg.by}"
+    x, y, _ = spot.position_m
+    labels.block(x, y, _CLEAR_M)
+    labels.write(x, y, f"{what} {leg.at_s:.0f} s{by}", size=6.2, color=COLOUR)

@@ -1,0 +1,227 @@
+"""Render a data set: choose its runs, play them, then write splits, statistics, checks and the datasheet."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.export.checks import Check, check_set
+from peopleboy.scenarios.export.datasheet import Statistics, measure, write_datasheet
+from peopleboy.scenarios.export.splits import (
+    ABOUT,
+    SPLITS,
+    is_set,
+    lacking_splits,
+    split_file,
+    split_lines,
+    split_of,
+)
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.random_worlds.drawn_values import drawn_values, histograms
+from peopleboy.scenarios.random_worlds.random_world import random_scenario
+from peopleboy.scenarios.run_folder.folder import versions
+from peopleboy.scenarios.run_folder.output import check_named, writing_to
+from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.run import RunOptions
+from peopleboy.scenarios.running.run_task import RunTask, play, unfinished
+from peopleboy.sim.physics.physics import check_physics
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Member:
+    """A run of a set: what is played, with which seed, and the name of its folder."""
+
+    scenario: Scenario
+    seed: int
+    name: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SetContents:
+    """What a set is to hold.
+
+    Attributes:
+        members: its runs, in order.
+        asked: words of the command that ask for them.
+        about: the same for `dataset.json`.
+        lacking: which splits have no run, and what to ask for; empty if all have one.
+        is_random: whether they are worlds drawn at random.
+    """
+
+    members: tuple[Member, ...]
+    asked: tuple[str, ...]
+    about: Mapping[str, Any]
+    lacking: str
+    is_random: bool = False
+
+
+def of_scenarios(scenarios: Sequence[str], seeds: int) -> SetContents:
+    """Hold some scenarios, by name or path, with so many seeds each, from 0 on.
+
+    Raises:
+        BadInput: a scenario cannot be played, or two have one name.
+    """
+    loaded = [load_scenario(scenario) for scenario in scenarios]
+    names = [scenario.name for scenario in loaded]
+    if len(set(names)) < len(names):
+        raise BadInput(f"render: {', '.join(names)}: two scenarios have the same name; give each once")
+    return SetContents(
+        members=tuple(
+            Member(scenario, seed, f"{scenario.name}-{seed}") for scenario in loaded for seed in range(seeds)
+        ),
+        asked=tuple(scenarios),
+        about={"scenarios": names, "seeds": seeds},
+        lacking=lacking_splits(seeds),
+    )
+
+
+def of_worlds(count: int, first: int) -> SetContents:
+    """Hold so many worlds drawn at random, each by a seed of its own, from `first` on."""
+    seeds = range(first, first + count)
+    worlds = [random_scenario(seed) for seed in seeds]
+    empty = [split for split in SPLITS if split not in map(split_of, seeds)]
+    are = "are" if len(empty) > 1 else "is"
+    return SetContents(
+        members=tuple(Member(world, seed, world.name) for world, seed in zip(worlds, seeds, strict=True)),
+        asked=("--randomise", str(count), "--seed", str(first)),
+        about={"randomise": count, "seed": first},
+        lacking=f"{' and '.join(empty)} {are} empty; give --randomise 7" if empty else "",
+        is_random=True,
+    )
+
+
+DRAWN: Final = "drawn.json"
+"""The file in which a set of random worlds says what was drawn for each."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RenderedSet:
+    """A finished set.
+
+    Attributes:
+        folder: where it lies.
+        runs: folders of its runs, in the order of the contents.
+        statistics: of each split that has runs, and of "all".
+        checks: what was looked at.
+        size_mb: [MB] of the runs on disk; exports may lie beside them.
+        lacking: which splits have no run, and what to ask for; empty if all have one.
+    """
+
+    folder: Path
+    runs: tuple[Path, ...]
+    statistics: dict[str, Statistics]
+    checks: tuple[Check, ...]
+    size_mb: float
+    lacking: str
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether every check holds."""
+        return not any(check.failures for check in self.checks)
+
+
+def render_set(
+    contents: SetContents, folder: Path, *, frames: bool, tracker: str, workers: Workers
+) -> RenderedSet:
+    """Render a set, or what is missing of it; complete runs stay.
+
+    The datasheet and `dataset.json` are written last: without them a set is not finished.
+
+    Args:
+        contents: what it holds.
+        folder: of the set.
+        frames: whether images are written.
+        tracker: whose eyes steer robots that follow people; "truth" for the true boxes.
+        workers: who does the runs.
+
+    Raises:
+        BadInput: as for a run; or the folder holds something that is no set.
+        TasksFailed: some runs failed.
+    """
+    members = contents.members
+    for member in members:
+        check_physics(member.scenario.spec.physics)
+    _claim(folder)
+    tasks = [
+        RunTask(
+            member.scenario,
+            RunOptions(
+                seed=member.seed, out=folder / member.name, frames=frames, tracker=tracker, record=False
+            ),
+        )
+        for member in members
+    ]
+    waiting = unfinished(tasks)
+    _reopen(folder)
+    runs = tuple(task.options.out for task in tasks)
+    numbers = [member.seed for member in members]
+    _write_splits(folder, [run.name for run in runs], numbers)
+    play(waiting, workers, folder.name)
+    done = RenderedSet(
+        folder=folder,
+        runs=runs,
+        statistics=_statistics(runs, numbers),
+        checks=tuple(check_set(folder, runs, members[0].scenario, tasks[0].options)),
+        size_mb=sum(path.stat().st_size for run in runs for path in run.rglob("*") if path.is_file()) / 1e6,
+        lacking=contents.lacking,
+    )
+    about = {**contents.about, "images": frames, "tracker": tracker, "versions": versions()}
+    drawn = {m.name: drawn_values(m.scenario.resolved(m.seed)) for m in members} if contents.is_random else {}
+    if drawn:
+        (folder / DRAWN).write_text(json.dumps(drawn, indent=1) + "\n", encoding="utf-8")
+    content = about | {
+        "asked": contents.asked,
+        "size_mb": done.size_mb,
+        "lacking": done.lacking,
+        "drawn": histograms(list(drawn.values())),
+    }
+    scenarios = list(dict.fromkeys(member.scenario for member in members))
+    write_datasheet(folder / "README.md", done.statistics, done.checks, content, scenarios)
+    _write_about(done, about)
+    return done
+
+
+def _claim(folder: Path) -> None:
+    """Make the folder.
+
+    Raises:
+        BadInput: something else lies there.
+    """
+    check_named(folder)
+    if folder.exists() and (not folder.is_dir() or (any(folder.iterdir()) and not is_set(folder))):
+        raise BadInput(f"{folder}: holds something that is no rendered set; give another --out")
+    with writing_to(folder):
+        (folder / "splits").mkdir(parents=True, exist_ok=True)
+
+
+def _reopen(folder: Path) -> None:
+    """Take back what says that the set is finished."""
+    for name in ("README.md", ABOUT, DRAWN):
+        (folder / name).unlink(missing_ok=True)
+
+
+def _write_splits(folder: Path, names: Sequence[str], seeds: Sequence[int]) -> None:
+    for split in SPLITS:
+        split_file(folder, split).write_text(split_lines(names, seeds, split), encoding="utf-8")
+
+
+def _statistics(runs: Sequence[Path], seeds: Sequence[int]) -> dict[str, Statistics]:
+    groups = {"all": list(runs)} | {
+        split: [run for run, seed in zip(runs, seeds, strict=True) if split_of(seed) == split]
+        for split in SPLITS
+    }
+    return {name: measure(group) for name, group in groups.items() if group}
+
+
+def _write_about(done: RenderedSet, about: dict[str, Any]) -> None:
+    content = about | {
+        "runs": [run.name for run in done.runs],
+        "statistics": {name: each.to_json() for name, each in done.statistics.items()},
+        "checks": [asdict(check) for check in done.checks],
+    }
+    (done.folder / ABOUT).write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")

@@ -1,1 +1,0 @@
-"""Runs as bags of ROS 2."""

@@ -1,0 +1,102 @@
+"""Split data sets into training, validation and test runs, so that no export trains on test runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+
+ABOUT = "dataset.json"
+"""The file that a finished set has."""
+
+SPLITS = ("train", "val", "test")
+_TURNS = ("train", "train", "train", "train", "train", "val", "test")
+
+
+def split_of(seed: int) -> str:
+    """Give the split that a seed belongs to, in every scenario: five sevenths train, one val, one test.
+
+    It does not depend on how many seeds there are, so that a set that grows never moves a run.
+    """
+    return _TURNS[seed % len(_TURNS)]
+
+
+def split_lines(names: Sequence[str], seeds: Sequence[int], split: str) -> str:
+    """The file of one split: its runs' folders, one a line."""
+    return "".join(f"{name}\n" for name, seed in zip(names, seeds, strict=True) if split_of(seed) == split)
+
+
+def split_file(folder: Path, split: str) -> Path:
+    """Where a set keeps the names of a split's runs."""
+    return folder / "splits" / f"{split}.txt"
+
+
+def lacking_splits(seeds: int) -> str:
+    """Say which splits have no run with so many seeds, and how many they need; nothing if all have one."""
+    firsts = {split: _TURNS.index(split) for split in SPLITS if _TURNS.index(split) >= seeds}
+    if not firsts:
+        return ""
+    are, first = ("are", "the first are seeds") if len(firsts) > 1 else ("is", "the first is seed")
+    numbers = " and ".join(map(str, firsts.values()))
+    return f"{' and '.join(firsts)} {are} empty: {first} {numbers}; give --seeds {max(firsts.values()) + 1}"
+
+
+def read_split(run: Path) -> str | None:
+    """Tell the split of a run's folder; None if it lies in no rendered set.
+
+    Raises:
+        BadInput: it lies in one, and in none of its splits, or in several.
+    """
+    folder = run.resolve().parent
+    files = {split: split_file(folder, split) for split in SPLITS}
+    if not any(file.is_file() for file in files.values()):
+        return None
+    try:
+        own = [
+            split for split, file in files.items() if run.resolve().name in file.read_text("utf-8").split()
+        ]
+    except (OSError, UnicodeDecodeError) as error:
+        raise BadInput(f"{folder / 'splits'}: cannot be read; render the set again") from error
+    if len(own) != 1:
+        raise BadInput(
+            f"{run}: must be in one split, is in {' and '.join(own) or 'none'} of {folder / 'splits'}; "
+            "render the set with all its seeds, or move this run away"
+        )
+    return own[0]
+
+
+def refuse_unfinished(folder: Path) -> None:
+    """Refuse a set of which runs may be missing; folders that are no set are none of its business.
+
+    Raises:
+        BadInput: it is not finished.
+    """
+    if is_set(folder) and not (folder / ABOUT).is_file():
+        raise BadInput(
+            f"{folder}: this set is not finished; the same `peopleboy render` goes on where it was, "
+            "or name runs of it"
+        )
+
+
+def is_set(folder: Path) -> bool:
+    """Tell whether a folder is a rendered set, finished or not."""
+    return (folder / "splits").is_dir()
+
+
+def by_split(runs: Sequence[FinishedRun]) -> dict[str | None, list[FinishedRun]]:
+    """Sort runs by the splits of the rendered sets that they lie in; None alone if they lie in none.
+
+    Raises:
+        BadInput: some lie in rendered sets and some do not, or one is not in its set's splits.
+    """
+    found: dict[str | None, list[FinishedRun]] = {}
+    for run in runs:
+        found.setdefault(read_split(run.folder), []).append(run)
+    if None in found and len(found) > 1:
+        raise BadInput(
+            f"{found[None][0].folder}: lies in no rendered set, other runs do and have splits; "
+            "export them one after the other"
+        )
+    return {split: found[split] for split in (None, *SPLITS) if split in found}

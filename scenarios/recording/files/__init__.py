@@ -1,1 +1,0 @@
-"""The file of a recording: packed, found, and read back."""

@@ -1,0 +1,111 @@
+"""Find, check, pack and read back the recording of a run."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Collection
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from rerun.chunk import RrdReader
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.recording.layout import camera_path
+from peopleboy.scenarios.run_folder.finished_run import runs_in
+from peopleboy.scenarios.run_folder.output import whole
+
+# What a file of rerun's begins with, and what ends one that was closed.
+_HEAD, _FOOT, _FOOT_BYTES = b"RRF2", b"RRF2FOOT", 12
+
+
+def recording_in(folder: Path) -> Path:
+    """Find the recording of a run, of one that was cut off too.
+
+    Raises:
+        BadInput: there is no such folder, it holds no run or several, or no recording of rerun's.
+    """
+    inner = runs_in(folder)
+    if inner != [folder]:
+        raise BadInput(f"{folder}: holds {len(inner)} runs; give one of them, such as {inner[0]}")
+    recording = folder / "recording.rrd"
+    if not recording.is_file() and not (folder / "run.json").is_file():
+        raise BadInput(f"{folder}: holds no run and no recording; give the folder of a run")
+    _check(recording)
+    return recording
+
+
+def layers_in(folder: Path) -> list[Path]:
+    """List what lies over the recording of a run: what a scene model believes."""
+    return sorted(folder.glob("scene/scene.rrd"))
+
+
+def is_whole(recording: Path) -> bool:
+    """Tell whether a recording was closed; one that was cut off opens too, and lacks its end."""
+    with recording.open("rb") as file:
+        file.seek(-min(_FOOT_BYTES, recording.stat().st_size), os.SEEK_END)
+        return _FOOT in file.read()
+
+
+def _check(recording: Path) -> None:
+    if not recording.is_file():
+        raise BadInput(f"{recording}: there is no recording; run the scenario without --no-rrd")
+    try:
+        with recording.open("rb") as file:
+            is_recording = file.read(len(_HEAD)) == _HEAD
+    except OSError as error:
+        raise BadInput(f"{recording}: cannot be read: {error.strerror}") from error
+    if not is_recording:
+        raise BadInput(f"{recording}: is no rerun recording; run the scenario again")
+
+
+_ONLY_ERRORS = {"RUST_LOG": "error"}
+
+
+def pack(path: Path) -> None:
+    """Join the pieces of a recording, as they came second by second, which takes a sixth off its size.
+
+    There is always a complete file: the new one takes its place at the end, or not at all if rerun's program
+    fails.
+    """
+    # Rerun's program takes it for no failure if it can make nothing of its input, and then leaves nothing.
+    with whole(path) as packed:
+        command = [sys.executable, "-m", "rerun_cli", "rrd", "optimize", str(path), "--output", str(packed)]
+        done = subprocess.run(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            env=os.environ | _ONLY_ERRORS, check=False,
+        )  # fmt: skip
+        if done.returncode != 0:
+            packed.unlink(missing_ok=True)
+
+
+def recorded_images(recording: Path, camera: str, frames: Collection[int]) -> dict[int, NDArray[np.uint8]]:
+    """Read a camera's images, grey or RGB, at some frames (from 1), with what JPEG has lost of them.
+
+    Frames at which there is none are left out; so are all of a file that is not whole or cannot be read.
+    """
+    wanted, path = set(frames), f"/{camera_path(camera)}/image"
+    found: dict[int, NDArray[np.uint8]] = {}
+    try:
+        if not is_whole(recording):
+            return {}
+        for chunk in RrdReader(recording).stream().filter(content=path, is_static=False):
+            rows = chunk.to_record_batch()
+            for row, frame in enumerate(rows.column("frame").to_pylist()):
+                if frame in wanted:
+                    found[frame] = _decoded(rows.column("EncodedImage:blob")[row])
+    except (ValueError, OSError, RuntimeError, KeyError, cv2.error):
+        return {}
+    return found
+
+
+def _decoded(blob: Any) -> NDArray[np.uint8]:
+    stored = np.asarray(blob.values[0].values.to_numpy(zero_copy_only=False), np.uint8)
+    image = cv2.imdecode(stored, cv2.IMREAD_UNCHANGED)
+    if image is None:
+        raise ValueError("no image")
+    return np.ascontiguousarray(image[..., ::-1] if image.ndim == 3 else image, np.uint8)

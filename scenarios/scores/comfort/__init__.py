@@ -1,1 +1,0 @@
-"""How comfortable people were with a robot that drives among them."""

@@ -1,0 +1,60 @@
+from peopleboy.scenarios.files.load import parse_scenario
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.loop import Eyes, thermal_box
+from peopleboy.sim.robot.robot_config import RobotConfig
+from peopleboy.sim.world import World
+from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.thermal.whereabouts import standing_box
+from tests.helpers.runs.hand_made_tracks import track
+
+EMPTY = {
+    "name": "empty",
+    "description": "Nobody is in a room that is colder than the thermal camera's span.",
+    "duration_s": 1.0,
+    "place": {"kind": "room", "length_m": 14.0, "width_m": 7.0},
+    "robot": {"at_m": [1.0, 0.0]},
+}
+
+
+class Counter:
+    """A tracker that counts the images it is given."""
+
+    cameras = ("thermal",)
+
+    def __init__(self):
+        self.images = 0
+
+    def update(self, frame):  # noqa: ARG002
+        self.images += 1
+        return ()
+
+
+def test_images_of_a_cold_wall_are_new_ones_though_all_of_them_are_black(tmp_path):
+    scenario = parse_scenario(EMPTY, source="test", folder=tmp_path)
+    tracker = Counter()
+    with World(scenario.world(0)) as world:
+        eyes = Eyes(tracker, calibrations_of(world.cameras))
+        for _ in range(3):
+            observation = world.observe()
+            assert not observation.images["thermal"].any()
+            assert eyes.look(observation).image_age_s == 0.0
+            world.step(0.0, 0.0)
+    assert tracker.images == 3
+
+
+CAMERA = calibrations_of(RobotConfig().cameras)[THERMAL]
+
+
+def test_a_box_of_its_own_counts_before_the_place() -> None:
+    box = (10.0, 20.0, 30.0, 90.0)
+    assert thermal_box(track(1, boxes={THERMAL: box, "panorama": (0.0, 0.0, 1.0, 1.0)}), CAMERA) == box
+
+
+def test_who_is_known_on_the_floor_alone_has_the_box_of_somebody_who_stands_there() -> None:
+    known = track(1, (4.0, -0.5), boxes={"panorama": (0.0, 0.0, 1.0, 1.0)})
+    assert known.place is not None
+    assert thermal_box(known, CAMERA) == standing_box(known.place, CAMERA)
+
+
+def test_who_has_neither_has_none() -> None:
+    assert thermal_box(track(1, None), CAMERA) is None
