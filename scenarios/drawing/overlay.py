@@ -28,7 +28,7 @@ from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.boxes import Box, corners
 from peopleboy.tracker.frame import THERMAL
-from peopleboy.tracker.handover.both_explanations import BothExplanations
+from peopleboy.tracker.fusion.explanations import BothExplanations
 from peopleboy.tracker.thermal.contour.outline import outline
 from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.track import Status, Track

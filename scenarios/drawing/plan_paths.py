@@ -16,10 +16,9 @@ from peopleboy.scenarios.drawing.plan_sheet import Labels
 from peopleboy.sim.people.person import PersonConfig
 from peopleboy.sim.people.walking.surroundings import ALONE
 from peopleboy.sim.people.walking.walker import Walker
-from peopleboy.sim.people.walking.walk import Walker
 from peopleboy.sim.places.moving import ActionKind, Mover, Stance
 from peopleboy.sim.places.place import Fixture, Place
-from peopleboy.sim.truth.thing_events import STANDS_S
+from peopleboy.sim.truth.events import STANDS_S
 
 _STEP_S = 0.05
 _MARK_EVERY_S = 5.0

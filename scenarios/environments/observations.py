@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.environments.tell_worlds import fill_tracks, tell_motions
 from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.thermal_box import thermal_box
-from peopleboy.sim.batch.snapshot import Snapshot
 from peopleboy.scenarios.loop.loop import thermal_box
+from peopleboy.sim.batch.snapshot import Snapshot
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.physics.solid_shapes import Array

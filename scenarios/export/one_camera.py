@@ -13,7 +13,7 @@ from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file, write_png
 from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
-from peopleboy.sim.truth.boxes import Box
+from peopleboy.sim.truth.truth import Box
 
 
 @dataclass(frozen=True, slots=True)

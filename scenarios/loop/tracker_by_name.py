@@ -10,7 +10,7 @@ from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.truth.seen import is_seen
+from peopleboy.sim.truth.scenes import is_seen
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.frame import THERMAL, Frame

@@ -17,8 +17,7 @@ from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.frame import THERMAL
-from peopleboy.tracker.fusion.fused_explanation import FusedExplanation
-from peopleboy.tracker.handover.both_explanations import BothExplanations
+from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplanation
 from peopleboy.tracker.thermal.ellipse import Ellipse
 from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.thermal.variants import VARIANTS

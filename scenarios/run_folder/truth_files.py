@@ -16,7 +16,7 @@ from peopleboy.scenarios.run_folder.tables import TRUTH, Row, truth_rows, write_
 from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig
 from peopleboy.sim.cameras.kinds import with_boxes
 from peopleboy.sim.truth.backgrounds import Backgrounds
-from peopleboy.sim.truth.things import ThingTruth
+from peopleboy.sim.truth.truth import ThingTruth
 from peopleboy.tracker.evaluation.mot_files import read_truth, truth_line
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind

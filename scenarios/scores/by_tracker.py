@@ -15,12 +15,11 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.run_folder.finished_run import read_run
 from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
+from peopleboy.scenarios.scores.by_tracker import Scene, check_same_scenes
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
-from peopleboy.scenarios.scores.same_scenes import Scene, check_same_scenes
-from peopleboy.scenarios.scores.yardstick import Yardstick
-from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE
 from peopleboy.scenarios.scores.reference_boxes import Yardstick
+from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.evaluation.table import FIGURES, spread, to_json
 from peopleboy.tracker.footage.box_kinds import BoxKind

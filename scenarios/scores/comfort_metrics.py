@@ -13,7 +13,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.scores.following_metrics import Floats, Row, count_starts
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.robot.robot_body import RADIUS_M, outline_gap
-from peopleboy.sim.truth.image_free_truth import ImageFreeTruth
+from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.sim.truth.truth import Truth
 
 # Spaces about a person, from the robot's outline to the middle of the body (E. T. Hall, The Hidden Dimension,

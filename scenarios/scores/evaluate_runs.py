@@ -8,14 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.run_folder.finished_run import read_run
-from peopleboy.scenarios.run_folder.run_files import check_end, check_whole
-from peopleboy.scenarios.scores.people_scores import ScoredPeople, score_people
-from peopleboy.scenarios.scores.yardstick import Yardstick, boxes_held, kind_of_boxes, own_camera
-from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE
-from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
-from peopleboy.tracker.evaluation.mot_files import read_tracks
-from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from peopleboy.scenarios.run_folder.finished_run import cameras_of, read_run
 from peopleboy.scenarios.run_folder.floor_places import (
     BELIEFS,
@@ -36,8 +28,10 @@ from peopleboy.scenarios.scores.reference_boxes import (
     own_camera,
 )
 from peopleboy.sim.config import CONTROL_HZ
+from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE
+from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
+from peopleboy.tracker.evaluation.mot_files import read_tracks
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from peopleboy.tracker.evaluation.uncounted import MIN_VISIBLE
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.footage.truth_files import GivenTruth, find_truth, load_truth
 from peopleboy.tracker.frame import THERMAL

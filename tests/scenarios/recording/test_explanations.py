@@ -12,8 +12,6 @@ from hypothesis import strategies as st
 
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.recording.explanations import LIKELY, UNLIKELY, explained_lines, explained_points
-from peopleboy.tracker.fusion.explanations import BothExplanations
-from peopleboy.tracker.tracking.association import DetectionExplanation
 from peopleboy.scenarios.recording.sketches import (
     NOBODYS,
     column_bars,
@@ -24,15 +22,14 @@ from peopleboy.scenarios.recording.sketches import (
 )
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.geometry.panorama import Panorama
-from peopleboy.tracker.attention.people.attended import Attended
-from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
+from peopleboy.tracker.attention.people.attentive_explanation import Attended, AttentiveExplanation
 from peopleboy.tracker.attention.people.views import View
-from peopleboy.tracker.by_detection.explanation import DetectionExplanation
 from peopleboy.tracker.frame import COLOUR
-from peopleboy.tracker.handover.both_explanations import BothExplanations
+from peopleboy.tracker.fusion.explanations import BothExplanations
 from peopleboy.tracker.panoramic.paper.depth_cues import measure
-from peopleboy.tracker.panoramic.people.people_explanation import PeopleExplanation
+from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
 from peopleboy.tracker.track import FloorPlace
+from peopleboy.tracker.tracking.association import DetectionExplanation
 from tests.helpers.runs import synthetic_ticks as made
 from tests.helpers.runs.hand_made_tracks import track
 from tests.helpers.runs.synthetic_ticks import explain

@@ -1,8 +1,5 @@
-from peopleboy.scenarios.run_folder.explained import COLUMNS, explained, read_explanation
-from peopleboy.scenarios.run_folder.tables import TRACKS, track_rows
-from peopleboy.tracker.fusion.explanations import BothExplanations
 from peopleboy.scenarios.run_folder.tables import COLUMNS, TRACKS, explained, read_explanation, track_rows
-from peopleboy.tracker.handover.both_explanations import BothExplanations
+from peopleboy.tracker.fusion.explanations import BothExplanations
 from tests.helpers.runs import synthetic_ticks as made
 
 
