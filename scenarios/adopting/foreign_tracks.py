@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.export.one_camera import OneCamera, one_camera
+from peopleboy.scenarios.export.camera_images import OneCamera, one_camera
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.run_files import check_end
 from peopleboy.sim.cameras.kinds import with_boxes

@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pycocotools.mask import encode
 
-from peopleboy.scenarios.export.one_camera import (
+from peopleboy.scenarios.export.camera_images import (
     CORNER_PX,
     OUTSIDE,
     from_corner,

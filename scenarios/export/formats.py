@@ -17,7 +17,7 @@ from peopleboy.bad_input import BadInput
 FORMATS: Final[Mapping[str, str]] = {
     "mot": "peopleboy.scenarios.export.mot:write_mot",
     "coco": "peopleboy.scenarios.export.coco:write_coco",
-    "images": "peopleboy.scenarios.export.label_images:write_label_images",
+    "images": "peopleboy.scenarios.export.camera_images:write_label_images",
     "yolo": "peopleboy.scenarios.export.yolo:write_yolo",
     "yolo-pose": "peopleboy.scenarios.export.yolo:write_yolo_pose",
     "viper": "peopleboy.scenarios.export.viper:write_viper",

@@ -23,7 +23,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.export.one_camera import OneCamera, with_people, write_camera_images
+from peopleboy.scenarios.export.camera_images import OneCamera, with_people, write_camera_images
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.export.splits import by_split
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun

@@ -19,8 +19,8 @@ from peopleboy.scenarios.drawing.overlay import (
     show_image,
 )
 from peopleboy.scenarios.drawing.palette import TRUTH, Rgb
+from peopleboy.scenarios.export.camera_images import OneCamera, one_camera
 from peopleboy.scenarios.export.formats import need
-from peopleboy.scenarios.export.one_camera import OneCamera, one_camera
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun

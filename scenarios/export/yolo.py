@@ -23,7 +23,7 @@ import yaml
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.overlay import box_parts
-from peopleboy.scenarios.export.one_camera import (
+from peopleboy.scenarios.export.camera_images import (
     CORNER_PX,
     OUTSIDE,
     Keypoint,

@@ -15,7 +15,6 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.run_folder.finished_run import read_run
 from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
-from peopleboy.scenarios.scores.by_tracker import Scene, check_same_scenes
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
 from peopleboy.scenarios.scores.reference_boxes import Yardstick
