@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.scores.following_metrics import Flags, Floats, Row, count_contacts
-from peopleboy.sim.places.floor_plan import FloorPlan
-from peopleboy.sim.places.rectangle import Rectangle
+from peopleboy.sim.places.floor_plan import FloorPlan, Rectangle
 from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.sim.truth.truth import Truth
 

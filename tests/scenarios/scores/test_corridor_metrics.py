@@ -7,11 +7,8 @@ import pytest
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import closed_loop
-from peopleboy.scenarios.scores.corridor_metrics import Leg, score_corridor
-from peopleboy.scenarios.scores.corridor_score import CorridorLog, centre_line
-from peopleboy.sim.places.floor_plan import Rectangle
 from peopleboy.scenarios.scores.corridor_metrics import CorridorLog, Leg, centre_line, score_corridor
-from peopleboy.sim.places.rectangle import Rectangle
+from peopleboy.sim.places.floor_plan import Rectangle
 from peopleboy.sim.world import World
 
 LEG = Leg((0.0, 0.0), (20.0, 0.0), 3.0)
