@@ -141,9 +141,12 @@ class Scenario:
                     f"camera {name!r}: the tracker wants it, but no kind of camera has that name "
                     f"({', '.join(KINDS)} have); mount one in robot.cameras"
                 )
-        mounted = {name: {"kind": name} for name in lacking}
+        return self.with_cameras({name: {"kind": name} for name in lacking})
+
+    def with_cameras(self, cameras: Mapping[str, Mapping[str, object]]) -> Scenario:
+        """The same scenario, but its robot carries these cameras, in place of any that have their names."""
         data = self.robot.model_dump(exclude_unset=True)
-        robot = RobotSpec.model_validate(data | {"cameras": {**data.get("cameras", {}), **mounted}})
+        robot = RobotSpec.model_validate(data | {"cameras": {**data.get("cameras", {}), **cameras}})
         return replace(self, spec=self.spec.model_copy(update={"robot": robot}))
 
     def lasting(self, duration_s: float) -> Scenario:

@@ -1,4 +1,4 @@
-"""How often the focus of attention is on the person that was learned."""
+"""Attention: whether its focus is on the person that it learned, and whether that person is known again."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.loop import Tick, closed_loop, make_frame
-from peopleboy.scenarios.loop.tracker_by_name import OracleTracker, make_eyes
-from peopleboy.scenarios.running.blind_drive import blind_drive
+from peopleboy.scenarios.loop.loop import closed_loop
+from peopleboy.scenarios.loop.oracle_tracker import OracleTracker
+from peopleboy.scenarios.loop.tracker_by_name import make_eyes
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth, Truth
+from peopleboy.studies.reproductions.evaluations.playback import play
 from peopleboy.tracker.attention.attend import Focus, PersonModel, learn, middle_of, search
 from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
 from peopleboy.tracker.attention.image_sums import Sight
@@ -30,9 +30,6 @@ from peopleboy.tracker.trackers import make_tracker
 
 if TYPE_CHECKING:
     from peopleboy.sim.world import World
-
-
-# Ways to direct attention that are compared, each with one thing done otherwise than another.
 
 PRINTED_NAME: Final = "printed"
 MATCHING: Final = "matching maps"
@@ -61,25 +58,34 @@ CHOICES: Final[Mapping[str, AttentionConfig]] = {
     "colour ratio alone": AttentionConfig(maps=False),
     DEFAULT: AttentionConfig(),
 }
-"""By name. Those down to "neither of them" change one thing, or both, of "means, not sums"; from there on
-each has what the ones above it have. "matching maps" leaves out centre-surround, the two below it one thing
-more; the default adds the ratio of colours to it."""
+"""Attention as printed, and with settings changed, by the name that tables have for it.
 
+Those down to "neither of them" change one setting, or both, of "means, not sums"; from there on each has what
+the ones above it have. "matching maps" leaves out centre-surround, the two below it one thing more; the
+default adds the ratio of colours to it.
+"""
 
 EVERY: Final = 10
-"""Frames from one that is looked at to the next: 1.5 a second."""
-
+"""Frames from one that is searched to the next: 1.5 a second."""
 FOLLOWS: Final = "follow_person"
-
-LEARNED: Final = 0.6  # visible share from which on somebody can be learned
-PRESENT: Final = 0.3  # likewise looked for
-
+LEARNED: Final = 0.6  # visible share from which on a person can be learned
+PRESENT: Final = 0.3  # likewise searched for
 RIGHT, SECOND, WRONG = range(3)
+
+BACK: Final = 0.6  # visible share from which on a person is back
+GONE: Final = 0.3  # and below which away
+OVERLAP: Final = 0.3  # IoU from which on a track is on a person
+LEAST_VISIBLE: Final = 0.1  # share of a person on whom a track can be
+
+AWAY_S: Final = 8.0
+"""A person is away who is not followed for longer than this."""
+LEFT_S: Final = 30.0
+"""An absence that the run's end cuts off sooner is not counted: how it would have ended is unknown."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FocusMoment:
-    """One instant of a film.
+    """One instant of a clip.
 
     Attributes:
         time_s: [s] since its start.
@@ -93,57 +99,56 @@ class FocusMoment:
 
 
 def play_focus(scenario: Scenario, seed: int, every: int = EVERY) -> Iterator[FocusMoment]:
-    """Play a scenario; a robot that follows a person is told who that is."""
+    """Play a scenario; a robot that follows a person is given the truth to follow."""
     if scenario.robot.behaviour != FOLLOWS:
-        for number, (world, seen) in enumerate(blind_drive(scenario, seed)):
-            if number % every == 0:
-                yield FocusMoment(seen.time_s, seen.images[COLOUR], world.truth(COLOUR))
+        for one in play(scenario, seed, COLOUR, every=every):
+            yield FocusMoment(one.observation.time_s, one.observation.images[COLOUR], one.truth)
         return
-    from peopleboy.sim.world import World  # here, as what was made before can be read without PyBullet
+    from peopleboy.sim.world import World  # here, as stored results can be read without PyBullet
 
     config = scenario.world(seed)
     with World(config) as world:
-        eyes, behaviour = OracleTracker(lambda: world.truth()), scenario.make_behaviour()
-        for tick in closed_loop(world, eyes, behaviour, round(scenario.duration_s * config.control_hz)):
+        oracle, behaviour = OracleTracker(lambda: world.truth()), scenario.make_behaviour()
+        for tick in closed_loop(world, oracle, behaviour, round(scenario.duration_s * config.control_hz)):
             if tick.frame % every == 1:
                 seen = tick.observation
                 yield FocusMoment(seen.time_s, seen.images[COLOUR], world.truth(COLOUR))
 
 
 def wanted(scenario: Scenario, truth: Truth) -> list[PersonTruth]:
-    """List those who are looked for: everybody, or the first one if the robot follows."""
+    """List the people who are searched for: everybody, or the first one if the robot follows."""
     is_led = scenario.robot.behaviour == FOLLOWS
     return [person for person in truth.people if not is_led or person.id == 1]
 
 
 def watch_focus(scenario: Scenario, seed: int, names: Sequence[str]) -> dict[str, Any]:
-    """Play a film once, and look for everybody in it in several ways.
+    """Play a clip once, and search for everybody in it by several kinds of attention.
 
     A person is learned from the box in the first image that shows most of it, and not again.
 
     Returns:
-        Plain data: by the name of each way (`CHOICES`) and the person's id how often the focus was on the
-        person, how often only the second best place was, and how often neither.
+        Plain data: by the name in `CHOICES` and the person's id how often the focus was on the person, how
+        often only the second best place was, and how often neither.
     """
     counts: dict[str, dict[str, list[int]]] = {name: {} for name in names}
-    looks: dict[str, dict[int, PersonModel]] = {name: {} for name in names}
+    learned: dict[str, dict[int, PersonModel]] = {name: {} for name in names}
     for moment in play_focus(scenario, seed):
         people = wanted(scenario, moment.truth)
         for name in names:
-            _look(moment, people, CHOICES[name], looks[name], counts[name])
+            _search(moment, people, CHOICES[name], learned[name], counts[name])
     return counts
 
 
-def _look(
+def _search(
     moment: FocusMoment,
     people: Sequence[PersonTruth],
     config: AttentionConfig,
-    looks: dict[int, PersonModel],
+    learned: dict[int, PersonModel],
     counts: dict[str, list[int]],
 ) -> None:
     sight: Sight | None = None
     for person in people:
-        known = looks.get(person.id)
+        known = learned.get(person.id)
         if known is not None and person.visible_fraction >= PRESENT:
             sight = sight or Sight.of(moment.image, config)
             found = counts.setdefault(str(person.id), [0, 0, 0])
@@ -151,11 +156,11 @@ def _look(
         elif known is None and can_be_learned(person, moment.image.shape):
             assert person.box is not None
             sight = sight or Sight.of(moment.image, config)
-            looks[person.id] = learn(sight, person.box, config)
+            learned[person.id] = learn(sight, person.box, config)
 
 
 def can_be_learned(person: PersonTruth, shape: tuple[int, ...]) -> bool:
-    """Tell whether most of a person is to be seen, and all of head and torso in the image."""
+    """Return whether most of a person is visible, and all of head and torso in the image."""
     if person.box is None or person.visible_fraction < LEARNED:
         return False
     try:
@@ -166,7 +171,7 @@ def can_be_learned(person: PersonTruth, shape: tuple[int, ...]) -> bool:
 
 
 def verdict(focus: Focus, person: PersonTruth, truth: Truth) -> int:
-    """Tell whether the focus, or the second best place, is on the visible pixels of a person."""
+    """Return whether the focus, or the second best place, is on the visible pixels of a person."""
     if _is_on(focus.box, person, truth):
         return RIGHT
     return SECOND if _is_on(focus.second_box, person, truth) else WRONG
@@ -178,40 +183,30 @@ def _is_on(box: Box, person: PersonTruth, truth: Truth) -> bool:
     return 0 <= v < height and 0 <= u < width and int(truth.instance[v, u]) == person.id
 
 
-# Whether somebody who was away is known again at once, and nobody else is taken for that person.
-
-BACK: Final = 0.6  # visible share from which on somebody is back
-GONE: Final = 0.3  # and below which away
-OVERLAP: Final = 0.3  # IoU from which on a track is on a person
-
-
 def watch_absence(scenario: Scenario, seed: int, names: Sequence[str]) -> dict[str, Any]:
-    """Play a film in which the first person goes away and comes back, and let trackers watch it.
+    """Play a clip in which the first person goes away and comes back, and let trackers see it.
 
     Returns:
         Plain data by the tracker's name: "away", images in which the person is away, "accepted", how often
-        somebody else had its number then, "late_s", the time from when it is to be seen again until it has
-        its number, None for never, and "found_s" the same until it has any.
+        another person had its track then, "late_s", the time from when it is visible again until it has its
+        track, None for never, and "found_s" the same until it has any.
     """
     trackers = {name: make_tracker(name, stream(seed, "tracker")) for name in names}
-    told: dict[str, list[dict[int, str]]] = {name: [] for name in names}
+    tracked: dict[str, list[dict[int, str]]] = {name: [] for name in names}
     visible: list[float] = []
-    calibrations = calibrations_of(scenario.world(seed).robot.cameras)
-    leader, before = "", None
-    for world, observation in blind_drive(scenario, seed):
-        frame = make_frame(observation, calibrations, before)
-        frame.grey(THERMAL), frame.rgb(COLOUR)
-        before, truth = observation.odometry, world.truth()
-        leader = leader or truth.people[0].name
-        visible.append(max((one.visible_fraction for one in truth.people if one.name == leader), default=0.0))
+    leader = ""
+    for one in play(scenario, seed, THERMAL, images=(THERMAL, COLOUR)):
+        people = one.truth.people
+        leader = leader or people[0].name
+        visible.append(max((each.visible_fraction for each in people if each.name == leader), default=0.0))
         for name, tracker in trackers.items():
-            told[name].append(who_is_who(tracker.update(frame), truth))
+            tracked[name].append(people_of_tracks(tracker.update(one.frame), one.truth))
     rate_hz = len(visible) / scenario.duration_s
-    return {name: judged(rows, visible, leader, rate_hz) for name, rows in told.items()}
+    return {name: score_absence(rows, visible, leader, rate_hz) for name, rows in tracked.items()}
 
 
-def who_is_who(tracks: Sequence[Track], truth: Truth) -> dict[int, str]:
-    """Name the person on whom each track that is seen is."""
+def people_of_tracks(tracks: Sequence[Track], truth: Truth) -> dict[int, str]:
+    """Name the person on whom each visible track is."""
     found = {}
     for track in tracks:
         if track.status in (Status.TENTATIVE, Status.TOTALLY_OCCLUDED) or THERMAL not in track.boxes:
@@ -220,7 +215,7 @@ def who_is_who(tracks: Sequence[Track], truth: Truth) -> dict[int, str]:
         shares = {
             person.name: float(iou(box, np.array(person.box)))
             for person in truth.people
-            if person.box is not None and person.visible_fraction > 0.1
+            if person.box is not None and person.visible_fraction > LEAST_VISIBLE
         }
         best = max(shares, key=lambda name: shares[name], default=None)
         if best is not None and shares[best] > OVERLAP:
@@ -228,13 +223,13 @@ def who_is_who(tracks: Sequence[Track], truth: Truth) -> dict[int, str]:
     return found
 
 
-def judged(
+def score_absence(
     rows: Sequence[Mapping[int, str]], visible: Sequence[float], leader: str, rate_hz: float
 ) -> dict[str, float | None]:
-    """Give plain data of what a tracker said, image by image, about a person with these visible shares."""
+    """Score the tracks of each image, by the person on whom they are, about a person with visible shares."""
     gone, back = longest_gap(visible)
-    numbers = Counter(number for row in rows[:gone] for number, name in row.items() if name == leader)
-    own = numbers.most_common(1)[0][0] if numbers else None
+    ids = Counter(number for row in rows[:gone] for number, name in row.items() if name == leader)
+    own = ids.most_common(1)[0][0] if ids else None
     away = rows[gone:back]
     own_again = [k for k, row in enumerate(rows[back:]) if row.get(own or 0) == leader]
     any_again = [k for k, row in enumerate(rows[back:]) if leader in row.values()]
@@ -247,72 +242,55 @@ def judged(
 
 
 def longest_gap(visible: Sequence[float]) -> tuple[int, int]:
-    """Find the longest time in which somebody cannot be seen: its first image, and that of the return."""
+    """Find the longest time in which a person is not visible: its first image, and that of the return."""
     seen = [k for k, share in enumerate(visible) if share >= GONE]
-    gaps = [(later - one, one, later) for one, later in pairwise(seen)]
-    _, gone, later = max(gaps)
+    _, gone, later = max((later - one, one, later) for one, later in pairwise(seen))
     back = next((k for k in range(later, len(visible)) if visible[k] >= BACK), later)
     return gone + 1, back
 
 
-# Whether a robot goes on with the person it followed after that one was away, and with nobody else.
-
-AWAY_S: Final = 8.0
-"""Not followed for longer than this somebody is away."""
-
-LEFT_S: Final = 30.0
-"""Of a time like that which the end of the run cuts off sooner nobody knows how it would have ended."""
-
-
 def watch_follower(scenario: Scenario, seed: int, name: str) -> dict[str, Any]:
-    """Let a robot follow the first person of a scenario with a tracker.
+    """Let a robot follow the first person of a scenario, who goes away and comes back, with a tracker.
 
     Returns:
-        Plain data: "images"; "right" and "wrong", in how many it follows the person and somebody else;
+        Plain data: "images"; "right" and "wrong", in how many it follows the person and another one;
         "absences", how often it did not follow the person for longer, and "resumed", after how many of those
-        it went on with this one.
+        it went on with this person.
     """
-    from peopleboy.sim.world import World  # here, as what was made before can be read without PyBullet
+    from peopleboy.sim.world import World  # here, as stored results can be read without PyBullet
 
     world: World  # the tracker looks at it only once it is built
-    eyes = make_eyes(name, seed, lambda: world.truth())
-    scenario = scenario.mounting(eyes.cameras)
+    tracker = make_eyes(name, seed, lambda: world.truth())
+    scenario = scenario.mounting(tracker.cameras)
     config = scenario.world(seed)
     leader = config.people[0].name
     with World(config) as world:
         frames = round(scenario.duration_s * config.control_hz)
-        ticks = closed_loop(world, eyes, scenario.make_behaviour(), frames)
-        followed = [_followed(tick) for tick in ticks]
+        followed = [
+            None if tick.following is None else people_of_tracks(tick.tracks, tick.truth).get(tick.following)
+            for tick in closed_loop(world, tracker, scenario.make_behaviour(), frames)
+        ]
     after = resumptions(followed, leader, *(round(s * config.control_hz) for s in (AWAY_S, LEFT_S)))
     return {
         "images": len(followed),
-        "right": sum(who == leader for who in followed),
-        "wrong": sum(who not in (None, leader) for who in followed),
+        "right": sum(one == leader for one in followed),
+        "wrong": sum(one not in (None, leader) for one in followed),
         "absences": len(after),
         "resumed": sum(after),
     }
 
 
-def _followed(tick: Tick) -> str | None:
-    """Name the person that the robot follows; None for nobody, or for what is none."""
-    return None if tick.following is None else who_is_who(tick.tracks, tick.truth).get(tick.following)
-
-
 def resumptions(followed: list[str | None], leader: str, away: int, left: int) -> list[bool]:
-    """Tell of each time that the robot did not follow the person for longer whether it went on with this one.
+    """Return for each absence of a person whether the robot went on with this person after it.
 
     Args:
-        followed: whom it followed, image by image.
+        followed: name of the person that is followed, image by image.
         leader: the person's name.
-        away: images from which on it counts ...
-        left: ... and of the last time, which the end cuts off.
+        away: images from which on an absence counts ...
+        left: ... and of the last one, which the end cuts off.
     """
-    ours = [k for k, who in enumerate(followed) if who == leader]
+    ours = [k for k, name in enumerate(followed) if name == leader]
     ends = [*ours[1:], len(followed)]
     least = [*(away for _ in ours[1:]), left]
-    long = [
-        (one, later)
-        for one, later, at_least in zip(ours, ends, least, strict=False)
-        if later - one > at_least
-    ]
-    return [later < len(followed) and not any(followed[one + 1 : later]) for one, later in long]
+    long = [(k, later) for k, later, most in zip(ours, ends, least, strict=False) if later - k > most]
+    return [later < len(followed) and not any(followed[k + 1 : later]) for k, later in long]

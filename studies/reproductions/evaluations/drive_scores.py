@@ -1,8 +1,8 @@
-"""How well a tracker tells where people are on the floor: hits, misses, false alarms, and errors."""
+"""Tracks on the floor against the people who stand there: hits, misses, false alarms, errors, intervals."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final, TypeVar
 
@@ -11,23 +11,77 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from peopleboy.sim.random_streams import stream
-from peopleboy.studies.reproductions.evaluations.playback import Stander
+from peopleboy.sim.truth.truth import PersonTruth, Truth
+from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.track import Track
 
 Floats = NDArray[np.float64]
+T = TypeVar("T")
 
+FARTHEST_M: Final = 10.0
+LEAST_PX: Final = 200  # of a person who counts; fewer are a hand or a foot
 RADIUS_M: Final = 1.0
-"""SA 4.7.2: who is told within this distance is found."""
+"""SA 4.7.2: a person is found if a track lies within this distance."""
+CLOSE_M: Final = 0.3
 
-_FIRST: Final = 10.0  # by which those who count are preferred to others [m]
+_PRIORITY_M: Final = 10.0  # by which people who count are preferred in the assignment
+_RESAMPLES: Final = 2000
+
+
+@dataclass(frozen=True, slots=True)
+class FloorPerson:
+    """A person in the robot's frame at one instant.
+
+    Attributes:
+        id: of the person.
+        place_m: forward, left of the robot [m], of the body's middle.
+        surface_m: the same of the surface that the camera sees in the middle of the person; None for none.
+        is_counted: whether a tracker has to find the person.
+        truth: all that is known of the person.
+    """
+
+    id: int
+    place_m: tuple[float, float]
+    surface_m: tuple[float, float] | None
+    is_counted: bool
+    truth: PersonTruth
+
+
+def people_on_floor(truth: Truth, view: DepthView) -> Iterator[FloorPerson]:
+    """Place everybody who is there, seen by a depth camera or not."""
+    for person in truth.people:
+        is_counted = person.visible_px > LEAST_PX and person.distance_m <= FARTHEST_M
+        surface_m = _surface(person, truth, view) if is_counted else None
+        yield FloorPerson(person.id, truth.robot.locate(person.position_m), surface_m, is_counted, person)
+
+
+def _surface(person: PersonTruth, truth: Truth, view: DepthView) -> tuple[float, float] | None:
+    """Find the surface at the middle of a person's box, which the thesis takes for the person's place."""
+    if person.visible_box is None:
+        return None
+    left, top, width, height = person.visible_box
+    middle = left + width / 2.0
+    inside = _middle_half(top, height), _middle_half(left, width)
+    is_person = truth.instance[inside] == person.id
+    if not is_person.any():
+        return None
+    z = float(np.median(truth.depth_m[inside][is_person]))
+    forward, aside = view.on_floor(np.array([(middle - view.centre_u) * z / view.focal_px]), np.array([z]))[0]
+    return float(forward), float(aside)
+
+
+def _middle_half(first: float, size: float) -> slice:
+    """Give the middle half of a box's rows or columns."""
+    start = max(round(first + size / 4.0), 0)
+    return slice(start, max(round(first + size * 3.0 / 4.0), start) + 1)
 
 
 @dataclass(slots=True, eq=False)
 class DriveScore:
-    """What a tracker said of a drive, held against the truth.
+    """The tracks of a drive against the truth.
 
-    Tracks and people are matched one to one, frame by frame, so that distances are least in all; those who
-    count go first. A track on somebody who does not count is neither right nor wrong.
+    Tracks and people are assigned one to one, frame by frame, with the least sum of distances; people who
+    count go first. A track on a person who does not count is neither right nor wrong.
 
     Attributes:
         body_m: [m] from the surface to where the tracker puts a person.
@@ -44,11 +98,11 @@ class DriveScore:
     false: list[tuple[float, ...]] = field(default_factory=list)
     frames: int = 0
 
-    def add(self, frame: int, people: Sequence[Stander], tracks: Sequence[Track]) -> None:
+    def add(self, frame: int, people: Sequence[FloorPerson], tracks: Sequence[Track]) -> None:
         """Take in a frame."""
         self.frames += 1
         places = np.array([track.place.position_m for track in tracks if track.place]).reshape(-1, 2)
-        found = match(people, places)
+        found = associate(people, places)
         for number, person in enumerate(people):
             if not person.is_counted:
                 continue
@@ -65,7 +119,7 @@ class DriveScore:
         """Give it as plain data."""
         return {"frames": self.frames, "hits": self.hits, "missed": self.missed, "false": self.false}
 
-    def _hit(self, frame: int, person: Stander, track: int, place: Floats) -> tuple[float | None, ...]:
+    def _hit(self, frame: int, person: FloorPerson, track: int, place: Floats) -> tuple[float | None, ...]:
         off = (place - person.place_m).round(4).tolist()
         surface: list[float | None] = [None, None]
         if person.surface_m is not None:
@@ -74,37 +128,29 @@ class DriveScore:
         return (frame, person.id, track, *off, *surface)
 
 
-def match(people: Sequence[Stander], places_m: Floats, radius_m: float = RADIUS_M) -> dict[int, int]:
-    """Match people with places (N, 2), one to one; give the place's number by the person's."""
+def associate(people: Sequence[FloorPerson], places_m: Floats, radius_m: float = RADIUS_M) -> dict[int, int]:
+    """Assign places (N, 2) to people, one to one; give the place's number by the person's."""
     if not people or not len(places_m):
         return {}
     standing = np.array([person.place_m for person in people])
-    apart = np.hypot(*(standing[:, None] - places_m[None]).transpose(2, 0, 1))
-    first = np.where([person.is_counted for person in people], _FIRST, 0.0)
-    never = 10.0 * _FIRST
-    cost = np.where(apart <= radius_m, apart - first[:, None], never)
+    distance = np.hypot(*(standing[:, None] - places_m[None]).transpose(2, 0, 1))
+    priority = np.where([person.is_counted for person in people], _PRIORITY_M, 0.0)
+    never = 10.0 * _PRIORITY_M
+    cost = np.where(distance <= radius_m, distance - priority[:, None], never)
     rows, columns = linear_sum_assignment(cost)
     return {int(r): int(c) for r, c in zip(rows, columns, strict=True) if cost[r, c] < never}
 
 
-# What a tracker did on drives, as figures: rates, false alarms, errors, and how sure they are.
-
-T = TypeVar("T")
-
-CLOSE_M: Final = 0.3
-_DRAWS: Final = 2000
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class DriveRecord:
-    """What came of one drive, or of several together.
+    """The result of one drive, or of several together.
 
     Attributes:
         frames: how many.
         hits: (N, 7) rows as in `DriveScore`, NaN for None.
-        missed: how often somebody was.
+        missed: how often a person was.
         false: how many false alarms.
-        switches: how often somebody's track was another one than the last time.
+        switches: how often a person's track was another one than the last time.
         ms: median time of a frame.
         bands: (4, 2) who counts and who of them the pre-detection found, by the share that is hidden.
         false_sizes: how many pre-detections were of nobody.
@@ -121,8 +167,8 @@ class DriveRecord:
 
     @classmethod
     def of_plain(cls, plain: Mapping[str, Any]) -> DriveRecord:
-        """Read what `Watcher.plain` gave."""
-        hits = np.array(plain["hits"], dtype=np.float64).reshape(-1, 7)
+        """Read what `DriveTracking.plain` gave."""
+        hits = hit_rows(plain)
         return cls(
             frames=plain["frames"],
             hits=hits,
@@ -150,16 +196,16 @@ class DriveRecord:
         )
 
     def found(self, radius_m: float = RADIUS_M) -> int:
-        """Count who was told to be within a distance of where they are."""
+        """Count the hits within a distance of the person."""
         return int(np.count_nonzero(self.error_m <= radius_m))
 
     def rate(self, radius_m: float = RADIUS_M) -> float:
-        """Tell which share of those who count was found (SA eq. 4.30); NaN if there was nobody."""
-        everybody = len(self.hits) + self.missed
-        return self.found(radius_m) / everybody if everybody else float("nan")
+        """Return the share of the people who count that was found (SA eq. 4.30); NaN without people."""
+        people = len(self.hits) + self.missed
+        return self.found(radius_m) / people if people else float("nan")
 
     def false_per_frame(self, radius_m: float = RADIUS_M) -> float:
-        """Count tracks on nobody; those on somebody who is too far away, too."""
+        """Return tracks on nobody a frame; those on a person who is too far away count, too."""
         return (self.false + len(self.hits) - self.found(radius_m)) / self.frames
 
     @property
@@ -175,19 +221,26 @@ class DriveRecord:
 
     @property
     def size_recall(self) -> Floats:
-        """(4,) share whom the pre-detection found, by the share that is hidden; NaN for nobody."""
+        """(4,) recall of the pre-detection, by the share that is hidden; NaN without people."""
         with np.errstate(invalid="ignore"):
             return np.asarray(self.bands[:, 1] / self.bands[:, 0])
+
+
+def hit_rows(plain: Mapping[str, Any]) -> Floats:
+    """Read the hits (N, 7) of a drive's plain data, NaN for None."""
+    return np.array(plain["hits"], dtype=np.float64).reshape(-1, 7)
 
 
 def interval(
     parts: Sequence[T], measure: Callable[[Sequence[T]], float], share: float = 0.95
 ) -> tuple[float, float]:
-    """Give the interval of a figure by drawing parts, such as seeds, with replacement; NaN for one part."""
+    """Give a bootstrap interval of a figure over parts such as seeds; NaN for one part.
+
+    Resamples in which the figure is NaN are left out, which `scipy.stats.bootstrap` cannot do.
+    """
     if len(parts) < 2:
         return float("nan"), float("nan")
-    rng = stream(0, "depth_drives.interval")
-    drawn = rng.integers(0, len(parts), (_DRAWS, len(parts)))
+    drawn = stream(0, "depth_drives.interval").integers(0, len(parts), (_RESAMPLES, len(parts)))
     figures = [measure([parts[k] for k in row]) for row in drawn]
     low, high = np.nanquantile(figures, [(1.0 - share) / 2.0, (1.0 + share) / 2.0]).tolist()
     return low, high

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
+from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.tracker.frame import Floats, Odometry
 
@@ -36,9 +37,9 @@ CAMERAS: Final = {
 }
 """Two depth cameras without noise, one row of which makes half a circle."""
 
-_GAP_M: Final = 0.12  # between neighbours of different things
+_GAP_M: Final = 0.12  # between neighbours of different objects
 _LEG_M: Final = (0.05, 0.25)
-_APART_M: Final = 0.5  # of a pair of legs
+_PAIR_M: Final = 0.5  # at most, between the legs of one person
 _GATE_M: Final = 0.6
 _BIRTHS, _PATIENCE = 4, 10  # frames
 
@@ -57,13 +58,13 @@ def scan(observation: Observation) -> Floats:
 
 
 def find_people(points: Floats) -> list[tuple[float, float]]:
-    """Take pairs of what is as wide as a leg, and single ones, for people."""
+    """Take pairs of segments as wide as a leg, and single ones, for people."""
     legs = list(_legs(points))
     people = []
     while legs:
         leg = legs.pop(0)
         other = min(legs, key=lambda one: math.dist(one, leg), default=None)
-        if other is not None and math.dist(other, leg) < _APART_M:
+        if other is not None and math.dist(other, leg) < _PAIR_M:
             legs.remove(other)
             leg = ((leg[0] + other[0]) / 2.0, (leg[1] + other[1]) / 2.0)
         people.append(leg)
@@ -72,7 +73,7 @@ def find_people(points: Floats) -> list[tuple[float, float]]:
 
 @dataclass(frozen=True, slots=True)
 class LegTrack:
-    """Somebody followed by the legs: where, how often seen, and for how many frames not."""
+    """A person followed by the legs: place, frames in which it was seen, and frames since."""
 
     id: int
     place_m: tuple[float, float]
@@ -81,17 +82,17 @@ class LegTrack:
 
 
 class LegTracker:
-    """Follows whoever has legs from frame to frame: the nearest one is the same."""
+    """Follows legs from frame to frame: the nearest detection continues a track."""
 
     def __init__(self) -> None:
         self._tracks: list[LegTrack] = []
         self._last_id = 0
 
     def update(self, points: Floats, odometry: Odometry | None) -> list[LegTrack]:
-        """Take in a scan, and give those who were seen often enough."""
+        """Take in a scan, and give the tracks that were seen often enough."""
         found = find_people(points)
         kept = []
-        for track in sorted((_moved(one, odometry) for one in self._tracks), key=lambda one: -one.seen):
+        for track in sorted((_predicted(one, odometry) for one in self._tracks), key=lambda one: -one.seen):
             nearest = min(found, key=lambda place: math.dist(place, track.place_m), default=None)
             if nearest is not None and math.dist(nearest, track.place_m) < _GATE_M:
                 found.remove(nearest)
@@ -106,40 +107,35 @@ class LegTracker:
 
 
 def _legs(points: Floats) -> Iterator[tuple[float, float]]:
-    """Find pieces of the scan that stand before all else, and are as wide as legs."""
+    """Find segments of the scan that stand before their neighbours and are as wide as legs."""
     reach = np.hypot(*points.T)
-    for first, last in _pieces(points):
-        piece = points[first : last + 1]
-        width = math.dist(piece[0], piece[-1])
-        x, y = piece.mean(axis=0).tolist()
-        if (
-            _LEG_M[0] <= width <= _LEG_M[1]
-            and math.hypot(x, y) <= FARTHEST_M
-            and _stands_out(reach, first, last)
-        ):
+    for first, last in _segments(points):
+        segment = points[first : last + 1]
+        x, y = segment.mean(axis=0).tolist()
+        is_leg = _LEG_M[0] <= math.dist(segment[0], segment[-1]) <= _LEG_M[1]
+        if is_leg and math.hypot(x, y) <= FARTHEST_M and _stands_out(reach, first, last):
             yield x, y
 
 
-def _pieces(points: Floats) -> Iterator[tuple[int, int]]:
+def _segments(points: Floats) -> Iterator[tuple[int, int]]:
     gaps = np.hypot(*np.diff(points, axis=0).T)
-    is_break = ~(gaps <= _GAP_M)  # no reading is a break, too
-    starts = np.concatenate([[0], np.flatnonzero(is_break) + 1])
-    ends = np.concatenate([np.flatnonzero(is_break), [len(points) - 1]])
-    for first, last in zip(starts.tolist(), ends.tolist(), strict=True):
+    breaks = np.flatnonzero(~(gaps <= _GAP_M))  # no reading is a break, too
+    starts, ends = [0, *(breaks + 1).tolist()], [*breaks.tolist(), len(points) - 1]
+    for first, last in zip(starts, ends, strict=True):
         if np.isfinite(points[first : last + 1]).all():
             yield first, last
 
 
 def _stands_out(reach: Floats, first: int, last: int) -> bool:
-    sides: Sequence[tuple[int, int]] = ((first, first - 1), (last, last + 1))
     return all(
-        not 0 <= beside < len(reach) or not reach[beside] < reach[edge] + _GAP_M for edge, beside in sides
+        not 0 <= beside < len(reach) or not reach[beside] < reach[edge] + _GAP_M
+        for edge, beside in ((first, first - 1), (last, last + 1))
     )
 
 
-def _moved(track: LegTrack, odometry: Odometry | None) -> LegTrack:
+def _predicted(track: LegTrack, odometry: Odometry | None) -> LegTrack:
+    """Express a track's place in the robot's new frame."""
     if odometry is None:
         return track
-    x, y = track.place_m[0] - odometry.advance_m, track.place_m[1] - odometry.aside_m
-    cosine, sine = math.cos(odometry.turn_rad), math.sin(odometry.turn_rad)
-    return replace(track, place_m=(cosine * x + sine * y, cosine * y - sine * x))
+    moved = Planar(odometry.advance_m, odometry.aside_m, odometry.turn_rad)
+    return replace(track, place_m=moved.locate(track.place_m))

@@ -1,137 +1,88 @@
-"""Playing a drive for trackers that see depth: frames, and where people truly are."""
+"""Scenarios played for trackers and models that are compared: the same frames for each, and the truth."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import TypeVar
 
 import numpy as np
 
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.files.schema.robot import RobotSpec
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
-from peopleboy.sim.truth.truth import PersonTruth, Truth
-from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
-from peopleboy.tracker.rgbd.depth_view import DepthView
-from peopleboy.tracker.track import Box
+from peopleboy.sim.truth.truth import Truth
+from peopleboy.tracker.frame import Frame
 
-FARTHEST_M = 10.0
-LEAST_PX = 200  # of somebody who counts; fewer are a hand or a foot
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Stander:
-    """Where somebody is at one instant.
-
-    Attributes:
-        id: of the person.
-        place_m: forward, left of the robot [m], of the body's middle.
-        surface_m: the same of the surface that the camera sees in the middle of the person; None for none.
-        distance_m: on the floor, from the camera.
-        inside: share of the whole body that is inside the image.
-        hidden: share of that which others hide.
-        is_counted: whether a tracker has to find the person.
-        box: of the visible pixels, and of the whole body; None for none.
-        whole_box: likewise.
-    """
-
-    id: int
-    place_m: tuple[float, float]
-    surface_m: tuple[float, float] | None
-    distance_m: float
-    inside: float
-    hidden: float
-    is_counted: bool
-    box: Box | None
-    whole_box: Box | None
+Result = TypeVar("Result")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class DriveMoment:
-    """One instant of a drive.
+class Moment:
+    """One instant of a played scenario.
 
     Attributes:
-        number: of the frame, from 1.
+        number: of the camera's image, from 1.
         frame: what a tracker is given.
-        people: everybody who is there.
-        robot: its true pose.
+        truth: in the camera's image.
         observation: all that the robot sensed.
     """
 
     number: int
     frame: Frame
-    people: tuple[Stander, ...]
-    robot: Planar
+    truth: Truth
     observation: Observation
 
 
-def play_drive(scenario: Scenario, seed: int) -> Iterator[DriveMoment]:
-    """Play a scenario, and yield every image of the depth camera, which is mounted if there is none.
+def play(
+    scenario: Scenario, seed: int, camera: str, images: Sequence[str] = (), every: int = 1
+) -> Iterator[Moment]:
+    """Play a scenario whose robot drives without a tracker, and yield the instants with a camera's image.
+
+    Args:
+        scenario: what is played.
+        seed: of the run.
+        camera: in whose image the truth is.
+        images: names of those that are rendered before a frame is handed on. An image is rendered when it is
+            first read, and that must not count as the tracker's time.
+        every: interval between the images that are handed on, from the first on.
 
     Raises:
-        BadInput: the robot needs eyes to drive.
+        BadInput: the robot needs a tracker to drive.
     """
-    scenario = scenario.mounting((DEPTH,))
     calibrations = calibrations_of(scenario.world(seed).robot.cameras)
-    view = DepthView.of(calibrations[DEPTH], DEPTH)
     before: Planar | None = None
     number = 0
     for world, observation in blind_drive(scenario, seed):
-        if DEPTH not in observation.images:
+        if camera not in observation.images:
             continue
         number += 1
-        frame = make_frame(observation, calibrations, before)
-        # Images are made when first asked for, which is not to count as the tracker's time.
-        frame.depth(DEPTH), frame.rgb(DEPTH_COLOUR)
+        if (number - 1) % every == 0:
+            frame = make_frame(observation, calibrations, before)
+            for name in images:
+                frame.images.get(name)
+            yield Moment(number, frame, world.truth(camera), observation)
         before = observation.odometry
-        truth = world.truth(DEPTH)
-        yield DriveMoment(number, frame, tuple(_standers(truth, view)), truth.robot, observation)
 
 
-def with_cameras(scenario: Scenario, cameras: Mapping[str, Mapping[str, object]]) -> Scenario:
-    """Give the scenario's robot cameras, by name, in place of those that it has by these names."""
-    data = scenario.robot.model_dump(exclude_unset=True)
-    cameras = {**data.get("cameras", {}), **cameras}
-    robot = RobotSpec.model_validate(data | {"cameras": cameras})
-    return replace(scenario, spec=scenario.spec.model_copy(update={"robot": robot}))
+@dataclass(slots=True)
+class Stopwatch:
+    """Processor time [ms] of the work that it is given."""
 
+    times_ms: list[float] = field(default_factory=list)
 
-def _standers(truth: Truth, view: DepthView) -> Iterator[Stander]:
-    for person in truth.people:
-        is_counted = person.visible_px > LEAST_PX and person.distance_m <= FARTHEST_M
-        yield Stander(
-            id=person.id,
-            place_m=truth.robot.locate(person.position_m),
-            surface_m=_surface(person, truth, view) if is_counted else None,
-            distance_m=person.distance_m,
-            inside=person.inside_fraction,
-            hidden=person.occluded_fraction,
-            is_counted=is_counted,
-            box=person.visible_box,
-            whole_box=person.box,
-        )
+    def __call__(self, work: Callable[[], Result]) -> Result:
+        """Do some work, and keep its time."""
+        start = time.process_time()
+        result = work()
+        self.times_ms.append(1000.0 * (time.process_time() - start))
+        return result
 
-
-def _surface(person: PersonTruth, truth: Truth, view: DepthView) -> tuple[float, float] | None:
-    """Find the surface at the middle of a person's box, which the thesis takes for where the person is."""
-    if person.visible_box is None:
-        return None
-    left, top, width, height = person.visible_box
-    middle = left + width / 2.0
-    depths = truth.depth_m[_inside(top, height), _inside(left, width)]
-    is_person = truth.instance[_inside(top, height), _inside(left, width)] == person.id
-    if not is_person.any():
-        return None
-    z = float(np.median(depths[is_person]))
-    forward, aside = view.on_floor(np.array([(middle - view.centre_u) * z / view.focal_px]), np.array([z]))[0]
-    return float(forward), float(aside)
-
-
-def _inside(first: float, size: float) -> slice:
-    """Give the middle half of a box's rows or columns."""
-    start = max(round(first + size / 4.0), 0)
-    return slice(start, max(round(first + size * 3.0 / 4.0), start) + 1)
+    @property
+    def median_ms(self) -> float:
+        """The median [ms]."""
+        return float(np.median(self.times_ms))

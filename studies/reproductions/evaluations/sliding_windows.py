@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, Final
 
 import cv2
@@ -14,13 +14,16 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.sim.random_streams import stream
+from peopleboy.studies.reproductions.evaluations.drive_scores import FloorPerson
 from peopleboy.studies.reproductions.evaluations.drive_tracking import (
     COLOUR_ONLY,
     DEFAULT,
     OURS,
+    DriveMoment,
     make_choice,
+    play_drive,
 )
-from peopleboy.studies.reproductions.evaluations.playback import DriveMoment, Stander, play_drive
+from peopleboy.studies.reproductions.evaluations.playback import Stopwatch
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
 from peopleboy.tracker.rgbd.depth_view import DepthView
@@ -28,13 +31,7 @@ from peopleboy.tracker.rgbd.pre_detection import HumanSize, Layout, PreDetection
 from peopleboy.tracker.rgbd.u_depth import UDepthConfig
 from peopleboy.tracker.rgbd.v_disparity import HeightLine
 from peopleboy.tracker.rgbd.verification.window_model import people_detector, shipped_windows
-from peopleboy.tracker.rgbd.verification.windows import (
-    SIZES,
-    Image,
-    Range,
-    range_of,
-    window_of,
-)
+from peopleboy.tracker.rgbd.verification.windows import SIZES, Image, Range, range_of, window_of
 from peopleboy.tracker.track import Box
 
 Floats = NDArray[np.float64]
@@ -42,9 +39,9 @@ Floats = NDArray[np.float64]
 BY_SIZE: Final = "pre-detection + verification"
 PARTS: Final = ("pre-detection", "verification", "hypotheses and filters")
 
-_OVERLAP: Final = 0.4  # of a window with that of somebody whom it found
-_DOUBLE: Final = 0.4  # overlap from which the weaker one of two windows is left out
-_HIDDEN: Final = 0.5  # share from which somebody need not be found
+_OVERLAP: Final = 0.4  # of a window with that of a person whom it found
+_DOUBLE: Final = 0.4  # overlap from which the weaker one of two windows is suppressed
+_HIDDEN: Final = 0.5  # share from which a person need not be found
 _TORSO_M, _FRONT_M = 0.45, 0.1  # width of a body, and from its middle to the surface that is seen
 
 
@@ -93,7 +90,7 @@ _Window = tuple[Range, Box]
 
 @dataclass(frozen=True, slots=True)
 class _Sought:
-    """Windows that somebody should be in, by range; in which range the person is; whether in plain view."""
+    """Windows that a person should be in, by range; in which range the person is; whether in plain view."""
 
     windows: Mapping[Range, Box]
     kind: Range
@@ -102,9 +99,9 @@ class _Sought:
 
 @dataclass(slots=True, eq=False)
 class WindowTally:
-    """How a detector does: times of images [ms], people there, people found, and windows on nobody."""
+    """The result of a detector: times of images, people there, people found, and windows on nobody."""
 
-    times_ms: list[float] = field(default_factory=list)
+    timed: Stopwatch = field(default_factory=Stopwatch)
     people: int = 0
     found: int = 0
     false: int = 0
@@ -119,15 +116,8 @@ class WindowTally:
 
     def plain(self) -> dict[str, Any]:
         """Give it as plain data."""
-        ms = float(np.median(self.times_ms))
-        images = len(self.times_ms)
-        return {
-            "ms": ms,
-            "images": images,
-            "people": self.people,
-            "found": self.found,
-            "false": self.false,
-        }
+        counts = {"people": self.people, "found": self.found, "false": self.false}
+        return {"ms": self.timed.median_ms, "images": len(self.timed.times_ms)} | counts
 
 
 def compare_windows(drives: Sequence[tuple[Scenario, int]], every: int) -> dict[str, Any]:
@@ -173,44 +163,39 @@ class _Comparison:
         self.by_size: dict[tuple[Range, ...], WindowTally] = {
             kinds: WindowTally() for kinds in (tuple(Range), (Range.FAR,), (Range.NEAR,))
         }
-        self.parts: dict[str, list[float]] = {name: [] for name in PARTS}
+        self.parts = {name: Stopwatch() for name in PARTS}
         self.detector = PreDetector(HumanSize(), UDepthConfig())
 
     def watch(self, scenario: Scenario, seed: int, every: int) -> None:
-        tracker = make_choice(DEFAULT, stream(0, "reproduce.tracker"))
+        tracker, whole = make_choice(DEFAULT, stream(0, "reproduce.tracker")), Stopwatch()
         for moment in play_drive(scenario, seed):
-            with _timed() as whole:
-                tracker.update(moment.frame)
+            whole(partial(tracker.update, moment.frame))
             if moment.number % every == 0:
                 view = DepthView.of(moment.frame.calibrations[DEPTH], DEPTH)
                 people = _people(moment, view)
-                parts = self._look_by_size(moment, people, view)
-                for name, spent in zip(PARTS, (*parts, whole[0] - sum(parts)), strict=True):
-                    self.parts[name].append(spent)
-                self._slide(moment, people)
+                spent_ms = self._search_by_size(moment.frame, people, view)
+                self.parts[PARTS[-1]].times_ms.append(whole.times_ms[-1] - spent_ms)
+                self._search_by_sliding(moment.frame, people)
 
     def plain(self) -> dict[str, Any]:
         tallies = {how.key: tally.plain() for how, tally in self.slides.items()}
         tallies |= {f"{'+'.join(kinds)} {BY_SIZE}": tally.plain() for kinds, tally in self.by_size.items()}
-        return tallies | {"parts": {name: float(np.median(times)) for name, times in self.parts.items()}}
+        return tallies | {"parts": {name: part.median_ms for name, part in self.parts.items()}}
 
-    def _look_by_size(
-        self, moment: DriveMoment, people: Sequence[_Sought], view: DepthView
-    ) -> tuple[float, float]:
-        with _timed() as sizes:
-            layout = self.detector(moment.frame.depth(DEPTH), view)
-        with _timed() as looks:
-            windows = list(_verified(moment.frame, layout, view))
+    def _search_by_size(self, frame: Frame, people: Sequence[_Sought], view: DepthView) -> float:
+        """Find windows as the tracker does; give the time that it took [ms]."""
+        detect, verify = (self.parts[name] for name in PARTS[:2])
+        layout = detect(partial(self.detector, frame.depth(DEPTH), view))
+        windows = verify(lambda: list(_verified(frame, layout, view)))
+        spent_ms = detect.times_ms[-1] + verify.times_ms[-1]
         for kinds, tally in self.by_size.items():
-            tally.times_ms.append(sizes[0] + looks[0])
+            tally.timed.times_ms.append(spent_ms)
             tally.add(windows, people, kinds)
-        return sizes[0], looks[0]
+        return spent_ms
 
-    def _slide(self, moment: DriveMoment, people: Sequence[_Sought]) -> None:
+    def _search_by_sliding(self, frame: Frame, people: Sequence[_Sought]) -> None:
         for how, tally in self.slides.items():
-            with _timed() as spent:
-                found = slide(moment.frame.rgb(DEPTH_COLOUR), how)
-            tally.times_ms.append(spent[0])
+            found = tally.timed(partial(slide, frame.rgb(DEPTH_COLOUR), how))
             tally.add([(how.kind, _box(row)) for row in found.tolist()], people, (how.kind,))
 
 
@@ -229,13 +214,13 @@ def _people(moment: DriveMoment, view: DepthView) -> list[_Sought]:
     return [
         _person(person, view, floor, moment.frame.depth(DEPTH).shape)
         for person in moment.people
-        if person.whole_box is not None and person.place_m[0] > view.calibration.position_m[0] + _TORSO_M
+        if person.truth.box is not None and person.place_m[0] > view.calibration.position_m[0] + _TORSO_M
     ]
 
 
-def _person(person: Stander, view: DepthView, floor: HeightLine, shape: tuple[int, ...]) -> _Sought:
-    assert person.whole_box is not None
-    left, top, width, height = person.whole_box
+def _person(person: FloorPerson, view: DepthView, floor: HeightLine, shape: tuple[int, ...]) -> _Sought:
+    assert person.truth.box is not None
+    left, top, width, height = person.truth.box
     z_m = person.place_m[0] - view.calibration.position_m[0] - _FRONT_M
     torso = _TORSO_M * view.focal_px / z_m
     middle = left + width / 2.0
@@ -251,7 +236,7 @@ def _person(person: Stander, view: DepthView, floor: HeightLine, shape: tuple[in
     return _Sought(
         windows={kind: window_of(body, kind, floor, view) for kind in Range},
         kind=range_of(z_m, floor, view, shape[0]),
-        is_plain=person.is_counted and person.hidden < _HIDDEN and 0.0 <= middle < shape[1],
+        is_plain=person.is_counted and person.truth.occluded_fraction < _HIDDEN and 0.0 <= middle < shape[1],
     )
 
 
@@ -263,14 +248,6 @@ def _is_on(window: _Window, person: _Sought) -> bool:
 def _box(row: Sequence[float]) -> Box:
     left, top, width, height = row
     return left, top, width, height
-
-
-@contextmanager
-def _timed() -> Iterator[list[float]]:
-    """Measure processor time; the list holds it [ms] at the end."""
-    spent, start = [0.0], time.process_time()
-    yield spent
-    spent[0] = 1000.0 * (time.process_time() - start)
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""How well webcams in the corners of a room tell where somebody is, against the exact truth."""
+"""Triangulation by webcams in the corners of a room (2003 paper, section 4), against the exact truth."""
 
 from __future__ import annotations
 
@@ -19,15 +19,11 @@ from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.sim.world import World
 from peopleboy.studies.training.distance_learning.distance_examples import panoramas
 from peopleboy.studies.training.distance_learning.image_errors import ErrorSummary
 from peopleboy.tracker.frame import PANORAMA
 from peopleboy.tracker.panoramic.paper.depth_cues import EMPTY_IMAGES, Background, learn_background, measure
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig
-
-# From angles in webcams to a place on the floor, and from known places to the webcams' own (2003 paper).
 
 LEAST_ANGLE_RAD: Final = math.radians(10.0)  # between two lines of sight; flatter ones meet anywhere
 X, Y, HEADING, RANGE = range(4)
@@ -89,8 +85,6 @@ def calibrate(columns: Floats, known_m: Floats, guess: Floats, width: int) -> Fl
     return np.asarray(least_squares(residuals, guess.ravel(), x_scale=0.1).x.reshape(guess.shape))
 
 
-# The green hat in a webcam's image (2003 paper, section 4).
-
 HUES: Final = (45, 75)  # of green, in OpenCV's half degrees
 LEAST_SATURATION: Final = 110
 LEAST_VALUE: Final = 40
@@ -125,10 +119,10 @@ _GUESS_OFF: Final = (0.2, 0.2, math.radians(5.0), math.radians(3.0))  # of a web
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WebcamErrors:
-    """Mean distances [m] of the triangulated hat from where it is, the middle between the ears.
+    """Mean distances [m] of the triangulated hat from its true place, the middle between the ears.
 
-    Bearings are those from the robot while the person walks; `panorama` are those of the silhouette in the
-    panorama, as the paper's tracker tells them, held against what is named.
+    Bearings are those from the robot while the person walks; `panorama_...` are errors [deg] of the
+    silhouette's bearing in the panorama, as the paper's tracker gives it, against what is named.
 
     Attributes:
         in_sample_m: at the known places, to which the webcams were fitted.
@@ -137,8 +131,8 @@ class WebcamErrors:
         skewed_m: walking, the webcams one after the other within `SKEW_S`.
         bearing_deg: mean error [deg] of the bearing by all webcams at once.
         skewed_bearing_deg: the same with the webcams one after the other.
-        panorama_truth: errors [deg] of the panorama's bearing.
-        panorama_at_once: differences [deg] of the panorama's bearing from that of all webcams at once.
+        panorama_truth: against the truth.
+        panorama_at_once: against the bearing of all webcams at once.
         panorama_skewed: the same with the webcams one after the other.
         panorama_late: the same with all webcams `SKEW_S` later than the panorama.
     """
@@ -195,25 +189,34 @@ def measure_webcams(seed: int) -> WebcamErrors:
 
     walk, robot = slice(places[-1].stop, None), np.array(config.robot.at_m)
     true_m, seen_rad = film.hat_m[walk], film.seen_rad[walk]
-    at_once, skewed, late = (
-        triangulate(bearings(told[walk], webcams, width), webcams)
-        for told in (
-            film.columns,
-            _skew(film.columns, config.control_hz),
-            _late(film.columns, config.control_hz),
-        )
-    )
+    count, late = len(cameras), round(SKEW_S * config.control_hz)
+    delays = {
+        "at_once": [0] * count,
+        "skewed": [round(SKEW_S * config.control_hz * number / (count - 1)) for number in range(count)],
+        "late": [late] * count,
+    }
+    walking = {
+        name: triangulate(bearings(_delayed(film.columns, each)[walk], webcams, width), webcams)
+        for name, each in delays.items()
+    }
+
+    def error_m(name: str) -> float:
+        return float(np.nanmean(np.hypot(*(walking[name] - true_m).T)))
+
+    def bearing_deg(name: str) -> float:
+        return float(np.nanmean(_between(_bearing(walking[name], robot), _bearing(true_m, robot))))
+
     return WebcamErrors(
         in_sample_m=float(np.nanmean(off[:KNOWN])),
         new_m=float(np.nanmean(off[KNOWN:])),
-        walking_m=float(np.nanmean(np.hypot(*(at_once - true_m).T))),
-        skewed_m=float(np.nanmean(np.hypot(*(skewed - true_m).T))),
-        bearing_deg=float(np.nanmean(_between(_bearing(at_once, robot), _bearing(true_m, robot)))),
-        skewed_bearing_deg=float(np.nanmean(_between(_bearing(skewed, robot), _bearing(true_m, robot)))),
+        walking_m=error_m("at_once"),
+        skewed_m=error_m("skewed"),
+        bearing_deg=bearing_deg("at_once"),
+        skewed_bearing_deg=bearing_deg("skewed"),
         panorama_truth=_summary(seen_rad, true_m, robot),
-        panorama_at_once=_summary(seen_rad, at_once, robot),
-        panorama_skewed=_summary(seen_rad, skewed, robot),
-        panorama_late=_summary(seen_rad, late, robot),
+        panorama_at_once=_summary(seen_rad, walking["at_once"], robot),
+        panorama_skewed=_summary(seen_rad, walking["skewed"], robot),
+        panorama_late=_summary(seen_rad, walking["late"], robot),
     )
 
 
@@ -245,6 +248,8 @@ def _shoot(config: WorldConfig, cameras: Sequence[str], frames: int) -> _Film:
     background = _empty_room(config)
     columns = np.full((frames, len(cameras)), np.nan)
     hat, speed, seen = np.zeros((frames, 2)), np.zeros(frames), np.full(frames, np.nan)
+    from peopleboy.sim.world import World  # here, as stored results can be read without PyBullet
+
     with World(config) as world:
         for frame in range(frames):
             images = world.observe().images
@@ -253,7 +258,10 @@ def _shoot(config: WorldConfig, cameras: Sequence[str], frames: int) -> _Film:
             if PANORAMA in images:
                 seen[frame] = _seen(images[PANORAMA], background, config.robot.heading_rad)
             (person,) = world.truth().people
-            hat[frame], speed[frame] = _hat_of(person), math.hypot(*person.velocity_m_s)
+            hat[frame], speed[frame] = (
+                person.joints_m[_EARS, :2].mean(axis=0),
+                math.hypot(*person.velocity_m_s),
+            )
             world.step(0.0, 0.0)
     return _Film(columns, hat, speed < _STILL_M_S, seen)
 
@@ -270,10 +278,6 @@ def _seen(image: NDArray[np.uint8], background: Background, heading_rad: float) 
     return math.nan if figure is None else heading_rad + figure.bearing_rad
 
 
-def _hat_of(person: PersonTruth) -> Floats:
-    return np.asarray(person.joints_m[_EARS, :2].mean(axis=0))
-
-
 def _standing(film: _Film) -> list[slice]:
     """Find the spans in which the person stands for a second or more, the middle of each."""
     edges = np.diff(np.concatenate([[0], film.is_still.astype(np.int8), [0]]))
@@ -283,31 +287,22 @@ def _standing(film: _Film) -> list[slice]:
 
 def true_webcams(config: WorldConfig, cameras: Sequence[str]) -> Floats:
     """Give x, y [m], heading and angle of view [rad] of the webcams in the room, (C, 4)."""
-    return np.array([_true_webcam(config, name) for name in cameras])
-
-
-def _true_webcam(config: WorldConfig, name: str) -> tuple[float, float, float, float]:
-    camera = flat_geometry(config.robot.cameras, name)
     (x, y), turn = config.robot.at_m, config.robot.heading_rad
-    ahead, aside, _ = camera.position_m
     cosine, sine = math.cos(turn), math.sin(turn)
-    view = 2.0 * math.atan(camera.width / 2.0 / camera.focal_px)
-    return x + cosine * ahead - sine * aside, y + sine * ahead + cosine * aside, turn + camera.yaw_rad, view
+    rows = []
+    for camera in (flat_geometry(config.robot.cameras, name) for name in cameras):
+        ahead, aside, _ = camera.position_m
+        place = x + cosine * ahead - sine * aside, y + sine * ahead + cosine * aside
+        view = 2.0 * math.atan(camera.width / 2.0 / camera.focal_px)
+        rows.append((*place, turn + camera.yaw_rad, view))
+    return np.array(rows)
 
 
-def _skew(columns: Floats, rate_hz: int) -> Floats:
-    """Let each webcam's columns (T, C) come later than those of the one before it, the last by `SKEW_S`."""
+def _delayed(columns: Floats, frames: Sequence[int]) -> Floats:
+    """Let each webcam's columns (T, C) come later by so many frames."""
     late = columns.copy()
-    for number in range(columns.shape[1]):
-        frames = round(SKEW_S * rate_hz * number / (columns.shape[1] - 1))
-        late[frames:, number] = columns[: len(columns) - frames, number]
-    return late
-
-
-def _late(columns: Floats, rate_hz: int) -> Floats:
-    """Let all webcams' columns (T, C) come later by `SKEW_S`."""
-    frames, late = round(SKEW_S * rate_hz), columns.copy()
-    late[frames:] = columns[:-frames]
+    for number, count in enumerate(frames):
+        late[count:, number] = columns[: len(columns) - count, number]
     return late
 
 

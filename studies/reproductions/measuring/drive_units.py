@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.studies.reproductions.evaluations.drive_tracking import watch_drive, watch_legs
-from peopleboy.studies.reproductions.evaluations.playback import with_cameras
 from peopleboy.tracker.frame import DEPTH
 
 
@@ -41,7 +40,7 @@ class DriveUnit:
         scenario = load_scenario(self.scenario)
         scenario = scenario.lasting(min(scenario.duration_s, self.most_s))
         if self.scale != 1.0:
-            scenario = with_cameras(scenario, {DEPTH: {"kind": DEPTH, "scale": self.scale}})
+            scenario = scenario.with_cameras({DEPTH: {"kind": DEPTH, "scale": self.scale}})
         return watch_drive(scenario, self.seed, self.names)
 
 

@@ -1,14 +1,19 @@
-"""Pictures as addresses that hold all of their data, for pages that lie in one file."""
+"""What all figures share: a canvas, labels, images and boxes on axes, and a figure as PNG data address."""
 
 from __future__ import annotations
 
 import base64
 import io
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+from numpy.typing import NDArray
 from PIL import Image
+
+from peopleboy.tracker.track import Box
 
 WIDTH_IN = 8.4
 DOTS = 110
@@ -16,19 +21,32 @@ COLOURS = 256
 
 
 def canvas(height_in: float, width_in: float = WIDTH_IN) -> Figure:
-    """Begin a picture."""
+    """Begin a figure."""
     figure = Figure((width_in, height_in), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
 
 
 def label(axes: Axes, title: str = "", x: str = "", y: str = "") -> None:
-    """Give axes their words, and no more lines than they need."""
+    """Give axes their title and labels, and no more lines than they need."""
     axes.set_title(title, fontsize=9, loc="left")
     axes.set_xlabel(x, fontsize=8)
     axes.set_ylabel(y, fontsize=8)
     axes.tick_params(labelsize=7)
     axes.spines[["top", "right"]].set_visible(False)
+
+
+def show_image(axes: Axes, image: NDArray[Any], title: str, **style: Any) -> None:
+    """Show an image without axes."""
+    axes.imshow(image, **style)
+    label(axes, title)
+    axes.set_axis_off()
+
+
+def frame_box(axes: Axes, box: Box, colour: str, **style: Any) -> None:
+    """Draw a box's frame."""
+    left, top, width, height = box
+    axes.add_patch(Rectangle((left, top), width, height, fill=False, edgecolor=colour, **style))
 
 
 def png_address(figure: Figure) -> str:

@@ -1,4 +1,4 @@
-"""How the panoramic camera sits on the robot: figure 1 of the 2003 paper, as a drawing to scale."""
+"""Figures of the 2003 paper on a panoramic camera, and errors over the distance."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.mirror import Mirror
-from peopleboy.sim.world import World
 from peopleboy.studies.reproductions.evaluations.webcam_positions import (
     HEADING,
     RANGE,
@@ -29,7 +28,7 @@ from peopleboy.studies.reproductions.evaluations.webcam_positions import (
     true_webcams,
     webcam_names,
 )
-from peopleboy.studies.reproductions.pictures.canvas import canvas, label
+from peopleboy.studies.reproductions.pictures.canvas import canvas, label, show_image
 from peopleboy.studies.training.distance_learning.distance_examples import Examples, panoramas
 from peopleboy.studies.training.distance_learning.distance_trials import SplitTrial, told_in_turn
 from peopleboy.studies.training.distance_learning.walks import filtered
@@ -43,10 +42,19 @@ from peopleboy.tracker.panoramic.paper.depth_cues import (
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig
 from peopleboy.tracker.panoramic.paper.position_filter import PRINTED, PositionFilter
 
-SET_UP_SCENE: Final = "room_long"
-_SET_UP_S: Final = 8.0
+Floats = NDArray[np.float64]
+Picture = NDArray[np.uint8]
+
+ROOM: Final = "room_long"
+_BLACK, _ORANGE, _BLUE, _RED = "#1a1a1a", "#d95f02", "#1f78b4", "#d64541"
+_BODY, _PERSON = "#9aa3ad", "#cfd8c8"
+_PEOPLE: Final = (_BLUE, _ORANGE)
+_ROOMS: Final = (_BLUE, _ORANGE, "#66a61e")
+_SET_UP_S, _FEATURES_S, _WEBCAMS_S = 8.0, 12.0, 3.0  # when figures 1, 4 and 2 are taken
 _FARTHEST_M: Final = 6.0
-_RAY, _BODY, _MIRROR = "#d95f02", "#9aa3ad", "#1f78b4"
+_STEP_M: Final = 0.05  # of the floor plan
+_FRAGMENT: Final = slice(60, 110)  # of a clip's images: some 17 s
+_CLASS_M, _LEAST = 0.5, 30  # width of a class of distances, and images that it must have
 
 
 def draw_set_up() -> Figure:
@@ -56,9 +64,7 @@ def draw_set_up() -> Figure:
     mirror = PanoramaConfig().camera.mirror
     _draw_side(side, mirror)
     _draw_mirror(close, mirror)
-    raw.imshow(_round_image())
-    raw.set_axis_off()
-    label(raw, "what the lens sees")
+    show_image(raw, _round_image(), "what the lens sees")
     return page
 
 
@@ -70,10 +76,12 @@ def _draw_side(axes: Axes, mirror: Mirror) -> None:
     for angle in (steep, flat):
         reach = min(mirror.ring_height_m / math.tan(angle), _FARTHEST_M)
         axes.plot(
-            [0.0, reach], [mirror.ring_height_m, mirror.ring_height_m - reach * math.tan(angle)], color=_RAY
+            [0.0, reach],
+            [mirror.ring_height_m, mirror.ring_height_m - reach * math.tan(angle)],
+            color=_ORANGE,
         )
-    axes.add_patch(Rectangle((3.0 - 0.18, 0.0), 0.36, 1.5, color="#cfd8c8"))
-    axes.add_patch(Rectangle((3.0 - 0.1, 1.52), 0.2, 0.23, color="#cfd8c8"))
+    axes.add_patch(Rectangle((3.0 - 0.18, 0.0), 0.36, 1.5, color=_PERSON))
+    axes.add_patch(Rectangle((3.0 - 0.1, 1.52), 0.2, 0.23, color=_PERSON))
     axes.axhline(0.0, color="black", linewidth=0.8)
     axes.set_xlim(-0.5, _FARTHEST_M)
     axes.set_ylim(-0.1, 2.0)
@@ -86,14 +94,17 @@ def _draw_mirror(axes: Axes, mirror: Mirror) -> None:
     """Draw the cone over the lens, and how it turns the lens's rays outwards."""
     radius = 0.09
     top = mirror.apex_m + radius / math.tan(mirror.half_apex_rad)
-    axes.add_patch(Polygon([(0.0, mirror.apex_m), (radius, top), (-radius, top)], color=_MIRROR, alpha=0.6))
+    axes.add_patch(Polygon([(0.0, mirror.apex_m), (radius, top), (-radius, top)], color=_BLUE, alpha=0.6))
     lens = mirror.apex_m - mirror.lens_m
     axes.plot(0.0, lens, "ko", markersize=5)
     for angle in np.linspace(0.12, 0.98, 4) * mirror.lens_half_angle_rad:
         x, y = _met(mirror, float(angle))
         down = mirror.axis_rad - angle
         axes.plot(
-            [0.0, x, x + 0.1 * math.cos(down)], [lens, y, y - 0.1 * math.sin(down)], color=_RAY, linewidth=1.0
+            [0.0, x, x + 0.1 * math.cos(down)],
+            [lens, y, y - 0.1 * math.sin(down)],
+            color=_ORANGE,
+            linewidth=1.0,
         )
     axes.set_xlim(-0.1, 0.16)
     axes.set_aspect("equal")
@@ -108,43 +119,37 @@ def _met(mirror: Mirror, angle: float) -> tuple[float, float]:
     return (y - mirror.apex_m) * side, y
 
 
-def _round_image() -> NDArray[np.uint8]:
-    config = load_scenario(SET_UP_SCENE).world(0)
-    with World(_with_round_image(config)) as world:
-        for _ in range(round(_SET_UP_S * config.control_hz)):
-            world.step(0.0, 0.0)
-        return np.asarray(world.observe().images["panorama_raw"], np.uint8)
-
-
-def _with_round_image(config: WorldConfig) -> WorldConfig:
+def _round_image() -> Picture:
+    config = load_scenario(ROOM).world(0)
     cameras = {**config.robot.cameras, "panorama": PanoramaConfig(raw=True)}
-    return replace(config, robot=replace(config.robot, cameras=cameras))
+    config = replace(config, robot=replace(config.robot, cameras=cameras))
+    return np.asarray(_images_after(config, _SET_UP_S)["panorama_raw"], np.uint8)
 
 
-# How features are taken from a panorama: figure 4 of the 2003 paper.
+def _images_after(config: WorldConfig, time_s: float) -> Mapping[str, Picture]:
+    """Give the images of a world whose robot stands, after some time [s]."""
+    from peopleboy.sim.world import World  # here, as curves of stored results need no PyBullet
 
-Picture = NDArray[np.uint8]
-
-FEATURES_SCENE: Final = "room_long"
-FEATURES_S: Final = 12.0
-_SHARES: Final = {"height_ratios": (1, 1, 0.45, 1), "width_ratios": (1, 0.13)}
-_MARK: Final = "#d95f02"
+    with World(config) as world:
+        for _ in range(round(time_s * config.control_hz)):
+            world.step(0.0, 0.0)
+        return dict(world.observe().images)
 
 
 def draw_features() -> Figure:
     """Film the beginning of a scenario; draw a panorama, what differs from the background, and the cues."""
-    scenario = load_scenario(FEATURES_SCENE)
-    images = [image for image, _ in panoramas(scenario.world(0), FEATURES_S)]
+    scenario = load_scenario(ROOM)
+    images = [image for image, _ in panoramas(scenario.world(0), _FEATURES_S)]
     background = learn_background(images[:EMPTY_IMAGES])
     figure = measure(background.silhouette(images[-1]), PanoramicConfig().least_px)
     if figure is None:
-        raise BadInput(f"{FEATURES_SCENE}: nobody is seen at {FEATURES_S:g} s")
+        raise BadInput(f"{ROOM}: nobody is seen at {_FEATURES_S:g} s")
     return _drawn(images[-1], background, figure)
 
 
 def _drawn(image: Picture, background: Background, found: MeasuredFigure) -> Figure:
     page = canvas(7.2)
-    grid = page.subplots(4, 2, gridspec_kw=_SHARES)
+    grid = page.subplots(4, 2, height_ratios=(1, 1, 0.45, 1), width_ratios=(1, 0.13))
     for axes in (grid[0, 1], grid[2, 1], grid[3, 1]):
         axes.set_axis_off()
     _show_stretched(grid[0, 0], image, "a) panorama: the robot's back, left, front, right, and back")
@@ -152,9 +157,9 @@ def _drawn(image: Picture, background: Background, found: MeasuredFigure) -> Fig
     _show_stretched(
         grid[1, 0], difference, "b) difference from the background, and histograms of rows and columns"
     )
-    grid[1, 1].barh(np.arange(len(found.rows)), found.rows, 1.0, color="#1f78b4")
+    grid[1, 1].barh(np.arange(len(found.rows)), found.rows, 1.0, color=_BLUE)
     grid[1, 1].set_ylim(len(found.rows) - 0.5, -0.5)
-    grid[2, 0].bar(np.arange(len(found.columns)), found.columns, 1.0, color="#1f78b4")
+    grid[2, 0].bar(np.arange(len(found.columns)), found.columns, 1.0, color=_BLUE)
     grid[2, 0].set_xlim(-0.5, len(found.columns) - 0.5)
     for axes in (grid[1, 1], grid[2, 0]):
         label(axes)
@@ -169,45 +174,32 @@ def _drawn(image: Picture, background: Background, found: MeasuredFigure) -> Fig
 
 
 def _show_stretched(axes: Axes, image: NDArray[np.generic], title: str) -> None:
-    axes.imshow(image, cmap="gray", interpolation="nearest", aspect="auto")
-    axes.set_title(title, fontsize=9, loc="left")
-    axes.set_axis_off()
+    show_image(axes, image, title, cmap="gray", interpolation="nearest", aspect="auto")
 
 
 def _mark(axes: Axes, found: MeasuredFigure) -> None:
     """Draw the person's box, the mean column, and the way to the lower border."""
     left, top, width, height = found.box
     right, bottom, border = left + width, top + height, len(found.rows) - 0.5
-    axes.plot([left, right, right, left, left], [top, top, bottom, bottom, top], color=_MARK, linewidth=1.0)
-    axes.plot([found.mean_column] * 2, [top, bottom], color=_MARK, linewidth=0.8, linestyle=":")
+    axes.plot([left, right, right, left, left], [top, top, bottom, bottom, top], color=_ORANGE, linewidth=1.0)
+    axes.plot([found.mean_column] * 2, [top, bottom], color=_ORANGE, linewidth=0.8, linestyle=":")
     axes.annotate(
-        "", (right + 6, border), (right + 6, bottom), arrowprops={"arrowstyle": "<->", "color": _MARK}
+        "", (right + 6, border), (right + 6, bottom), arrowprops={"arrowstyle": "<->", "color": _ORANGE}
     )
-
-
-# The external measurement in pictures: figures 2 and 3 of the 2003 paper.
-
-_WEBCAMS_S: Final = 3.0
-_STEP_M: Final = 0.05
 
 
 def draw_webcam_images() -> Figure:
     """Draw what the four webcams see at one instant, and where the hat was found."""
     config = load_scenario(SCENE).world(0)
     names = webcam_names(config)
-    with World(config) as world:
-        for _ in range(round(_WEBCAMS_S * config.control_hz)):
-            world.step(0.0, 0.0)
-        seen = world.observe().images
-        images = {name: seen[name] for name in names}
+    images = _images_after(config, _WEBCAMS_S)
     figure = canvas(4.4, 5.6)
     for axes, name in zip(figure.subplots(2, 2).flat, names, strict=True):
-        axes.imshow(images[name])
-        axes.set_axis_off()
         column = hat_column(images[name])
-        label(axes, f"{name}: hat {'not seen whole' if column is None else f'at column {column:.1f}'}")
+        place = "not seen whole" if column is None else f"at column {column:.1f}"
+        show_image(axes, images[name], f"{name}: hat {place}")
         if column is not None:
-            axes.axvline(column, color="#d95f02", linewidth=1.0)
+            axes.axvline(column, color=_ORANGE, linewidth=1.0)
     return figure
 
 
@@ -229,24 +221,13 @@ def draw_fields_of_view() -> Figure:
         x, y, seen, cmap="Greens", vmin=-0.5, vmax=4.5, shading="nearest", rasterized=True
     )
     figure.colorbar(drawn, ax=axes, ticks=range(5), label="webcams that see it", shrink=0.8)
-    axes.plot(webcams[:, X], webcams[:, Y], "o", color="#d95f02", markersize=9)
+    axes.plot(webcams[:, X], webcams[:, Y], "o", color=_ORANGE, markersize=9)
     axes.add_patch(Rectangle((low_x, low_y), high_x - low_x, high_y - low_y, fill=False, linewidth=1.5))
-    axes.plot(*config.robot.at_m, "s", color="#d64541", markersize=10)
+    axes.plot(*config.robot.at_m, "s", color=_RED, markersize=10)
     axes.annotate("robot", config.robot.at_m, (10, -2), textcoords="offset points", fontsize=8, color="white")
     axes.set_aspect("equal")
     label(axes, "", "m", "m")
     return figure
-
-
-# Curves of what was measured in films: figures 5 and 6 of the 2003 paper, and errors over the distance.
-
-Floats = NDArray[np.float64]
-
-_TRUE_COLOUR, _MODEL, _FILTER = "#1a1a1a", "#d95f02", "#1f78b4"
-_PEOPLE: Final = ("#1f78b4", "#d95f02")
-_ROOMS: Final = ("#1f78b4", "#d95f02", "#66a61e")
-_FRAGMENT: Final = slice(60, 110)  # of a film's images: some 17 s
-_CLASS_M, _LEAST = 0.5, 30  # width of a class of distances, and images that it must have
 
 
 def draw_correlations(run: Examples, names: Sequence[str]) -> Figure:
@@ -277,13 +258,13 @@ def draw_path(run: Examples) -> Figure:
     figure = canvas(4.6)
     axes = figure.subplots()
     for name, place, colour, style, width in (
-        ("true", run.true_m, _TRUE_COLOUR, "-", 2.0),
-        ("appearance model", measured, _MODEL, "x-", 0.6),
-        ("with Kalman filter", smooth, _FILTER, "o-", 1.2),
+        ("true", run.true_m, _BLACK, "-", 2.0),
+        ("appearance model", measured, _ORANGE, "x-", 0.6),
+        ("with Kalman filter", smooth, _BLUE, "o-", 1.2),
     ):
         x, y = place[_FRAGMENT].T
         axes.plot(-y, x, style, color=colour, linewidth=width, markersize=3, label=name)
-    axes.plot(0.0, 0.0, "s", color="#d64541", markersize=9)
+    axes.plot(0.0, 0.0, "s", color=_RED, markersize=9)
     axes.annotate("robot", (0.0, 0.0), (8, 6), textcoords="offset points", fontsize=8)
     axes.set_aspect("equal")
     axes.legend(fontsize=8, frameon=False)

@@ -1,4 +1,4 @@
-"""People's ways before a depth camera, true and tracked: figures 4.25 to 4.33 of that thesis."""
+"""Figures of the thesis on situation awareness: tracked drives, scene models and attention."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.load import load_scenario
@@ -22,6 +21,7 @@ from peopleboy.studies.reproductions.evaluations.attention_focus import (
     play_focus,
     wanted,
 )
+from peopleboy.studies.reproductions.evaluations.drive_scores import hit_rows
 from peopleboy.studies.reproductions.evaluations.scene_scores import (
     ADAPT,
     CLEAN,
@@ -30,7 +30,7 @@ from peopleboy.studies.reproductions.evaluations.scene_scores import (
     TRACK,
     read_map,
 )
-from peopleboy.studies.reproductions.pictures.canvas import canvas, label
+from peopleboy.studies.reproductions.pictures.canvas import canvas, frame_box, label, show_image
 from peopleboy.tracker.attention.attend import PersonModel, attention_map, learn, search
 from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
 from peopleboy.tracker.attention.image_sums import Sight
@@ -40,10 +40,17 @@ from peopleboy.tracker.track import Box
 Floats = NDArray[np.float64]
 Film = Mapping[str, Any]
 
-_TRUE: Final = "#c62828"
-_SIDEWAYS, _AHEAD = "#1f78b4", "#d95f02"
+_TRUE, _SIDEWAYS, _AHEAD = "#c62828", "#1f78b4", "#d95f02"
+_FOUND, _LEARNED = "#1b9e77", "#e7298a"
 _IDS: Final = colormaps["tab10"]
-_GAP: Final = 3  # frames that a way may miss before its line ends
+_GAP: Final = 3  # frames that a track may miss before its line ends
+
+_SHOWN: Final = {CLEAN: "truth", MEAN: MEAN, TRACK: TRACK, ADAPT: ADAPT, ROBUST: ROBUST}
+_NEAREST_M, _FARTHEST_M = 1.5, 7.0
+
+FOCUS_SCENE: Final = "crossing_3"
+_MEANS: Final = replace(PRINTED, share="means")
+_ALONE: Final = replace(AttentionConfig(), scales=(1.0,))
 
 
 def draw_ways(films: Mapping[str, Film], who: str) -> Figure:
@@ -53,7 +60,8 @@ def draw_ways(films: Mapping[str, Film], who: str) -> Figure:
     figure = canvas(3.0 * rows)
     for number, (title, film) in enumerate(films.items(), 1):
         axes = figure.add_subplot(rows, columns, number)
-        _draw_ways(axes, _counted(film), film[who]["told"])
+        _lines(axes, _counted(film), colour=_TRUE, width=2.0)
+        _lines(axes, _rows(film[who]["tracks"]))
         label(axes, title, "to the left [m]", "ahead [m]")
     return figure
 
@@ -74,7 +82,7 @@ def draw_world(film: Film, who: str) -> Figure:
         width=0.003,
         scale=40.0,
     )
-    told = np.array(film[who]["told"]).reshape(-1, 4)
+    told = _rows(film[who]["tracks"])
     pose = robot[told[:, 0].astype(int) - 1]
     cosine, sine = np.cos(pose[:, 2]), np.sin(pose[:, 2])
     x = pose[:, 0] + cosine * told[:, 2] - sine * told[:, 3]
@@ -90,7 +98,7 @@ def draw_people(films: Mapping[str, Film], who: str) -> Figure:
     """Draw mean and deviation of each person's errors, sideways and ahead."""
     names, means, spreads = [], [], []
     for title, film in films.items():
-        hits = np.array(film[who]["hits"], dtype=np.float64).reshape(-1, 7)
+        hits = hit_rows(film[who])
         off = np.abs(hits[:, [6, 5]])
         for person in np.unique(hits[:, 1]):
             own = off[(hits[:, 1] == person) & np.isfinite(off).all(axis=1)]
@@ -120,7 +128,7 @@ def draw_people(films: Mapping[str, Film], who: str) -> Figure:
 
 def draw_errors(film: Film, who: str) -> Figure:
     """Draw the distance of a film's first person over time, and the errors sideways and ahead."""
-    hits = np.array(film[who]["hits"], dtype=np.float64).reshape(-1, 7)
+    hits = hit_rows(film[who])
     hits = hits[hits[:, 1] == hits[:, 1].min()]
     truth = np.array(film["truth"]).reshape(-1, 7)
     truth = truth[truth[:, 1] == hits[0, 1]]
@@ -143,7 +151,7 @@ def draw_crossing(film: Film, names: Mapping[str, str]) -> Figure:
     _lines(first, _counted(film))
     label(first, "true", "to the left [m]", "ahead [m]")
     for axes, (who, title) in zip(others, names.items(), strict=True):
-        _lines(axes, np.array(film[who]["told"]).reshape(-1, 4))
+        _lines(axes, _rows(film[who]["tracks"]))
         label(axes, title, "to the left [m]")
     return figure
 
@@ -155,8 +163,8 @@ def draw_legs(film: Film) -> Figure:
     left, right = figure.subplots(1, 2)
     for name, rows, colour in (
         ("true", truth, "#1f78b4"),
-        ("depth and colour", np.array(film["depth"]).reshape(-1, 4), "#2e7d32"),
-        ("legs", np.array(film["legs"]).reshape(-1, 4), _TRUE),
+        ("depth and colour", _rows(film["depth"]), "#2e7d32"),
+        ("legs", _rows(film["legs"]), _TRUE),
     ):
         size = 1.2 if name != "true" else 2.4
         left.plot(rows[:, 3], rows[:, 2], ".", markersize=size, color=colour, label=name)
@@ -168,9 +176,9 @@ def draw_legs(film: Film) -> Figure:
     return figure
 
 
-def _draw_ways(axes: Axes, truth: Floats, told: Sequence[Sequence[float]]) -> None:
-    _lines(axes, truth, colour=_TRUE, width=2.0)
-    _lines(axes, np.array(told).reshape(-1, 4))
+def _rows(tracks: Sequence[Sequence[float]]) -> Floats:
+    """Give frame, track and place (N, 4)."""
+    return np.array(tracks).reshape(-1, 4)
 
 
 def _counted(film: Film) -> Floats:
@@ -193,23 +201,13 @@ def _lines(
         axes.invert_xaxis()
 
 
-# How attention finds a person: figures 5.6 to 5.9 of the thesis on situation awareness.
-
-FOCUS_SCENE: Final = "crossing_3"
-FOCUS_SEED: Final = 1
-_MEANS: Final = replace(PRINTED, share="means")
-_ALONE: Final = replace(AttentionConfig(), scales=(1.0,))
-_FOUND: Final = "#1b9e77"
-_LEARNED: Final = "#e7298a"
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class LearnedFilm:
-    """A person who was learned, and later images of it.
+    """A person who was learned, and later images of the same person.
 
     Attributes:
         moment: in which it was learned.
-        person: who.
+        person: of that moment.
         later: further images.
     """
 
@@ -217,11 +215,20 @@ class LearnedFilm:
     person: PersonTruth
     later: Sequence[FocusMoment]
 
+    @property
+    def box(self) -> Box:
+        """The box that was learned."""
+        assert self.person.box is not None  # it can be learned
+        return self.person.box
 
-def learned_films(
-    scenario: str = FOCUS_SCENE, seed: int = FOCUS_SEED, every: int = 15
-) -> Iterator[LearnedFilm]:
-    """Give each person of a film with the first image that shows most of it."""
+    def learned(self, config: AttentionConfig) -> tuple[Sight, PersonModel]:
+        """Learn the person, and give what was seen, too."""
+        sight = Sight.of(self.moment.image, config)
+        return sight, learn(sight, self.box, config)
+
+
+def learned_films(scenario: str = FOCUS_SCENE, seed: int = 1, every: int = 15) -> Iterator[LearnedFilm]:
+    """Give each person of a clip with the first image that shows most of it."""
     loaded = load_scenario(scenario)
     moments = list(play_focus(loaded, seed, every))
     for number in sorted({one.id for moment in moments for one in wanted(loaded, moment.truth)}):
@@ -233,20 +240,18 @@ def learned_films(
 
 
 def draw_excitation() -> Figure:
-    """Draw what speaks for a torso, what against it, and what is left: figure 5.6."""
+    """Draw excitation and inhibition of a torso, and what is left: figure 5.6."""
     first = next(learned_films())
-    sight = Sight.of(first.moment.image, _MEANS)
-    known = dict(learn(sight, _box_of(first.person), _MEANS).parts)[TORSO]
+    sight, look = first.learned(_MEANS)
+    known = dict(look.parts)[TORSO]
     assert sight.maps is not None
     page = canvas(1.7)
     image, *axes = page.subplots(1, 4)
-    _show(image, first.moment.image, "image, and the learned box")
-    _frame(image, _box_of(first.person), _LEARNED)
-    sums = (sight.maps @ known.excites.astype(np.float32), sight.maps @ known.inhibits.astype(np.float32))
-    maps: list[NDArray[np.floating]] = [*sums, attention_map(sight, known, _MEANS)]
-    names = ("a) excitation E", "b) inhibition I", "c) A = E - I, above 0")
-    for one, map_, name in zip(axes, maps, names, strict=True):
-        _show(one, map_, name)
+    _show_colour(image, first.moment, "image, and the learned box")
+    frame_box(image, first.box, _LEARNED, linewidth=1.3)
+    excited, inhibited = (sight.maps @ one.astype(np.float32) for one in (known.excites, known.inhibits))
+    maps = (excited, inhibited, attention_map(sight, known, _MEANS))
+    _show_maps(axes, maps, ("a) excitation E", "b) inhibition I", "c) A = E - I, above 0"))
     return page
 
 
@@ -254,18 +259,15 @@ def draw_part_scores() -> Figure:
     """Draw the scores of torso, head and patterns, and of the whole person: figure 5.7."""
     first = next(learned_films())
     page = canvas(2.9)
-    ways = ((_MEANS, "as printed, means"), (_ALONE, "default"))
-    for row, (config, name) in zip(page.subplots(2, 5), ways, strict=True):
-        sight = Sight.of(first.moment.image, config)
-        focus = search(sight, learn(sight, _box_of(first.person), config), config)
+    variants = ((_MEANS, "as printed, means"), (_ALONE, "default"))
+    for (image, *row), (config, name) in zip(page.subplots(2, 5), variants, strict=True):
+        focus = search(*first.learned(config), config)
         head, torso = focus.parts
-        _show(row[0], first.moment.image, name)
+        _show_colour(image, first.moment, name)
         for part in (HEAD, TORSO):
-            _frame(row[0], _part_box(part, _box_of(first.person)), _LEARNED)
+            frame_box(image, _part_box(part, first.box), _LEARNED, linewidth=1.3)
         maps = (torso.features, head.features, torso.patterns, focus.scores)
-        for axes, map_, title in zip(row[1:], maps, ("torso", "face", "patterns", "person"), strict=True):
-            assert map_ is not None
-            _show(axes, map_, title)
+        _show_maps(row, maps, ("torso", "face", "patterns", "person"))
     return page
 
 
@@ -274,43 +276,29 @@ def draw_focus_paths() -> Figure:
     films = list(learned_films(every=5))
     page = canvas(4.2)
     for (above, below), film in zip(page.subplots(2, len(films)).T, films, strict=True):
-        sight = Sight.of(film.moment.image, _ALONE)
-        look = learn(sight, _box_of(film.person), _ALONE)
-        _show(above, search(sight, look, _ALONE).scores, f"score, {film.person.name}")
-        _show(below, film.later[-1].image, "way of the focus")
-        ways = np.array([_place(moment, look) for moment in film.later])
-        below.plot(ways[:, 0], ways[:, 1], "-", color=_FOUND, linewidth=1.0)
-        below.plot(*ways[-1], "+", color=_LEARNED, markersize=9, markeredgewidth=1.8)
+        sight, look = film.learned(_ALONE)
+        _show_maps([above], [search(sight, look, _ALONE).scores], [f"score, {film.person.name}"])
+        _show_colour(below, film.later[-1], "way of the focus")
+        places = [search(Sight.of(one.image, _ALONE), look, _ALONE).place for one in film.later]
+        below.plot(*np.array(places).T, "-", color=_FOUND, linewidth=1.0)
+        below.plot(*places[-1], "+", color=_LEARNED, markersize=9, markeredgewidth=1.8)
     return page
 
 
 def draw_examples() -> Figure:
-    """Draw all maps of a few images, and the place that comes of them: figure 5.9."""
-    film = next(iter(learned_films("follow_passers_by", 0, 60)))
-    sight = Sight.of(film.moment.image, AttentionConfig())
-    look = learn(sight, _box_of(film.person), AttentionConfig())
+    """Draw all maps of a few images, and the place that they lead to: figure 5.9."""
+    film, config = next(iter(learned_films("follow_passers_by", 0, 60))), AttentionConfig()
+    _, look = film.learned(config)
     shown = film.later[1:11:2]
     page = canvas(7.0)
-    grid = page.subplots(5, len(shown))
-    for column, moment in zip(grid.T, shown, strict=True):
-        focus = search(Sight.of(moment.image, AttentionConfig()), look, AttentionConfig())
+    for (image, *column), moment in zip(page.subplots(5, len(shown)).T, shown, strict=True):
+        focus = search(Sight.of(moment.image, config), look, config)
         head, torso = focus.parts
         maps = (head.features, torso.features, torso.patterns, focus.scores)
-        for axes, map_, title in zip(column[1:], maps, ("face", "torso", "patterns", "person"), strict=True):
-            assert map_ is not None
-            _show(axes, map_, title)
-        _show(column[0], moment.image, f"{moment.time_s:.0f} s, score {focus.score:.2f}")
-        _frame(column[0], focus.box, _FOUND)
+        _show_maps(column, maps, ("face", "torso", "patterns", "person"))
+        _show_colour(image, moment, f"{moment.time_s:.0f} s, score {focus.score:.2f}")
+        frame_box(image, focus.box, _FOUND, linewidth=1.3)
     return page
-
-
-def _place(moment: FocusMoment, look: PersonModel) -> tuple[float, float]:
-    return search(Sight.of(moment.image, _ALONE), look, _ALONE).place
-
-
-def _box_of(person: PersonTruth) -> Box:
-    assert person.box is not None  # it can be learned
-    return person.box
 
 
 def _part_box(part: Part, box: Box) -> Box:
@@ -319,30 +307,22 @@ def _part_box(part: Part, box: Box) -> Box:
     return left + (width - wide) / 2.0, top + part.top * height, wide, part.height * height
 
 
-def _show(axes: Axes, picture: NDArray[np.number], title: str) -> None:
-    # What is outside is 0 in scores; likely places differ little in some.
-    lowest = np.percentile(picture[picture > 0], 1.0) if picture.ndim == 2 and (picture > 0).any() else None
-    axes.imshow(picture, cmap="inferno", interpolation="nearest", vmin=lowest)
-    label(axes, title)
-    axes.set_axis_off()
+def _show_colour(axes: Axes, moment: FocusMoment, title: str) -> None:
+    show_image(axes, moment.image, title, interpolation="nearest")
 
 
-def _frame(axes: Axes, box: Box, colour: str) -> None:
-    left, top, width, height = box
-    axes.add_patch(Rectangle((left, top), width, height, fill=False, edgecolor=colour, linewidth=1.3))
-
-
-# Backgrounds that scene models learned, beside the truth: figures 3.8 to 3.13 of that thesis.
-
-_SHOWN: Final = {CLEAN: "truth", MEAN: MEAN, TRACK: TRACK, ADAPT: ADAPT, ROBUST: ROBUST}
-_NEAREST_M, _FARTHEST_M = 1.5, 7.0
-_UNKNOWN: Final = "#000000"
+def _show_maps(row: Sequence[Axes], maps: Sequence[NDArray[np.number] | None], names: Sequence[str]) -> None:
+    for axes, scores, name in zip(row, maps, names, strict=True):
+        assert scores is not None
+        # Scores outside the image are 0, and likely places may differ little: the scale begins above 0.
+        lowest = np.percentile(scores[scores > 0], 1.0) if (scores > 0).any() else None
+        show_image(axes, scores, name, cmap="inferno", interpolation="nearest", vmin=lowest)
 
 
 def draw_maps(films: Mapping[str, Mapping[str, str]]) -> Figure:
     """Draw a row for each film: the truth, and the depth that each model takes for background."""
     figure = canvas(1.45 * len(films))
-    colours = colormaps["viridis_r"].with_extremes(bad=_UNKNOWN)
+    colours = colormaps["viridis_r"].with_extremes(bad="#000000")
     grid = figure.subplots(len(films), len(_SHOWN), squeeze=False)
     for row, (title, maps) in zip(grid, films.items(), strict=True):
         for axes, name in zip(row, _SHOWN, strict=True):

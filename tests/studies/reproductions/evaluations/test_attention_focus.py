@@ -7,9 +7,9 @@ from peopleboy.studies.reproductions.evaluations.attention_focus import (
     CHOICES,
     DEFAULT,
     PRINTED_NAME,
-    judged,
     longest_gap,
     resumptions,
+    score_absence,
     watch_absence,
     watch_focus,
 )
@@ -25,9 +25,9 @@ def test_an_absence_counts_who_else_has_the_number_and_how_late_it_is_right():
     rows = (
         [{1: "anna"}] * 4 + [{1: "anna"}, {1: "bert"}, {2: "bert"}, {}] + [{}, {3: "anna"}, {1: "anna"}, {}]
     )
-    found = judged(rows, visible, "anna", 2.0)
+    found = score_absence(rows, visible, "anna", 2.0)
     assert found == {"away": 4, "accepted": 1, "late_s": 1.0, "found_s": 0.5}
-    assert judged(rows[:9] + [{}] * 3, visible, "anna", 2.0)["late_s"] is None
+    assert score_absence(rows[:9] + [{}] * 3, visible, "anna", 2.0)["late_s"] is None
 
 
 def test_a_follower_goes_on_with_the_person_only_if_with_nobody_else_before():

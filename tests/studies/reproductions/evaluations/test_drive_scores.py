@@ -5,24 +5,21 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from peopleboy.studies.reproductions.evaluations.drive_scores import DriveRecord, DriveScore, interval, match
-from peopleboy.studies.reproductions.evaluations.playback import Stander
+from peopleboy.studies.reproductions.evaluations.drive_scores import (
+    DriveRecord,
+    DriveScore,
+    FloorPerson,
+    associate,
+    interval,
+)
 from peopleboy.tracker.track import FloorPlace, Status, Track
+from tests.helpers.runs import synthetic_ticks
 
 
-def person(number: int, x: float, y: float, *, counts: bool = True) -> Stander:
-    """Stand somebody somewhere; the surface that is seen is 0.1 m nearer."""
-    return Stander(
-        id=number,
-        place_m=(x, y),
-        surface_m=(x - 0.1, y),
-        distance_m=x,
-        inside=1.0,
-        hidden=0.0,
-        is_counted=counts,
-        box=None,
-        whole_box=None,
-    )
+def person(number: int, x: float, y: float, *, counts: bool = True) -> FloorPerson:
+    """Place a person; the surface that is seen is 0.1 m nearer."""
+    truth = synthetic_ticks.person(number, "anna", x)
+    return FloorPerson(number, (x, y), (x - 0.1, y), is_counted=counts, truth=truth)
 
 
 def track(number: int, x: float, y: float) -> Track:
@@ -35,14 +32,14 @@ def record(score: DriveScore) -> DriveRecord:
     return DriveRecord.of_plain(score.plain() | {"ms": 1.0, "pre": pre})
 
 
-def told(people: Sequence[Stander], tracks: Sequence[Track]) -> DriveRecord:
+def scored(people: Sequence[FloorPerson], tracks: Sequence[Track]) -> DriveRecord:
     score = DriveScore()
     score.add(1, people, tracks)
     return record(score)
 
 
 def test_who_is_told_within_a_metre_is_found_and_all_else_is_missed_or_false() -> None:
-    one = told([person(1, 4.0, 0.0), person(2, 6.0, 2.0)], [track(7, 4.0, 0.9), track(8, 6.0, 0.9)])
+    one = scored([person(1, 4.0, 0.0), person(2, 6.0, 2.0)], [track(7, 4.0, 0.9), track(8, 6.0, 0.9)])
     assert (one.found(), one.missed, one.false, one.frames) == (1, 1, 1, 1)
     assert one.rate() == 0.5
     assert one.false_per_frame() == 1.0
@@ -50,30 +47,30 @@ def test_who_is_told_within_a_metre_is_found_and_all_else_is_missed_or_false() -
 
 
 def test_a_second_track_on_somebody_is_false() -> None:
-    one = told([person(1, 4.0, 0.0)], [track(7, 4.0, 0.1), track(8, 4.0, -0.2)])
+    one = scored([person(1, 4.0, 0.0)], [track(7, 4.0, 0.1), track(8, 4.0, -0.2)])
     assert (one.found(), one.false) == (1, 1)
     assert one.error_m == pytest.approx([0.1])
 
 
 def test_a_track_on_somebody_who_does_not_count_is_neither_right_nor_wrong() -> None:
     far = person(2, 11.0, 0.0, counts=False)
-    one = told([far], [track(7, 11.2, 0.0)])
+    one = scored([far], [track(7, 11.2, 0.0)])
     assert (one.found(), one.missed, one.false) == (0, 0, 0)
     assert np.isnan(one.rate())
 
 
 def test_those_who_count_go_first() -> None:
-    found = match([person(1, 4.0, 0.0, counts=False), person(2, 4.0, 0.8)], np.array([[4.0, 0.1]]))
+    found = associate([person(1, 4.0, 0.0, counts=False), person(2, 4.0, 0.8)], np.array([[4.0, 0.1]]))
     assert found == {1: 0}
 
 
 def test_distances_are_least_in_all_and_not_one_by_one() -> None:
     people = [person(1, 4.0, 0.0), person(2, 4.0, 0.6)]
-    assert match(people, np.array([[4.0, 0.5], [4.0, 1.4]])) == {0: 0, 1: 1}
+    assert associate(people, np.array([[4.0, 0.5], [4.0, 1.4]])) == {0: 0, 1: 1}
 
 
 def test_a_closer_radius_makes_misses_and_false_alarms_of_hits() -> None:
-    one = told([person(1, 4.0, 0.0)], [track(7, 4.0, 0.5)])
+    one = scored([person(1, 4.0, 0.0)], [track(7, 4.0, 0.5)])
     assert (one.rate(), one.rate(0.3)) == (1.0, 0.0)
     assert (one.false_per_frame(), one.false_per_frame(0.3)) == (0.0, 1.0)
 
@@ -94,7 +91,7 @@ def test_a_switch_is_another_track_on_the_same_person_also_after_a_gap() -> None
 
 
 def test_drives_together_have_the_sums_of_all() -> None:
-    hit, miss = told([person(1, 4.0, 0.0)], [track(7, 4.0, 0.1)]), told([person(1, 4.0, 0.0)], [])
+    hit, miss = scored([person(1, 4.0, 0.0)], [track(7, 4.0, 0.1)]), scored([person(1, 4.0, 0.0)], [])
     both = DriveRecord.joined([hit, miss, miss])
     assert (both.frames, both.found(), both.missed, both.false_sizes) == (3, 1, 2, 6)
     assert both.rate() == pytest.approx(1.0 / 3.0)

@@ -13,10 +13,10 @@ from peopleboy.studies.reproductions.evaluations.drive_tracking import (
     DEFAULT,
     LITERAL,
     SETS,
+    play_drive,
     watch_drive,
     watch_legs,
 )
-from peopleboy.studies.reproductions.evaluations.playback import play_drive, with_cameras
 from peopleboy.tracker.frame import DEPTH
 
 
@@ -38,7 +38,7 @@ def test_a_person_in_plain_view_is_found_and_placed(film: dict[str, Any]) -> Non
 def test_what_is_told_and_the_truth_are_plain_and_agree_with_the_hits(film: dict[str, Any]) -> None:
     assert json.loads(json.dumps(film)).keys() == {DEFAULT, LITERAL, "truth", "robot"}
     places = {row[0]: row[2:4] for row in film["truth"]}
-    told = {row[0]: row[2:4] for row in film[DEFAULT]["told"]}
+    told = {row[0]: row[2:4] for row in film[DEFAULT]["tracks"]}
     for frame, _, _, forward, left, *_ in film[DEFAULT]["hits"]:
         off = np.subtract(told[frame], places[frame])
         assert off == pytest.approx([forward, left], abs=2e-3)
@@ -53,9 +53,12 @@ def test_every_set_is_driven_by_the_clock_and_every_tracker_differs_from_the_oth
 
 def test_noise_can_be_left_out_of_the_depth_and_the_truth_stays() -> None:
     scenario = load_scenario("follow_at_distance").lasting(0.1)
-    exact = with_cameras(scenario, {DEPTH: {"kind": DEPTH, "scale": 0.0}})
+    exact = scenario.with_cameras({DEPTH: {"kind": DEPTH, "scale": 0.0}})
     (one, noisy), (other, clean) = (
-        next((moment.people, moment.frame.depth(DEPTH).copy()) for moment in play_drive(drive, 0))
+        next(
+            ([(each.place_m, each.surface_m) for each in moment.people], moment.frame.depth(DEPTH).copy())
+            for moment in play_drive(drive, 0)
+        )
         for drive in (scenario, exact)
     )
     assert one == other
