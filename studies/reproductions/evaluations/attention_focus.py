@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop
-from peopleboy.scenarios.loop.oracle_tracker import OracleTracker
-from peopleboy.scenarios.loop.tracker_by_name import make_eyes
+from peopleboy.scenarios.loop.tracker_by_name import OracleTracker, make_eyes
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.studies.reproductions.evaluations.playback import play
