@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.running.blind_drive import blind_drive
+from peopleboy.tracker.camera_mount import Mount, mount_of
 from peopleboy.tracker.frame import THERMAL, Odometry
 from peopleboy.tracker.proposals.detector import PeopleDetector
-from peopleboy.tracker.thermal.mount import Mount, mount_of
 
 WORLDS = (0, 1, 2, 3)
 LASTS_S = 1.5  # of each world

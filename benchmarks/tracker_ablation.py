@@ -21,12 +21,12 @@ from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import closed_loop, make_frame
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
+from peopleboy.tracker.contour.contour_config import TrackerConfig
+from peopleboy.tracker.contour.contour_tracker import ContourTracker
+from peopleboy.tracker.contour.variants import PAPER, PEOPLEBOY, THESIS, THESIS_OCCLUSION
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.config import TrackerConfig
-from peopleboy.tracker.thermal.people_tracker import PeopleTracker
-from peopleboy.tracker.thermal.variants import PAPER, PEOPLEBOY, THESIS, THESIS_OCCLUSION
 from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
 ONE = ("single_stationary", "single_follow")
@@ -206,7 +206,7 @@ def recorded(loaded: Scenario, seed: int) -> Recorded:
 
 def replay(run: Recorded, config: TrackerConfig, seed: int) -> Scores:
     """Score a tracker on a recorded run."""
-    tracker = PeopleTracker(config, np.random.default_rng(seed))
+    tracker = ContourTracker(config, np.random.default_rng(seed))
     tracks = told_boxes(tracker.update(frame) for frame in run.frames)
     return evaluate(run.truth, tracks, frames=len(run.frames))
 

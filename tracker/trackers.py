@@ -15,6 +15,8 @@ from peopleboy.tracker.attention.attention_config import PRINTED as PRINTED_ATTE
 from peopleboy.tracker.attention.people.attentive_config import AS_FOUND
 from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
 from peopleboy.tracker.attention.people.recogniser import ByColour, ByFocus, ColourLook, Spotted
+from peopleboy.tracker.contour.contour_tracker import ContourTracker
+from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.frame import Calibration, Frame
 from peopleboy.tracker.fusion.fused_tracker import FusedTracker, ThermalDepthTracker
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
@@ -27,8 +29,6 @@ from peopleboy.tracker.panoramic.people.place_file import load_places
 from peopleboy.tracker.rgbd.rgbd_config import PRINTED, RgbdConfig
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
 from peopleboy.tracker.rgbd.verification.window_model import shipped_windows
-from peopleboy.tracker.thermal.people_tracker import PeopleTracker
-from peopleboy.tracker.thermal.variants import VARIANTS
 from peopleboy.tracker.track import Box, Track
 from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
 
@@ -96,8 +96,8 @@ def knows_again(tracker: Tracker) -> bool:
     return bool(getattr(tracker, "knows_again", False))
 
 
-def _contour_tracker(name: str, rng: np.random.Generator) -> PeopleTracker:
-    return PeopleTracker(VARIANTS[name], rng)
+def _contour_tracker(name: str, rng: np.random.Generator) -> ContourTracker:
+    return ContourTracker(VARIANTS[name], rng)
 
 
 def _by_detection_tracker(rng: np.random.Generator) -> DetectionTracker:  # noqa: ARG001

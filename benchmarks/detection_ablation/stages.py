@@ -8,12 +8,12 @@ from typing import Final
 import numpy as np
 
 from benchmarks.peers.detectors import Blobs
+from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.proposals.detector import SMALLEST_PX, Grey, PeopleDetector, look
 from peopleboy.tracker.proposals.looks.second_look import look_again, shipped_network
 from peopleboy.tracker.proposals.model import shipped_model
 from peopleboy.tracker.proposals.suppression import Proposals
-from peopleboy.tracker.thermal.mount import Mount
 from peopleboy.tracker.tracking.config import DetectionTrackerConfig
 from peopleboy.tracker.tracking.people_finder import Finder, ThermalFinder
 

@@ -14,9 +14,9 @@ from benchmarks.peers.detectors import Blobs, Boxes, Detections, Hog, Oracle
 from benchmarks.peers.joint_filter import JointFilter
 from benchmarks.peers.ours import Contestant, Ours
 from peopleboy.sim.random_streams import stream
+from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.thermal.variants import VARIANTS
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 RATE_HZ = 15.0

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.truth.scenes import SEEN
+from peopleboy.tracker.contour.colour_config import ROBOT_AFFINE
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
-from peopleboy.tracker.thermal.colour_config import ROBOT_AFFINE
 
 Boxes = NDArray[np.float64]
 TRUTH_PER_HEIGHT = 0.27  # width of a box of the truth over its height, mean of the library

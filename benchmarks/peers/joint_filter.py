@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.peers.detectors import Boxes
-from peopleboy.tracker.frame import THERMAL, Frame
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel, fitness, probability
-from peopleboy.tracker.thermal.particle_filter import (
+from peopleboy.tracker.contour.box_interaction import box_of, detector_factor, regions_of
+from peopleboy.tracker.contour.measurement.likelihood import ContourModel, fitness, probability
+from peopleboy.tracker.contour.particle_filter import (
     OUTSIDE_WEIGHT,
     Belief,
     FrameView,
@@ -27,10 +27,10 @@ from peopleboy.tracker.thermal.particle_filter import (
     view_frame,
     weigh,
 )
-from peopleboy.tracker.thermal.particles import Floats, equally_weighted, mean_state, uncertainty_px2
-from peopleboy.tracker.thermal.tracked_person import is_born, is_kept
-from peopleboy.tracker.thermal.variants import THESIS
-from peopleboy.tracker.thermal.whereabouts import box_of, detector_factor, regions_of
+from peopleboy.tracker.contour.particles import Floats, equally_weighted, mean_state, uncertainty_px2
+from peopleboy.tracker.contour.tracked_person import is_born, is_kept
+from peopleboy.tracker.contour.variants import THESIS
+from peopleboy.tracker.frame import THERMAL, Frame
 
 # Of the chain for each person. It rejects most proposals: with 1000, as many as the literal tracker has
 # samples, it finds half as many people.

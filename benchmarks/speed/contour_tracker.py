@@ -15,15 +15,15 @@ from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
+from peopleboy.tracker.contour.appearance.appearance_model import ColourModel, likelihood
+from peopleboy.tracker.contour.box_interaction import overlap_shares, person_factor, regions_of
+from peopleboy.tracker.contour.contour_tracker import ContourTracker
+from peopleboy.tracker.contour.explanation import DETECTOR_KEY
+from peopleboy.tracker.contour.measurement.likelihood import ContourModel, covered_by, seen_shares
+from peopleboy.tracker.contour.particle_filter import FrameView, view_frame, weigh
+from peopleboy.tracker.contour.particles import mean_state, predict, resample
+from peopleboy.tracker.contour.variants import PEOPLEBOY
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
-from peopleboy.tracker.thermal.appearance.appearance_model import ColourModel, likelihood
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel, covered_by, seen_shares
-from peopleboy.tracker.thermal.explanation import DETECTOR_KEY
-from peopleboy.tracker.thermal.particle_filter import FrameView, view_frame, weigh
-from peopleboy.tracker.thermal.particles import mean_state, predict, resample
-from peopleboy.tracker.thermal.people_tracker import PeopleTracker
-from peopleboy.tracker.thermal.variants import PEOPLEBOY
-from peopleboy.tracker.thermal.whereabouts import overlap_shares, person_factor, regions_of
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
@@ -111,7 +111,7 @@ def _crowd_time(film: Sequence[Frame], people: int) -> CrowdTime:
     return CrowdTime(people=people, frame_ms=median(times), frames=len(times), tracked=mean(tracked))
 
 
-def people_in(tracker: PeopleTracker) -> list[int]:
+def people_in(tracker: ContourTracker) -> list[int]:
     """Give the numbers of those who have a filter."""
     return [key for key in tracker.explanation.particles if key != DETECTOR_KEY]
 
@@ -139,7 +139,7 @@ def _model_of(height_px: int, width_px: int) -> ContourModel:
     return ContourModel.build((height_px, width_px), PEOPLEBOY.contour)
 
 
-def _person_works(tracker: PeopleTracker, number: int, view: FrameView) -> dict[str, Callable[[], object]]:
+def _person_works(tracker: ContourTracker, number: int, view: FrameView) -> dict[str, Callable[[], object]]:
     config, rng = PEOPLEBOY, stream(0, "tracker")
     clouds = tracker.explanation.particles
     cloud, state = clouds[number], clouds[number].state

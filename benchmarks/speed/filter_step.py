@@ -8,10 +8,10 @@ from statistics import median
 
 import numpy as np
 
+from peopleboy.tracker.contour.measurement.likelihood import ContourModel
+from peopleboy.tracker.contour.particle_filter import begin, step, view_frame
+from peopleboy.tracker.contour.variants import PEOPLEBOY
 from peopleboy.tracker.frame import THERMAL, Frame, Odometry
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel
-from peopleboy.tracker.thermal.particle_filter import begin, step, view_frame
-from peopleboy.tracker.thermal.variants import PEOPLEBOY
 
 SHAPE = (240, 320)
 

@@ -6,8 +6,8 @@ from typing import Final
 
 from peopleboy.scenarios.footage.options import RgbdOptions, TrackOptions
 from peopleboy.scenarios.footage.track_footage import Tracked
+from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.footage.box_kinds import BoxKind
-from peopleboy.tracker.thermal.variants import VARIANTS
 from peopleboy.wording import counted
 
 _ROUND: Final = {

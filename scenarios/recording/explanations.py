@@ -13,11 +13,10 @@ from peopleboy.scenarios.drawing.palette import Rgb, track_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.recording.marks import Lines, Points, colours_of, lines_of, particle_points
 from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
+from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanation
+from peopleboy.tracker.contour.measurement.contour import FEET, SECTIONS
+from peopleboy.tracker.contour.measurement.section_evidence import Evidence, evidence_of, section_lines
 from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplanation
-from peopleboy.tracker.thermal.contour.contour import FEET, SECTIONS
-from peopleboy.tracker.thermal.contour.outline import section_lines
-from peopleboy.tracker.thermal.contour.section_evidence import Evidence, evidence_of
-from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.tracking.association import DetectionExplanation
 

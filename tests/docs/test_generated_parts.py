@@ -15,8 +15,8 @@ from peopleboy.scenarios.files.schema import people, place, reactions, robot, sc
 from peopleboy.scenarios.files.schema.people import WaypointSpec
 from peopleboy.scenarios.files.schema.robot import FaultSpec, RobotSpec
 from peopleboy.scenarios.files.schema.scenario_file import json_schema
+from peopleboy.tracker.contour import contour_config
 from peopleboy.tracker.evaluation.table import FIGURES
-from peopleboy.tracker.thermal import config
 from peopleboy.tracker.trackers import TRACKERS
 from tests.helpers.pages import DOCS
 
@@ -122,7 +122,7 @@ def test_settings_are_read_with_the_comments_above_and_beside_them() -> None:
 
 def test_the_settings_page_has_the_values_of_the_trackers() -> None:
     text = page("settings.md")
-    assert COLUMNS["peopleboy"].life.death_frames != config.LifeConfig().death_frames
+    assert COLUMNS["peopleboy"].life.death_frames != contour_config.LifeConfig().death_frames
     assert f"| **{COLUMNS['peopleboy'].life.death_frames}** |" in text
 
 

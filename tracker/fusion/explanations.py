@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation
-from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
 
 
 @dataclass(frozen=True, slots=True, eq=False)

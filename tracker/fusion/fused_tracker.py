@@ -10,6 +10,8 @@ from typing import Final
 
 import numpy as np
 
+from peopleboy.tracker.contour.contour_tracker import ContourTracker
+from peopleboy.tracker.contour.explanation import ContourExplanation
 from peopleboy.tracker.frame import DEPTH, PANORAMA, THERMAL, Calibration, Frame
 from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplanation
 from peopleboy.tracker.fusion.fused_person import (
@@ -32,8 +34,6 @@ from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracke
 from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation, RgbdTracker
-from peopleboy.tracker.thermal.explanation import ContourExplanation
-from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.track import Box, Status, Track
 
 # One track for one person ahead of the robot: by heat, and by depth with colour.
@@ -59,7 +59,7 @@ class ThermalDepthTracker:
         config: settings.
     """
 
-    def __init__(self, thermal: PeopleTracker, rgbd: RgbdTracker, config: FusionConfig) -> None:
+    def __init__(self, thermal: ContourTracker, rgbd: RgbdTracker, config: FusionConfig) -> None:
         self._config = config
         self._heat, self._depth = Heat(thermal, config), Depth(rgbd, config)
         self._pose = RobotPose()

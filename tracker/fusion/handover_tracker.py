@@ -8,6 +8,8 @@ from dataclasses import replace
 from functools import partial
 from typing import Final, Protocol
 
+from peopleboy.tracker.contour.box_interaction import standing_box
+from peopleboy.tracker.contour.explanation import ContourExplanation
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Calibration, Frame
 from peopleboy.tracker.fusion.explanations import BothExplanations
 from peopleboy.tracker.fusion.handover_links import (
@@ -21,8 +23,6 @@ from peopleboy.tracker.fusion.handover_links import (
     pairs,
 )
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
-from peopleboy.tracker.thermal.explanation import ContourExplanation
-from peopleboy.tracker.thermal.whereabouts import standing_box
 from peopleboy.tracker.track import Box, Status, Track
 
 # Whom the panoramic tracker points out to the thermal one.

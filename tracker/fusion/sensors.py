@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from peopleboy.tracker.contour.contour_tracker import ContourTracker
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Floats, Frame, FreshImages
 from peopleboy.tracker.fusion.fused_person import TALL_M, WIDE_M, SensorTrack, to_room_frame
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
@@ -16,7 +17,6 @@ from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.rgbd.hypothesis import Detection, Hypothesis
 from peopleboy.tracker.rgbd.observation_model import Body
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
-from peopleboy.tracker.thermal.people_tracker import PeopleTracker
 from peopleboy.tracker.track import Status, Track
 
 LIT: Final = 40.0
@@ -35,7 +35,7 @@ class Heat:
         config: settings.
     """
 
-    def __init__(self, tracker: PeopleTracker, config: FusionConfig) -> None:
+    def __init__(self, tracker: ContourTracker, config: FusionConfig) -> None:
         self.tracker = tracker
         self._config = config
         self._images = FreshImages(THERMAL)

@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.proposals.channels import Memory
 from peopleboy.tracker.proposals.looks.closer_look import CloserLook, look_closer, shipped_closer_look
@@ -18,7 +19,6 @@ from peopleboy.tracker.proposals.past_images import PastImages
 from peopleboy.tracker.proposals.patches import summed
 from peopleboy.tracker.proposals.pyramid import levels
 from peopleboy.tracker.proposals.suppression import NOBODY, SHARED, Proposals, suppress
-from peopleboy.tracker.thermal.mount import Mount
 
 Grey = NDArray[np.uint8]
 

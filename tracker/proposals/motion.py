@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.thermal.mount import Mount
+from peopleboy.tracker.camera_mount import Mount
 
 Grey = NDArray[np.uint8]
 Matrix = NDArray[np.float64]

@@ -7,9 +7,9 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.proposals.motion import Grey, change, shifted, turned
-from peopleboy.tracker.thermal.mount import Mount
 
 EARLIER_S: Final = 0.2
 """Age of the image that the present one is compared with."""

@@ -12,6 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.proposals.channels import BESIDE, OVER, Cells, Image, Memory, channels, noise_of
 from peopleboy.tracker.proposals.window import (
     CELL_PX,
@@ -24,7 +25,6 @@ from peopleboy.tracker.proposals.window import (
     cells_of,
     row_of,
 )
-from peopleboy.tracker.thermal.mount import Mount
 
 STEP: Final = 2.0 ** (1.0 / 3.0)
 """Between the sizes of people of one level and the next."""

@@ -9,10 +9,10 @@ import cv2
 import numpy as np
 
 from peopleboy.tracker.boxes import area, iou, shared_of_smaller
+from peopleboy.tracker.camera_mount import mount_of
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, FreshImages, Odometry, PinholeCalibration, joined
 from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.proposals.suppression import NOBODY, Proposals
-from peopleboy.tracker.thermal.mount import mount_of
 from peopleboy.tracker.tracking.appearance import transfer_boxes
 from peopleboy.tracker.tracking.config import ColourDetectionConfig, DetectionTrackerConfig
 from peopleboy.tracker.tracking.viewpoint import Viewpoint

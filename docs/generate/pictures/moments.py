@@ -13,7 +13,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
-from peopleboy.tracker.thermal.explanation import ContourExplanation
+from peopleboy.tracker.contour.explanation import ContourExplanation
 from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
 CROSSING = ("crossing_2", 3)

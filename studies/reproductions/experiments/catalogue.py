@@ -23,7 +23,7 @@ from peopleboy.studies.reproductions.measuring.readings import AS_READ, READINGS
 from peopleboy.studies.reproductions.measuring.tracker_settings import Changes, Setting, Value
 from peopleboy.studies.reproductions.measuring.units import Count
 from peopleboy.studies.reproductions.measuring.workload import TRAINING
-from peopleboy.tracker.thermal.occlusion.pair_features import COLOUR, FEATURES, THERMAL
+from peopleboy.tracker.contour.occlusion.pair_features import COLOUR, FEATURES, THERMAL
 
 LITERAL, OURS = "literal", "default"
 """The source's tracker, and ours."""

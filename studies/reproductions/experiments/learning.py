@@ -12,8 +12,8 @@ from peopleboy.studies.reproductions.measuring.tracker_settings import Setting
 from peopleboy.studies.reproductions.measuring.units import Unit
 from peopleboy.studies.reproductions.measuring.workload import Plan
 from peopleboy.studies.training.occlusion_learning.train_occlusion import SCENARIOS
-from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES
-from peopleboy.tracker.thermal.occlusion.weak_classifiers import weighted_sums
+from peopleboy.tracker.contour.occlusion.pair_features import FEATURES
+from peopleboy.tracker.contour.occlusion.weak_classifiers import weighted_sums
 
 SHARE = "right [%]"
 CLASSIFIERS, PAIRS = "weak classifiers", "pairs"

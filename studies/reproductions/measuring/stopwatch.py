@@ -20,13 +20,12 @@ from peopleboy.tracker.attention.feature_maps import feature_maps
 from peopleboy.tracker.attention.image_sums import Sight
 from peopleboy.tracker.attention.people.recogniser import ColourLook
 from peopleboy.tracker.attention.people.views import View
-from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
-from peopleboy.tracker.thermal.appearance.appearance_model import ColourModel, likelihood
-from peopleboy.tracker.thermal.appearance.colour_view import ColourView, PowerSums
-from peopleboy.tracker.thermal.colour_config import ColourConfig
-from peopleboy.tracker.thermal.config import TrackerConfig
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel, fitness, probability
-from peopleboy.tracker.thermal.particle_filter import (
+from peopleboy.tracker.contour.appearance.appearance_model import ColourModel, likelihood
+from peopleboy.tracker.contour.appearance.colour_view import ColourView, PowerSums
+from peopleboy.tracker.contour.colour_config import ColourConfig
+from peopleboy.tracker.contour.contour_config import TrackerConfig
+from peopleboy.tracker.contour.measurement.likelihood import ContourModel, fitness, probability
+from peopleboy.tracker.contour.particle_filter import (
     advance,
     begin,
     is_within,
@@ -34,7 +33,7 @@ from peopleboy.tracker.thermal.particle_filter import (
     step,
     view_frame,
 )
-from peopleboy.tracker.thermal.particles import (
+from peopleboy.tracker.contour.particles import (
     Particles,
     limits_px,
     mean_state,
@@ -42,6 +41,7 @@ from peopleboy.tracker.thermal.particles import (
     resample,
     uncertainty_px2,
 )
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
 
 SHAPE = (240, 320)
 COUNT = 1000

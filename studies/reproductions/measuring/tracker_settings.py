@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.thermal.config import (
+from peopleboy.tracker.contour.contour_config import (
     DepthConfig,
     HeightConfig,
     InteractionConfig,
     StayBehindConfig,
     TrackerConfig,
 )
-from peopleboy.tracker.thermal.people_tracker import PeopleTracker
-from peopleboy.tracker.thermal.variants import PAPER, PEOPLEBOY, THESIS, THESIS_COLOUR, THESIS_OCCLUSION
+from peopleboy.tracker.contour.contour_tracker import ContourTracker
+from peopleboy.tracker.contour.variants import PAPER, PEOPLEBOY, THESIS, THESIS_COLOUR, THESIS_OCCLUSION
 
 Value = float | int | str | bool | tuple[float, ...] | None
 Changes = tuple[tuple[str, Value], ...]
@@ -71,9 +71,9 @@ class Setting:
             config = changed(config, path, value)
         return config
 
-    def make(self, rng: np.random.Generator) -> PeopleTracker:
+    def make(self, rng: np.random.Generator) -> ContourTracker:
         """Make the tracker."""
-        return PeopleTracker(self.config(), rng)
+        return ContourTracker(self.config(), rng)
 
 
 def changed(record: Any, path: str, value: Value) -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 from peopleboy.studies.training.look_learning.electronics import through_electronics
 from peopleboy.studies.training.people_learning.cut_off import cut_off
 from peopleboy.studies.training.people_learning.shots import PeopleShot
-from peopleboy.tracker.thermal.mount import Mount
+from peopleboy.tracker.camera_mount import Mount
 
 _AS_IT_IS: Final = 0.25  # of them
 _CUT: Final = 0.25  # end in the middle of somebody

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from peopleboy.studies.training.occlusion_learning.occlusion_pairs import PairExample, mirrored
-from peopleboy.tracker.thermal.occlusion.learned_order import LearnedOrder
-from peopleboy.tracker.thermal.occlusion.learned_table import LearnedTable
-from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES, Features
+from peopleboy.tracker.contour.occlusion.learned_order import LearnedOrder
+from peopleboy.tracker.contour.occlusion.learned_table import LearnedTable
+from peopleboy.tracker.contour.occlusion.pair_features import FEATURES, Features
 
 PAIRS = 121
 """How many pairs the thesis has; with their mirror images, 242 examples."""
@@ -85,7 +85,7 @@ def learn_split(
         rounds: of boosting; a single feature is one weak classifier, and boosting has nothing to add to it.
         rng: draws the splits.
     """
-    from peopleboy.tracker.thermal.occlusion.boosting import train  # only learning needs scikit-learn
+    from peopleboy.tracker.contour.occlusion.boosting import train  # only learning needs scikit-learn
 
     right, tables = [], []
     for split in (random_split(examples, rng), split_by_scenario(examples, rng)):

@@ -13,12 +13,12 @@ from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.thermal.config import TrackerConfig
-from peopleboy.tracker.thermal.occlusion.depth_order import ExpectedPerson, Leads, Order, lower_foot
-from peopleboy.tracker.thermal.occlusion.learned_order import features_of
-from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES, Features, overlapping_pairs
-from peopleboy.tracker.thermal.particle_filter import FrameView
-from peopleboy.tracker.thermal.people_tracker import PeopleTracker
+from peopleboy.tracker.contour.contour_config import TrackerConfig
+from peopleboy.tracker.contour.contour_tracker import ContourTracker
+from peopleboy.tracker.contour.occlusion.depth_order import ExpectedPerson, Leads, Order, lower_foot
+from peopleboy.tracker.contour.occlusion.learned_order import features_of
+from peopleboy.tracker.contour.occlusion.pair_features import FEATURES, Features, overlapping_pairs
+from peopleboy.tracker.contour.particle_filter import FrameView
 
 # A tracked person is the true one whose box it overlaps most, and by at least this (thesis, section 3.4).
 _LEAST_IOU = 0.5
@@ -119,7 +119,7 @@ def collect(scenario: str, seed: int, config: TrackerConfig) -> Iterator[PairExa
 
     loaded = load_scenario(scenario)
     order, episodes = RecordingOrder(config.depth.remembers_feet), Episodes()
-    people = PeopleTracker(config, stream(seed, "tracker"), order)
+    people = ContourTracker(config, stream(seed, "tracker"), order)
     with World(loaded.world(seed)) as world:
         frames = round(loaded.duration_s * world.config.control_hz)
         for tick in closed_loop(world, people, loaded.make_behaviour(), frames):

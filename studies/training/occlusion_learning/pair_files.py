@@ -10,7 +10,7 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.studies.training.occlusion_learning.occlusion_pairs import PairExample
-from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES
+from peopleboy.tracker.contour.occlusion.pair_features import FEATURES
 
 _COLUMNS = ("scenario", "seed", "frame", "one", "other", *FEATURES, "is_front")
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from peopleboy.scenarios.running.engine.task import Tell
 from peopleboy.studies.training.occlusion_learning.occlusion_pairs import PairExample, collect
-from peopleboy.tracker.thermal.config import TrackerConfig
+from peopleboy.tracker.contour.contour_config import TrackerConfig
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,8 @@ from rich.table import Table
 from scipy.stats import ttest_rel
 
 from peopleboy.studies.training.occlusion_learning.train_occlusion import Trial
-from peopleboy.tracker.thermal.occlusion.learned_table import LearnedTable
-from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES
+from peopleboy.tracker.contour.occlusion.learned_table import LearnedTable
+from peopleboy.tracker.contour.occlusion.pair_features import FEATURES
 
 _TITLES = {
     "7.1": "Table 7.1: type of features [%]",

@@ -10,9 +10,9 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.random_streams import stream
 from peopleboy.studies.training.occlusion_learning.example_splits import accuracy, learn_split
 from peopleboy.studies.training.occlusion_learning.occlusion_pairs import PairExample, mirrored
-from peopleboy.tracker.thermal.occlusion.learned_table import LearnedTable
-from peopleboy.tracker.thermal.occlusion.pair_features import COLOUR, FEATURES, THERMAL
-from peopleboy.tracker.thermal.occlusion.weak_classifiers import weighted_sums
+from peopleboy.tracker.contour.occlusion.learned_table import LearnedTable
+from peopleboy.tracker.contour.occlusion.pair_features import COLOUR, FEATURES, THERMAL
+from peopleboy.tracker.contour.occlusion.weak_classifiers import weighted_sums
 
 SCENARIOS = (
     "crossing_pair",
@@ -127,7 +127,7 @@ def learn(examples: Sequence[PairExample], *, rounds: int = 40) -> LearnedTable:
     Raises:
         BadInput: too few examples.
     """
-    from peopleboy.tracker.thermal.occlusion.boosting import train  # only learning needs scikit-learn
+    from peopleboy.tracker.contour.occlusion.boosting import train  # only learning needs scikit-learn
 
     check_examples(examples)
     table = train(*mirrored(examples), rounds=rounds)
@@ -142,7 +142,7 @@ def learn(examples: Sequence[PairExample], *, rounds: int = 40) -> LearnedTable:
 
 def _right_left_out(examples: Sequence[PairExample], rounds: int) -> float:
     """Leave one scenario out after the other, and give the share of right answers [%] on all of them."""
-    from peopleboy.tracker.thermal.occlusion.boosting import train
+    from peopleboy.tracker.contour.occlusion.boosting import train
 
     right = 0.0
     for name, count in Counter(example.scenario for example in examples).items():

@@ -16,10 +16,10 @@ from peopleboy.scenarios.run_folder.output import whole
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.tracker.camera_mount import Mount, mount_of
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.proposals.motion import change, turned
 from peopleboy.tracker.proposals.past_images import EARLIER_S
-from peopleboy.tracker.thermal.mount import Mount, mount_of
 
 Floats = NDArray[np.float64]
 Grey = NDArray[np.uint8]

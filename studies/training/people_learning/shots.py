@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.studies.training.people_learning.people_film import PeopleFilm
-from peopleboy.tracker.thermal.mount import Mount
+from peopleboy.tracker.camera_mount import Mount
 
 Floats = NDArray[np.float64]
 Grey = NDArray[np.uint8]

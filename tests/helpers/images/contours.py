@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from peopleboy.tracker.thermal.config import BoxConfig
-from peopleboy.tracker.thermal.variants import PEOPLEBOY
+from peopleboy.tracker.contour.contour_config import BoxConfig
+from peopleboy.tracker.contour.variants import PEOPLEBOY
 from peopleboy.tracker.track import Track
 
 

@@ -19,10 +19,9 @@ from peopleboy.sim.observation import Observation
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.truth.truth import Owners, PersonTruth, Truth
-from peopleboy.tracker.thermal.ellipse import Ellipse
-from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
-from peopleboy.tracker.thermal.particles import Particles
-from peopleboy.tracker.thermal.variants import PEOPLEBOY
+from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanation, Ellipse
+from peopleboy.tracker.contour.particles import Particles
+from peopleboy.tracker.contour.variants import PEOPLEBOY
 from peopleboy.tracker.track import Status, Track
 
 CAMERA = Pinhole()

@@ -24,8 +24,8 @@ from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
-from peopleboy.tracker.thermal.contour.outline import section_lines
-from peopleboy.tracker.thermal.variants import VARIANTS
+from peopleboy.tracker.contour.measurement.section_evidence import section_lines
+from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.trackers import make_tracker
 from tests.helpers.runs import synthetic_ticks as made
 

@@ -11,8 +11,8 @@ from peopleboy.studies.reproductions.pictures.tracking_figures import (
     shared,
     stretches,
 )
-from peopleboy.tracker.thermal.particles import draw_prior
-from peopleboy.tracker.thermal.variants import THESIS
+from peopleboy.tracker.contour.particles import draw_prior
+from peopleboy.tracker.contour.variants import THESIS
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.studies.reproductions.measuring.tracker_settings import BASES
 from peopleboy.studies.reproductions.tune import RESULTS, TrainingFilms, Tuned, tune
 from peopleboy.studies.reproductions.tuned_parameters import PARAMETERS, chosen_parameters
-from peopleboy.tracker.thermal.contour.contour import section_weights
+from peopleboy.tracker.contour.measurement.contour import section_weights
 from tests.helpers.calls.command_line import refusal
 from tests.helpers.calls.refused import refused
 

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.contour.explanation import ContourExplanation
+from peopleboy.tracker.contour.variants import PEOPLEBOY
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, PANORAMA, THERMAL, Frame, Odometry
 from peopleboy.tracker.fusion.fused_tracker import FusedTracker, ThermalDepthTracker
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
 from peopleboy.tracker.rgbd.observation_model import BINS, Body
-from peopleboy.tracker.thermal.explanation import ContourExplanation
-from peopleboy.tracker.thermal.variants import PEOPLEBOY
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 from tests.helpers.depth_scene import FOCAL_PX, HEIGHT, WIDTH, Block, depth_of, make_view
 from tests.helpers.images.cardboard import CAMERA

@@ -10,6 +10,9 @@ from hypothesis import strategies as st
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.sim.robot.robot_config import RobotConfig
+from peopleboy.tracker.contour.box_interaction import standing_box
+from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanation
+from peopleboy.tracker.contour.variants import PEOPLEBOY
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
 from peopleboy.tracker.fusion.explanations import BothExplanations
 from peopleboy.tracker.fusion.handover_tracker import (
@@ -20,9 +23,6 @@ from peopleboy.tracker.fusion.handover_tracker import (
     HandoverTracker,
 )
 from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
-from peopleboy.tracker.thermal.explanation import DETECTOR_KEY, ContourExplanation
-from peopleboy.tracker.thermal.variants import PEOPLEBOY
-from peopleboy.tracker.thermal.whereabouts import standing_box
 from peopleboy.tracker.track import Status
 from tests.helpers.images.cardboard import CAMERA
 from tests.helpers.runs.hand_made_tracks import track

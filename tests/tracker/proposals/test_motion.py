@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from peopleboy.tracker.camera_mount import mount_of
 from peopleboy.tracker.frame import PinholeCalibration
 from peopleboy.tracker.proposals.motion import change, shifted, turned
-from peopleboy.tracker.thermal.mount import mount_of
 
 ROWS, COLUMNS, FOCAL = 120, 160, 150.0
 

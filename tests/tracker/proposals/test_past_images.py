@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.proposals.motion import Grey
 from peopleboy.tracker.proposals.past_images import PastImages
-from peopleboy.tracker.thermal.mount import Mount
 
 
 def plain(value: int) -> Grey:

@@ -3,10 +3,10 @@ import pytest
 from numpy.typing import NDArray
 
 from peopleboy.tracker.boxes import shared_of_smaller
+from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.proposals.channels import CHANNELS, OVER
 from peopleboy.tracker.proposals.pyramid import STEP, levels
 from peopleboy.tracker.proposals.window import COLUMNS, PERSON_PX, ROWS, Kind, boxes_of, cells_of
-from peopleboy.tracker.thermal.mount import Mount
 
 GREY: NDArray[np.uint8] = np.kron(
     np.random.default_rng(0).integers(0, 256, (60, 80)), np.ones((4, 4))

@@ -14,8 +14,8 @@ from peopleboy.tracker.attention.attend import Focus, PersonModel, learn, search
 from peopleboy.tracker.attention.attention_config import AttentionConfig
 from peopleboy.tracker.attention.image_sums import Sight
 from peopleboy.tracker.attention.people.views import View
+from peopleboy.tracker.contour.explanation import ContourExplanation
 from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplanation
-from peopleboy.tracker.thermal.explanation import ContourExplanation
 
 TRACKING_ATTENTION: Final = AttentionConfig(scales=(0.64, 0.8, 1.0, 1.25, 1.56))
 

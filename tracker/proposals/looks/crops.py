@@ -10,9 +10,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.proposals.window import Floats
-from peopleboy.tracker.thermal.mount import Mount
 
 Grey = NDArray[np.uint8]
 Crops = NDArray[np.uint8]

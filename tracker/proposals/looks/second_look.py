@@ -9,6 +9,7 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.proposals.looks.convolution import Desk
 from peopleboy.tracker.proposals.looks.crops import (
     NUMBERS,
@@ -23,7 +24,6 @@ from peopleboy.tracker.proposals.looks.network import CropNetwork, Form, Layer
 from peopleboy.tracker.proposals.placing import OFFSETS, moved
 from peopleboy.tracker.proposals.suppression import Proposals, suppress
 from peopleboy.tracker.proposals.window import Floats
-from peopleboy.tracker.thermal.mount import Mount
 
 Grey = NDArray[np.uint8]
 

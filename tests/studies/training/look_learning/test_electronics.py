@@ -12,7 +12,7 @@ from peopleboy.studies.training.look_learning.electronics import (
     through_electronics,
 )
 from peopleboy.studies.training.people_learning.shots import PeopleShot
-from peopleboy.tracker.thermal.mount import Mount
+from peopleboy.tracker.camera_mount import Mount
 
 
 def drawn_shot(seed: int = 0) -> PeopleShot:

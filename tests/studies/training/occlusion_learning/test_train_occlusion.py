@@ -26,7 +26,7 @@ from peopleboy.studies.training.occlusion_learning.train_occlusion import (
     learn,
     run_trials,
 )
-from peopleboy.tracker.thermal.occlusion.learned_table import LearnedTable
+from peopleboy.tracker.contour.occlusion.learned_table import LearnedTable
 from tests.helpers.calls.refused import refused
 from tests.helpers.runs.synthetic_ticks import person
 

@@ -5,7 +5,7 @@ import pytest
 
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.studies.training.people_learning.people_film import PeopleFilm, film_upright
-from peopleboy.tracker.thermal.mount import Mount
+from peopleboy.tracker.camera_mount import Mount
 
 
 @pytest.mark.slow

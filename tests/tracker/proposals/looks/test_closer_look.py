@@ -4,9 +4,9 @@ import cv2
 import numpy as np
 
 from peopleboy.tracker.boxes import iou
+from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.proposals.looks.closer_look import CloserLook, look_closer, shipped_closer_look
 from peopleboy.tracker.proposals.suppression import Proposals
-from peopleboy.tracker.thermal.mount import Mount
 from tests.helpers.images.drawn_looks import drawn_weights
 
 PAGE = Path(__file__).parents[4] / "docs" / "how" / "proposals.md"

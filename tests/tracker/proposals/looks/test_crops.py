@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
+from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.proposals.looks.crops import NUMBERS, PLANES, CropSize, crops_of, numbers_of, planes_of
 from peopleboy.tracker.proposals.suppression import Proposals
-from peopleboy.tracker.thermal.mount import Mount
 
 SIZE = CropSize(64, 48, 1.4)
 ROWS, COLUMNS, _ = SIZE

@@ -1,0 +1,57 @@
+"""How the thermal camera sits on the robot, as far as rows and sizes of people in its image depend on it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from peopleboy.tracker.frame import Calibration, PinholeCalibration
+
+USUAL_HEIGHT_M: Final = 1.2  # above the floor, for which the limits of the variants are given
+VIEW_ANGLE_DEG: Final = 44.0  # vertical, of a camera of which nothing is known
+STATURES_M: Final = (2.0, 1.5)  # of the tallest and of the smallest people who are looked for
+_NEAR_M: Final = 3.0
+_FAR: Final = 100.0  # [image heights] beyond which it does not matter where the horizon is
+
+
+@dataclass(frozen=True, slots=True)
+class Mount:
+    """Where a camera looks from.
+
+    Attributes:
+        horizon_px: row of the horizon [px]; it may lie outside the image.
+        focal_px: focal length [px].
+        height_m: of the camera above the floor [m].
+    """
+
+    horizon_px: float
+    focal_px: float
+    height_m: float
+
+    @property
+    def cuts_heads(self) -> bool:
+        """Whether the image ends below the heads of tall people who are not very near."""
+        return self.horizon_px < self.focal_px * (STATURES_M[0] - self.height_m) / _NEAR_M
+
+
+def mount_of(calibration: Calibration | None, rows: int) -> Mount:
+    """Tell how a camera sits; one of which nothing is known is level, and as the robot's own.
+
+    Args:
+        calibration: of the camera; None if nobody knows it.
+        rows: height of its image [px].
+    """
+    if not isinstance(calibration, PinholeCalibration):
+        focal = rows / 2 / math.tan(math.radians(VIEW_ANGLE_DEG) / 2)
+        return Mount((rows - 1) / 2, focal, USUAL_HEIGHT_M)
+    column = calibration.intrinsics[0, 2]
+    top, bottom = calibration.rays(np.array([[column, 0.0], [column, rows - 1.0]]))[:, 2].tolist()
+    # A camera that looks straight down or up has its horizon nowhere, which is as good as far away.
+    far = _FAR * rows
+    away = (rows - 1) * top / (top - bottom) if top != bottom else math.copysign(far, top)
+    # Rounded, as a level camera's horizon is to be the middle of its image to the last bit.
+    horizon = round(max(-far, min(away, far)), 6)
+    return Mount(horizon, float(calibration.intrinsics[1, 1]), calibration.position_m[2])

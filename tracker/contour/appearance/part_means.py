@@ -1,0 +1,147 @@
+"""The mean of an image over head, torso and legs of many people at once."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.tracker.contour.appearance.regions import (
+    HEAD,
+    PARTS,
+    TORSO,
+    align,
+    first_pixel_after,
+    part_rectangle,
+)
+from peopleboy.tracker.contour.measurement.image_kernels import bodies_of
+from peopleboy.tracker.contour.particles import D, Floats, H, W, X, Y
+
+WHITE: Final = 255.0
+
+
+@njit(cache=True, nogil=True)
+def write_part_means(
+    means: Floats,
+    column: int,
+    state: Floats,
+    alignment: Floats,
+    integral: NDArray[np.integer[Any]],
+    channels: tuple[int, ...],
+    scale: Floats,
+    least_seen: float,
+) -> None:
+    """Write the scaled mean of each of an image's C channels over each part of people, in place.
+
+    What `ColourView.describe` says as the first moments, to the last bit, without arrays in between.
+
+    Args:
+        means: (N, 3, F) whose columns from `column` on take the means; NaN where too little of a part is in
+            the image.
+        column: of the first channel.
+        state: (N, 9) contours in the thermal image.
+        alignment: (2, 4) from the thermal image to this one.
+        integral: (H + 1, W + 1, C, K) of `PowerSums`.
+        channels: where the first power of each channel is among those of a pixel.
+        scale: (3, F) by which the means, 0..1, are multiplied.
+        least_seen: share of the part's area that must lie in the image.
+    """
+    height, width = integral.shape[:2]
+    sums, step = integral.reshape(-1), integral.shape[2] * integral.shape[3]
+    twin, bodies = bodies_of(state)
+    corners, share = np.empty((4, len(state)), dtype=np.int32), np.empty(len(state))
+    total = np.empty((len(channels), len(state)), dtype=sums.dtype)
+    mean = np.empty(len(state), dtype=np.float32)
+    for first, end, rows in ((HEAD, TORSO, np.arange(len(state))), (TORSO, PARTS, bodies)):
+        shape = _columns(state, rows)
+        for part in range(first, end):
+            _locate(corners, share, shape, part, alignment, width - 1, height - 1, least_seen)
+            _add_up(total, sums, corners, step, channels, len(rows))
+            for c in range(len(channels)):
+                factor, counted = scale[part, column + c], total[c]
+                for n in range(np.uint64(len(rows))):
+                    mean[n] = np.float32(counted[n] * share[n] / WHITE) * factor
+                for n in range(np.uint64(len(rows))):
+                    means[np.uint64(rows[n]), part, column + c] = mean[n]
+    for i in range(len(state)):
+        if twin[i] >= 0:  # nothing but the head lies elsewhere for another d
+            for part in range(TORSO, PARTS):
+                for c in range(column, column + len(channels)):
+                    means[i, part, c] = means[twin[i], part, c]
+
+
+@njit(cache=True, nogil=True)
+def _columns(state: Floats, rows: NDArray[np.int64]) -> Floats:
+    """Give x, y, w, h and d (5, M) of the samples (N, 9) in some rows."""
+    shape = np.empty((5, len(rows)), dtype=np.float32)
+    for n in range(len(rows)):
+        i = rows[n]
+        shape[0, n], shape[1, n], shape[2, n] = state[i, X], state[i, Y], state[i, W]
+        shape[3, n], shape[4, n] = state[i, H], state[i, D]
+    return shape
+
+
+@njit(cache=True, nogil=True)
+def _add_up(
+    total: NDArray[np.integer[Any]],
+    sums: NDArray[np.integer[Any]],
+    corners: NDArray[np.int32],
+    step: int,
+    channels: tuple[int, ...],
+    count: int,
+) -> None:
+    """Sum channels (C, M) over the first parts (M,), whose corners are those of `_locate`."""
+    # Unsigned, as numba would ask of every other number whether it counts from the end.
+    for n in range(np.uint64(count)):
+        a, b = np.uint64(corners[0, n]) * np.uint64(step), np.uint64(corners[1, n]) * np.uint64(step)
+        c, d = np.uint64(corners[2, n]) * np.uint64(step), np.uint64(corners[3, n]) * np.uint64(step)
+        for k in range(len(channels)):
+            at = np.uint64(channels[k])
+            total[np.uint64(k), n] = sums[a + at] + sums[b + at] - (sums[c + at] + sums[d + at])
+
+
+# Without numpy's rules a kernel would test every division.
+@njit(cache=True, nogil=True, error_model="numpy")
+def _locate(
+    corners: NDArray[np.int32],
+    share: NDArray[np.float64],
+    shape: Floats,
+    part: int,
+    alignment: Floats,
+    width: int,
+    height: int,
+    least_seen: float,
+) -> None:
+    """Find one part of people in an image of that size, for many at a time and without branches.
+
+    Args:
+        corners: takes (4, M) pixels of the integral image: the lower right and upper left one, which count,
+            and the upper right and lower left one, which are taken off.
+        share: takes (M,) one pixel's share of the part's mean; NaN where too little of it is in the image.
+        shape: (5, M) of `_columns`.
+        part: which.
+        alignment: (2, 4) from the thermal image to this one.
+        width: of the image.
+        height: of the image.
+        least_seen: share of the part's area that must lie in the image.
+    """
+    none, most_right, most_down = np.int32(0), np.int32(width), np.int32(height)
+    columns = np.int32(width + 1)
+    # Unsigned, as numba would ask of every other number whether it counts from the end.
+    for n in range(np.uint64(shape.shape[1])):
+        x, y, w, h, d = shape[0, n], shape[1, n], shape[2, n], shape[3, n], shape[4, n]
+        edges = align(alignment, part_rectangle(x, y, w, h, d, part), h)
+        left, top = first_pixel_after(edges[0]), first_pixel_after(edges[1])
+        right, bottom = first_pixel_after(edges[2]), first_pixel_after(edges[3])
+        wide, tall = np.int32(right - left), np.int32(bottom - top)
+        area = np.float64(max(wide, none)) * np.float64(max(tall, none))
+        left, top = min(max(left, none), most_right), min(max(top, none), most_down)
+        right, bottom = max(left, min(right, most_right)), max(top, min(bottom, most_down))
+        # Cut to 32 bits at once, or numba would reckon with 64.
+        pixels = np.int32((right - left) * (bottom - top))
+        share[n] = 1.0 / pixels if (pixels > 0) & (pixels >= least_seen * area) else np.nan
+        upper, lower = np.int32(top * columns), np.int32(bottom * columns)
+        corners[0, n], corners[1, n] = np.int32(lower + right), np.int32(upper + left)
+        corners[2, n], corners[3, n] = np.int32(upper + right), np.int32(lower + left)

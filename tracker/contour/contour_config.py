@@ -1,0 +1,318 @@
+"""In what the variants of the tracker differ; each is a value of these records.
+
+Pixels are meant for an image of 240 rows and are scaled by image height / 240.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.contour.colour_config import (
+    ColourConfig,
+    check_not_negative,
+    check_positive,
+    check_share,
+    refuse_unless,
+)
+
+REFERENCE_HEIGHT_PX = 240
+"""Image height for which the sources give their constants."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContourConfig:
+    """Where a contour is looked at, and how a difference of grey counts.
+
+    The thesis says that inner and outer pixels along the ellipses are compared; how far from the contour, at
+    how many points, and where the sides end, it leaves open: `reach_px`, `points` and `side_end_deg` are
+    readings.
+    """
+
+    points: int = 8  # pairs of inner and outer points a section
+    side_end_deg: float = 180.0  # where the sides end: 180 is the bottom of the body
+    reach_px: float = 2.0  # distance of the points from the contour, whatever its size
+    body_reach: tuple[float, ...] = (0.0,)  # plus this share of the body's semi-width; the points take turns
+    head_reach: tuple[float, ...] = (0.0,)  # plus this share of the head's semi-width
+    inner_depth: float = 1.0  # distance of the inner points as a share of that of the outer ones
+    far_head_reach: float = 0.0  # distance of a second outer point at the head; 0 is none
+    saturation_grey: float = 0.0  # difference at which the response bends, tanh; 0 keeps it linear
+    is_cut_off: bool = False  # whether it is linear up to there, and flat from there on, instead
+    # Clutters (`likelihood.clutter_of`) at which the response bends, if that is more: what differs no more
+    # than the image does everywhere says little.
+    clutter_share: float = 0.0
+    # What a body colder than its surroundings counts: 1 against a person, 0 nothing, -1 for one.
+    cold_response: float = 1.0
+    # alpha of equation 4.3: the head's left, top and right, the shoulders, the sides; scaled to add up to 1.
+    section_weights: tuple[float, ...] = (0.18, 0.18, 0.18, 0.07, 0.07, 0.16, 0.16)
+    feet_weight: float = 0.0  # of an eighth section, the line under the feet; the others add up to 1
+    unseen_response: float = 0.0  # response of a point outside the image
+    # Weight of such a point above the image; for what it lacks to 1, the points inside speak. Not below, or
+    # people would grow until all but their shoulders is out of sight.
+    unseen_share: float = 1.0
+    cut_share: float = 1.0  # the same for a camera that cuts off heads, or of which that is not known
+    hottest_grey: int = 256  # grey from which a surface is too hot for a person and counts as cold
+    dark_share: float = 0.0  # share of the image that is black if the scale ends there; 0: it always does
+    hot_margin_px: int = 0  # so do the pixels around it, whose grey is a blend
+
+    def __post_init__(self) -> None:
+        check_positive(self, "points")
+        check_not_negative(
+            self,
+            "saturation_grey",
+            "reach_px",
+            "inner_depth",
+            "far_head_reach",
+            "feet_weight",
+            "clutter_share",
+        )
+        check_share(self, "unseen_share", "cut_share", "dark_share")
+        weights = self.section_weights
+        is_right = len(weights) == 7 and min(weights) >= 0 and sum(weights) > 0
+        refuse_unless(is_right, self, "section_weights", "seven, none negative and not all 0")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LimitsConfig:
+    """What proportions and places a sample may have (thesis, table in section 4.4)."""
+
+    ratio_wh: tuple[float, float] = (0.1, 0.9)
+    ratio_dw: tuple[float, float] = (-1.5, 1.5)
+    y: tuple[float, float] = (0.2, 0.8)  # [image heights]
+    h: tuple[float, float] = (0.02, 0.5)  # [image heights]; the sources name no largest
+    horizon: float = 0.5  # [image heights] row of the horizon: the middle, for a level camera
+    # [body semi-heights]: where people who stand on the floor are.
+    y_below_horizon: tuple[float, float] = (-math.inf, math.inf)
+    # [image heights squared] of what these limits are wider by: c0 + c1 h + c2 h^2, with h in image heights.
+    floor_variance: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        for name in ("ratio_wh", "ratio_dw", "y", "h"):
+            low, high = getattr(self, name)
+            if not (math.isfinite(low) and math.isfinite(high) and low < high):
+                raise BadInput(f"LimitsConfig: {name} must be low < high, got {low}..{high}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LikelihoodConfig:
+    """How the section differences become a weight and a probability."""
+
+    model: str = "thesis"  # "thesis": equations 4.3 and 4.4; "paper": equations 3 and 4
+    slope: float = 0.125  # kappa
+    threshold: float = 22.0  # theta, in the unit of the section differences
+    section_threshold: float = 10.0  # t_h of the paper: a section below it loses its weight
+    weakest_share: float = 0.0  # share of the weakest of the seven sections in the fitness
+
+    def __post_init__(self) -> None:
+        if self.model not in ("thesis", "paper"):
+            raise BadInput(f"LikelihoodConfig: model must be thesis or paper, got {self.model!r}")
+        check_positive(self, "slope")
+        check_share(self, "weakest_share")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MotionConfig:
+    """Amplitudes of the random walk, B of equation 4.7, and what is known of the camera's own motion."""
+
+    noise_x: float = 30.0  # [px/s]
+    noise_y: float = 30.0
+    noise_w: float = 22.0
+    noise_h: float = 22.0
+    noise_d: float = 60.0
+    noise_by_height: float = (
+        0.0  # semi-height [px] at which these hold, others in proportion; 0: the same for all
+    )
+    # Spread of vx, vy, vw, vh [px/s] of samples drawn anew; None: the amplitudes above.
+    fresh_speed: tuple[float, float, float, float] | None = None
+    place_memory: float = 1.0  # share of (vx, vy) that lasts to the next step
+    size_memory: float = 1.0  # the same for (vw, vh)
+    uses_odometry: bool = False
+
+    def __post_init__(self) -> None:
+        check_not_negative(self, "noise_x", "noise_y", "noise_w", "noise_h", "noise_d", "noise_by_height")
+        check_share(self, "place_memory", "size_memory")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FilterConfig:
+    """One particle filter: its size, where new samples come from, and which samples make the estimate."""
+
+    count: int = 1000  # N
+    fresh_share: float = 0.2  # share drawn anew from the prior in every step
+    resized_share: float = 0.0  # share tried at another size in every step
+    limits: LimitsConfig = field(default_factory=LimitsConfig)
+    log_uniform_h: bool = False  # prior of h: uniform, or uniform in log h
+    sharpness: float = 0.0  # weight = exp(sharpness * fitness); 0: the probability, or the paper's fitness
+    estimate_share: float = 1.0  # share of the samples, the best ones, that makes the estimate
+    estimate_reach: float = math.inf  # only those within so many semi-axes of the best
+    resamples_core: bool = False  # whether a person's next samples come from those alone, and not from all
+    floor: float = -math.inf  # least fitness for the weight: what a hidden person would have anywhere
+
+    def __post_init__(self) -> None:
+        check_positive(self, "count", "estimate_share", "estimate_reach")
+        check_share(self, "fresh_share", "resized_share", "estimate_share")
+        check_not_negative(self, "sharpness")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LifeConfig:
+    """When a person is born, and when given up."""
+
+    birth_confidence: float = 0.5
+    birth_frames: int = 1  # frames in a row that must be above
+    death_confidence: float = 0.5
+    doubt_frames: int = 1  # frames in a row below it that make a person tentative again
+    death_frames: int = 1  # frames in a row below it after which the person is given up
+    uncertainty_px2: float = 400.0  # largest spread of a person's particles
+
+    def __post_init__(self) -> None:
+        check_share(self, "birth_confidence", "death_confidence")
+        check_positive(self, "birth_frames", "doubt_frames", "death_frames", "uncertainty_px2")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SearchConfig:
+    """How new people are looked for, and of whom it is told sooner or later than by `LifeConfig`.
+
+    The sources look at each image once, and treat all alike.
+    """
+
+    looks: int = 1  # times that the detector moves its samples and weighs them in each image
+    small_h: float = 0.0  # body semi-height [px] below which somebody is small
+    small_confidence: float = 0.5  # `birth_confidence` of who is small
+    # Who is not small, and has nobody known beside, is born after `clear_frames` above this; 1: never sooner.
+    clear_confidence: float = 1.0
+    clear_frames: int = 1
+    clear_margin: float = 0.0  # widths of those known that count as beside them, on each side
+
+    def __post_init__(self) -> None:
+        check_positive(self, "looks", "clear_frames")
+        check_not_negative(self, "small_h", "clear_margin")
+        check_share(self, "small_confidence", "clear_confidence")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoxConfig:
+    """How a contour becomes a box (thesis: 2 w by 3.5 h; paper: 2 w by 3 h)."""
+
+    width_per_w: float = 2.0
+    height_per_h: float = 3.5
+    hair_per_h: float = 0.0  # cold hair above the head's ellipse
+
+    def __post_init__(self) -> None:
+        check_positive(self, "width_per_w", "height_per_h")
+        check_not_negative(self, "hair_per_h")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SmoothingConfig:
+    """Time constants of the low pass over a person's estimates; 0 is none."""
+
+    place_s: float = 0.0  # x, y
+    size_s: float = 0.0  # w, h, d
+
+    def __post_init__(self) -> None:
+        check_not_negative(self, "place_s", "size_s")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AppearanceConfig:
+    """By how much the thermal pattern of one person differs from frame to frame, and what it tells."""
+
+    grey_spread: tuple[float, float, float] = (0.085, 0.012, 0.06)  # of the mean of head, torso, legs, 0..1
+
+    def __post_init__(self) -> None:
+        refuse_unless(min(self.grey_spread) > 0, self, "grey_spread", "positive")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InteractionConfig:
+    """How filters keep off each other's people, and how many samples they share."""
+
+    detector_penalty: float = 0.01  # psi_D, factor on a detector's sample that overlaps a person
+    detector_overlap: float = 0.0  # share of the sample's region above which it counts as overlapping
+    penalty: float = 2.0  # rho, towards other people
+    occluded_penalty: float = 2.0  # rho_o, towards who is in front
+    max_persons: int = 100  # with so many people, the detector rests
+    total_count: int = 0  # samples that all people share evenly; 0 gives each filter its own N
+
+    def __post_init__(self) -> None:
+        check_share(self, "detector_penalty", "detector_overlap")
+        check_not_negative(self, "penalty", "occluded_penalty", "total_count")
+        check_positive(self, "max_persons")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DepthConfig:
+    """Who is in front of whom, and what that means for the evidence."""
+
+    # By whose feet are lower ("foot"), by looks as well ("appearance"), by a boosted classifier ("learned");
+    # None: nobody is in front of anybody.
+    order: str | None = None
+    table: str = "peopleboy"  # who the boosted classifier was taught for: its table of that name is taken
+    remembers_feet: bool = False  # the classifier takes feet as last seen whole, and not the contour's end
+    removes_front: bool = False  # points of the contour on people in front are left out of the evidence
+    growth: float = 1.0  # by which the people in front are enlarged for that
+
+    def __post_init__(self) -> None:
+        known = (None, "foot", "appearance", "learned")
+        refuse_unless(self.order in known, self, "order", "foot, appearance or learned")
+        check_positive(self, "growth")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeightConfig:
+    """How far a person's height may stray from what it was when the person was last seen whole.
+
+    Spreads are those of the logarithm; 0: as far as it may.
+    """
+
+    overlapped_spread: float = 0.0  # of a person who is overlapped or hidden
+    memory_s: float = 0.5  # time constant of that height
+
+    def __post_init__(self) -> None:
+        check_not_negative(self, "overlapped_spread")
+        check_positive(self, "memory_s")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StayBehindConfig:
+    """Hidden people are where their occluder is (thesis, section 7.3).
+
+    Without an order in depth nobody is ever in front, and nobody hidden.
+    """
+
+    head_covered: float = 0.8  # share of the head's contour behind others from which a person is hidden
+
+    def __post_init__(self) -> None:
+        check_share(self, "head_covered")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WalkOnConfig:
+    """Hidden people walk on with the velocity that they had."""
+
+    remembers_lost: bool = False  # who is lost in any other way walks on, and is remembered as well
+    shows_only_sure: bool = False  # the hidden are shown only while it is fairly certain where they are
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackerConfig:
+    """A whole tracker."""
+
+    contour: ContourConfig = field(default_factory=ContourConfig)
+    likelihood: LikelihoodConfig = field(default_factory=LikelihoodConfig)
+    motion: MotionConfig = field(default_factory=MotionConfig)
+    detector: FilterConfig = field(default_factory=FilterConfig)
+    person: FilterConfig = field(default_factory=FilterConfig)
+    life: LifeConfig = field(default_factory=LifeConfig)
+    search: SearchConfig = field(default_factory=SearchConfig)
+    box: BoxConfig = field(default_factory=BoxConfig)
+    smoothing: SmoothingConfig = field(default_factory=SmoothingConfig)
+    interaction: InteractionConfig = field(default_factory=InteractionConfig)
+    colour: ColourConfig | None = None  # None: thermal alone
+    appearance: AppearanceConfig | None = None  # None: colours as they are
+    depth: DepthConfig = field(default_factory=DepthConfig)
+    height: HeightConfig = field(default_factory=HeightConfig)
+    occlusion: StayBehindConfig | WalkOnConfig = field(default_factory=StayBehindConfig)

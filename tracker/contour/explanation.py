@@ -1,0 +1,76 @@
+"""A person's contour in numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.contour.contour_config import TrackerConfig
+from peopleboy.tracker.contour.particles import VH, VW, VX, VY, D, H, Particles, W, X, Y
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ellipse:
+    """One person's contour in the thermal image: a body ellipse with a head ellipse on top.
+
+    Image frame: x right, y down, origin at the centre of the top-left pixel.
+
+    Attributes:
+        x, y: centre of the body ellipse [px].
+        w, h: its semi-axes [px]; the head's semi-height is h/4.4, our reading, and it stands on top of it.
+        d: how far the head's centre lies right of the body's [px].
+        vx, vy, vw, vh: rates of change of x, y, w and h [px/s].
+
+    Source: thesis, section 4.2.
+    """
+
+    x: float
+    y: float
+    w: float
+    h: float
+    d: float
+    vx: float
+    vy: float
+    vw: float
+    vh: float
+
+
+def ellipse_of(state: NDArray[np.floating]) -> Ellipse:
+    """Name the entries of one (9,) state."""
+    return Ellipse(
+        x=float(state[X]),
+        y=float(state[Y]),
+        w=float(state[W]),
+        h=float(state[H]),
+        d=float(state[D]),
+        vx=float(state[VX]),
+        vy=float(state[VY]),
+        vw=float(state[VW]),
+        vh=float(state[VH]),
+    )
+
+
+# What the contour tracker believes beyond its tracks.
+
+DETECTOR_KEY = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ContourExplanation:
+    """The inner life of the contour tracker at one instant, for those who draw it or ask why.
+
+    Attributes:
+        config: the tracker's settings, by which contours are measured and drawn.
+        ellipses: the estimated contour by track id.
+        spread_px2: spread of the particles about the estimate, over x and y [px^2], by track id (thesis,
+            equation 4.6).
+        particles: the samples by track id; key 0 is the detector's cloud. Empty where they were not kept.
+    """
+
+    config: TrackerConfig
+    ellipses: Mapping[int, Ellipse]
+    spread_px2: Mapping[int, float]
+    particles: Mapping[int, Particles] = field(default_factory=dict)

@@ -1,0 +1,214 @@
+"""The named settings of the tracker: the sources' own, and ours."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Final
+
+from peopleboy.tracker.contour.colour_config import (
+    FAR_AFFINE,
+    ROBOT_PARALLAX,
+    ColourConfig,
+)
+from peopleboy.tracker.contour.contour_config import (
+    AppearanceConfig,
+    BoxConfig,
+    ContourConfig,
+    DepthConfig,
+    FilterConfig,
+    HeightConfig,
+    InteractionConfig,
+    LifeConfig,
+    LikelihoodConfig,
+    LimitsConfig,
+    MotionConfig,
+    SearchConfig,
+    SmoothingConfig,
+    StayBehindConfig,
+    TrackerConfig,
+    WalkOnConfig,
+)
+
+_CAP_GREY = 40.0  # unit of the fitness, in which kappa and theta are given below
+_ROOT_STEP = math.sqrt(1 / 15)  # of the thesis's time step [s]
+_THESIS_SAMPLES = FilterConfig(limits=LimitsConfig(h=(0.02, 0.25)), log_uniform_h=True)
+
+THESIS = TrackerConfig(
+    contour=ContourConfig(
+        body_reach=(0.3,),
+        head_reach=(0.4,),
+        inner_depth=0.6,
+        side_end_deg=120.0,
+        saturation_grey=_CAP_GREY,
+        is_cut_off=True,
+        hottest_grey=250,
+        hot_margin_px=1,
+    ),
+    likelihood=LikelihoodConfig(slope=0.125 * _CAP_GREY, threshold=22.0 / _CAP_GREY),
+    motion=MotionConfig(
+        noise_x=30.0 / 2,
+        noise_y=30.0 / 2,
+        noise_w=22.0 * _ROOT_STEP,
+        noise_h=22.0 * _ROOT_STEP,
+        fresh_speed=(60.0, 8.0, 2.0, 2.0),
+    ),
+    detector=_THESIS_SAMPLES,
+    person=_THESIS_SAMPLES,
+)
+"""Chapters 4 and 5, thermal alone, with the thesis's constants and these readings of what it leaves open.
+
+What each is worth was measured on training seeds; the page of `peopleboy reproduce` lists it.
+
+Contrast: theta = 22 and kappa = 0.125 were fitted to the thesis's camera. Our people are 60 to 200 grey above
+what is behind them, and one side of a head would already exceed theta. Differences therefore count up to 40
+grey, the largest contrast at which a head alone, 0.54 of the weights, does not reach theta. What is at the
+end of the scale is hotter than any person and counts as cold; the thesis has no such step, but its rooms had
+fewer lamps and radiators of the size of a person.
+
+Contour: points lie at shares of the ellipses, further outside than inside, so that the width found is not
+biased, and the sides end above the legs. Motion: B names no unit of time. The velocities' entries for w and h
+are Brownian motion's amplitude after one second, and grow with the root of the time step; those for x and y
+are half of what is printed, in every step: with the root people are found later, with all of it they are
+lost. Prior: uniform in the logarithm of h, up to the largest body that fits into the image, and with the
+speeds of people who walk past.
+"""
+
+THESIS_COLOUR = replace(
+    THESIS, colour=ColourConfig(representation="moments1", affine=FAR_AFFINE, parallax=ROBOT_PARALLAX)
+)
+"""With the colours of chapter 6; of the representations evaluated there, the first moments.
+
+The skewness of a plainly coloured region is unbounded, and people who are drawn are plainly coloured. Our
+cameras are 6 cm apart, which no affine map makes up for at every distance, so the parallax is added to it.
+"""
+
+THESIS_OCCLUSION = replace(
+    THESIS_COLOUR,
+    interaction=InteractionConfig(occluded_penalty=0.5),
+    depth=DepthConfig(order="learned", table="thesis"),
+    occlusion=StayBehindConfig(head_covered=1.0),
+)
+"""With the occlusion handling of chapter 7; a head is hidden once no point of it is seen.
+
+Who is in front is told by a classifier that was taught on this tracker's own pairs (sections 7.1 and 7.2), by
+`peopleboy train-occlusion --tracker thesis`; while it was taught, feet told.
+"""
+
+_PAPER_SAMPLES = replace(_THESIS_SAMPLES, fresh_share=0.1, estimate_share=0.3)
+
+PAPER = replace(
+    THESIS,
+    likelihood=replace(
+        THESIS.likelihood, model="paper", threshold=18.0 / _CAP_GREY, section_threshold=10.0 / _CAP_GREY
+    ),
+    detector=_PAPER_SAMPLES,
+    person=_PAPER_SAMPLES,
+    life=LifeConfig(birth_frames=3),
+    box=BoxConfig(height_per_h=3.0),
+)
+"""The evaluation paper: equations 3 and 4, the best 30 %, 10 % anew, three frames to detect.
+
+It names no threshold of the fitness; 18 grey, below the thesis's 22, since sections below 10 grey lose their
+weight.
+"""
+
+_PEOPLEBOY_COLOUR = ColourConfig(
+    representation="moments1", sharpness=0.035, frames=30, affine=FAR_AFFINE, parallax=ROBOT_PARALLAX
+)
+
+_LIMITS = LimitsConfig(ratio_wh=(0.22, 0.62), ratio_dw=(-0.5, 0.5), y=(0.1, 0.8), h=(0.03, 0.5))
+
+PEOPLEBOY = TrackerConfig(
+    contour=ContourConfig(
+        points=5,
+        reach_px=0.0,
+        body_reach=(0.08, 0.3),
+        head_reach=(0.15, 0.5),
+        far_head_reach=1.2,
+        saturation_grey=18.0,
+        side_end_deg=140.0,
+        cold_response=-0.5,
+        feet_weight=0.15,
+        unseen_response=0.1,
+        cut_share=0.2,
+        clutter_share=2.0,
+        hottest_grey=250,
+        dark_share=0.7,
+        hot_margin_px=2,
+    ),
+    likelihood=LikelihoodConfig(slope=6.0, threshold=0.45, weakest_share=0.25),
+    motion=MotionConfig(
+        noise_x=30.0,
+        noise_y=15.0,
+        noise_w=20.0,
+        noise_h=25.0,
+        noise_d=60.0,
+        noise_by_height=45.0,
+        place_memory=0.9,
+        size_memory=0.5,
+        uses_odometry=True,
+    ),
+    detector=FilterConfig(
+        fresh_share=0.5,
+        # A level camera 1.2 m above the floor sees the middle of whoever stands there just below the horizon;
+        # `mount` carries that over to other cameras.
+        limits=replace(_LIMITS, h=(0.05, 0.5), y_below_horizon=(-0.1, 0.9)),
+        log_uniform_h=True,
+        sharpness=20.0,
+        estimate_share=0.3,
+        estimate_reach=0.7,
+    ),
+    person=FilterConfig(
+        fresh_share=0.0,
+        resized_share=0.2,
+        limits=_LIMITS,
+        sharpness=20.0,
+        estimate_share=0.3,
+        resamples_core=True,
+        floor=0.2,
+    ),
+    life=LifeConfig(
+        birth_confidence=0.75,
+        birth_frames=3,
+        death_confidence=0.4,
+        doubt_frames=5,
+        death_frames=12,
+        uncertainty_px2=100.0,
+    ),
+    # Chosen on hall_visits, passers_by and corridor_patrol, seeds 100 to 102.
+    search=SearchConfig(
+        looks=2,
+        small_h=18.0,
+        small_confidence=0.85,
+        clear_confidence=0.6,
+        clear_frames=2,
+        clear_margin=0.4,
+    ),
+    # Torso and feet of the drawn and simulated people lie so, relative to the ellipse that fits them best.
+    box=BoxConfig(width_per_w=1.88, height_per_h=3.9, hair_per_h=0.08),
+    smoothing=SmoothingConfig(place_s=0.05, size_s=0.3),
+    interaction=InteractionConfig(
+        detector_penalty=1e-9, detector_overlap=0.3, penalty=8.0, occluded_penalty=0.0
+    ),
+    colour=_PEOPLEBOY_COLOUR,
+    appearance=AppearanceConfig(),
+    depth=DepthConfig(order="appearance", remembers_feet=True, removes_front=True, growth=1.2),
+    height=HeightConfig(overlapped_spread=0.1),
+    occlusion=WalkOnConfig(remembers_lost=True, shows_only_sure=True),
+)
+"""What works best by contours."""
+
+PEOPLEBOY_LEARNED = replace(PEOPLEBOY, depth=replace(PEOPLEBOY.depth, order="learned"))
+"""The same with a learned order in depth."""
+
+VARIANTS: Final[Mapping[str, TrackerConfig]] = {
+    "peopleboy": PEOPLEBOY,
+    "learned": PEOPLEBOY_LEARNED,
+    "thesis": THESIS_OCCLUSION,
+    "thermal": THESIS,
+    "colour": THESIS_COLOUR,
+    "paper": PAPER,
+}
+"""The settings of each contour tracker by name, the best first."""
