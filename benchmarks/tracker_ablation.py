@@ -90,7 +90,7 @@ STEPS: dict[str, tuple[str, ...]] = {
     "the hidden walk on, and are looked for": ("occlusion", "person.floor"),
     "the hidden are shown only where that is sure": ("occlusion.shows_only_sure",),
     "whoever was lost is remembered": ("occlusion.remembers_lost",),
-    "the detector looks twice at each image": ("search.looks",),
+    "the detector looks twice at each image": ("search.scans",),
     "whoever is large and alone is told of sooner, the small later": ("search",),
 }
 COLUMNS = (

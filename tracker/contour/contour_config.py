@@ -178,7 +178,7 @@ class SearchConfig:
     The sources look at each image once, and treat all alike.
     """
 
-    looks: int = 1  # times that the detector moves its samples and weighs them in each image
+    scans: int = 1  # times that the detector moves its samples and weighs them in each image
     small_h: float = 0.0  # body semi-height [px] below which somebody is small
     small_confidence: float = 0.5  # `birth_confidence` of who is small
     # Who is not small, and has nobody known beside, is born after `clear_frames` above this; 1: never sooner.
@@ -187,7 +187,7 @@ class SearchConfig:
     clear_margin: float = 0.0  # widths of those known that count as beside them, on each side
 
     def __post_init__(self) -> None:
-        check_positive(self, "looks", "clear_frames")
+        check_positive(self, "scans", "clear_frames")
         check_not_negative(self, "small_h", "clear_margin")
         check_share(self, "small_confidence", "clear_confidence")
 

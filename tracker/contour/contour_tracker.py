@@ -80,7 +80,7 @@ class ContourTracker:
         self._streak = Streak()
         self._persons: tuple[TrackedPerson, ...] = ()
         self._memories: tuple[TrackedPerson, ...] = ()
-        self._told: tuple[TrackedPerson, ...] = ()
+        self._confirmed: tuple[TrackedPerson, ...] = ()
         self._born = 0
         self._introduced: Box | None = None
 
@@ -104,8 +104,8 @@ class ContourTracker:
             clouds = {DETECTOR_KEY: self._detector.particles, **clouds}
         return ContourExplanation(
             config=self._config,
-            ellipses={person.id: ellipse_of(person.shown) for person in self._told},
-            spread_px2={person.id: person.belief.uncertainty_px2 for person in self._told},
+            ellipses={person.id: ellipse_of(person.shown) for person in self._confirmed},
+            spread_px2={person.id: person.belief.uncertainty_px2 for person in self._confirmed},
             particles=clouds,
         )
 
@@ -131,7 +131,7 @@ class ContourTracker:
         self._learn_mount(model.shape[0])
         known = (*self._persons, *self._memories)
         shown = [person for person in known if not person.is_hidden or self._is_shown(person, view)]
-        self._told = (*shown, *newcomer)
+        self._confirmed = (*shown, *newcomer)
         return self._tracks(frame)
 
     def _time_step(self, time_s: float) -> float:
@@ -253,7 +253,7 @@ class ContourTracker:
             found,
             id=known.id,
             born_s=known.born_s,
-            looks=known.looks or found.looks,
+            appearance=known.appearance or found.appearance,
             is_unidentified=False,
         )
 
@@ -270,7 +270,7 @@ class ContourTracker:
         config, rng, belief = self._config, self._rng, self._detector
         seen = [person.belief.estimate for person in self._persons if not person.is_hidden]
         regions = regions_of(seen, config)
-        for look in range(config.search.looks):
+        for look in range(config.search.scans):
             if belief is None:
                 state = draw_fresh(config.detector.count, view, config.detector, config, rng)
             else:
@@ -289,10 +289,10 @@ class ContourTracker:
 
     def _tracks(self, frame: Frame) -> tuple[Track, ...]:
         config, calibration = self._config, frame.calibrations.get(THERMAL)
-        boxes = [box_of(person.shown, config.box) for person in self._told]
+        boxes = [box_of(person.shown, config.box) for person in self._confirmed]
         places: Sequence[FloorPlace | None] = [None] * len(boxes)
         if calibration is not None:
-            places = places_on_floor(boxes, [person.status for person in self._told], calibration)
+            places = places_on_floor(boxes, [person.status for person in self._confirmed], calibration)
         return tuple(
             Track(
                 id=person.id,
@@ -303,7 +303,7 @@ class ContourTracker:
                 age_s=frame.time_s - person.born_s,
                 occluder=person.occluder,
             )
-            for person, box, place in zip(self._told, boxes, places, strict=True)
+            for person, box, place in zip(self._confirmed, boxes, places, strict=True)
         )
 
 
@@ -377,11 +377,11 @@ def _likeness(
     person: TrackedPerson, state: Floats, surroundings: Surroundings, view: FrameView, config: TrackerConfig
 ) -> Floats | None:
     """Tell how likely samples (N,) look like the person (thesis, equation 6.4); None if nobody knows."""
-    if person.looks is None or config.colour is None:
+    if person.appearance is None or config.colour is None:
         return None
     removes = config.depth.removes_front
     features = view.describe(state, surroundings.hiding if removes else None)
     if features is None:
         return None
     # Who is not seen at all looks as a person usually does: one spread off in every feature.
-    return likelihood(features, person.looks, config.colour, 1.0 if removes else math.nan)
+    return likelihood(features, person.appearance, config.colour, 1.0 if removes else math.nan)

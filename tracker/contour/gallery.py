@@ -39,10 +39,10 @@ def is_comparable(found: TrackedPerson, lost: TrackedPerson) -> bool:
 
     The colour camera sees less to the sides than the thermal one, and heat alone is much the same in all.
     """
-    if found.looks is None or lost.looks is None:
+    if found.appearance is None or lost.appearance is None:
         return True
-    is_known = ~np.isnan(lost.looks.mean)
-    is_seen = is_known & ~np.isnan(found.looks.mean)
+    is_known = ~np.isnan(lost.appearance.mean)
+    is_seen = is_known & ~np.isnan(found.appearance.mean)
     return bool(is_seen.sum() >= COMPARED * is_known.sum())
 
 
@@ -58,9 +58,9 @@ def most_alike_and_nearest(found: TrackedPerson, lost: Sequence[TrackedPerson]) 
 
 def colour_distance(one: TrackedPerson, other: TrackedPerson) -> float:
     """Measure the squared distance of colours; infinite where there are none."""
-    if one.looks is None or other.looks is None:
+    if one.appearance is None or other.appearance is None:
         return float("inf")
-    distance = float(squared_distances(one.looks.mean[None], other.looks)[0])
+    distance = float(squared_distances(one.appearance.mean[None], other.appearance)[0])
     return float("inf") if np.isnan(distance) else distance
 
 
@@ -79,7 +79,7 @@ def mismatch(found: TrackedPerson, person: TrackedPerson, view: FrameView, confi
 
 def appearance_distance(found: TrackedPerson, person: TrackedPerson, config: TrackerConfig) -> float:
     """Measure the squared distance of looks; that of the same person where looks cannot tell."""
-    if config.appearance is None or found.looks is None or person.looks is None:
+    if config.appearance is None or found.appearance is None or person.appearance is None:
         return LOOKS2
-    distance = float(squared_distances(found.looks.mean[None], person.looks)[0])
+    distance = float(squared_distances(found.appearance.mean[None], person.appearance)[0])
     return LOOKS2 if np.isnan(distance) else distance

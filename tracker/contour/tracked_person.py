@@ -64,7 +64,7 @@ class TrackedPerson:
     is_behind: bool = False
     hidden_frames: int = 0
     hidden_s: float = 0.0
-    looks: ColourModel | None = None
+    appearance: ColourModel | None = None
     is_unidentified: bool = False
 
     @property
@@ -171,9 +171,9 @@ def initiate_person(
 ) -> TrackedPerson:
     """Make a person of what a filter has settled on."""
     state = belief.estimate
-    looks = _learned(None, state, view, config)
+    appearance = _learned(None, state, view, config)
     return TrackedPerson(
-        number, time_s, belief, state, np.zeros(2), _foot_of(state), state[SIZE], looks=looks
+        number, time_s, belief, state, np.zeros(2), _foot_of(state), state[SIZE], appearance=appearance
     )
 
 
@@ -238,7 +238,7 @@ def seen(
     return replace(
         person,
         **moved,
-        looks=_learned(person.looks, belief.estimate, view, config),
+        appearance=_learned(person.appearance, belief.estimate, view, config),
         seen_frames=person.seen_frames + 1,
         velocity=_blend(person.velocity, speed, max(view.dt_s / VELOCITY_S, 1 / (person.seen_frames + 1))),
         foot=_blend(person.foot, _foot_of(belief.estimate), view.dt_s / FOOT_S),

@@ -179,7 +179,7 @@ PEOPLEBOY = TrackerConfig(
     ),
     # Chosen on hall_visits, passers_by and corridor_patrol, seeds 100 to 102.
     search=SearchConfig(
-        looks=2,
+        scans=2,
         small_h=18.0,
         small_confidence=0.85,
         clear_confidence=0.6,

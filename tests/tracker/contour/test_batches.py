@@ -51,9 +51,9 @@ def test_samples_are_measured_together_as_each_alone(covered: float | None) -> N
 def test_samples_are_described_together_as_each_alone() -> None:
     config = ColourConfig(representation="moments1", affine=FAR_AFFINE, parallax=ROBOT_PARALLAX)
     colour = ColourView.build(RNG.integers(0, 256, (*SHAPE, 3), dtype=np.uint8), SHAPE, config)
-    looks, state = AppearanceView.build(IMAGE, colour, AppearanceConfig()), brood()
-    alone = [looks.describe(sample[None])[0] for sample in state]
-    assert np.array_equal(looks.describe(state), alone, equal_nan=True)
+    appearance, state = AppearanceView.build(IMAGE, colour, AppearanceConfig()), brood()
+    alone = [appearance.describe(sample[None])[0] for sample in state]
+    assert np.array_equal(appearance.describe(state), alone, equal_nan=True)
 
 
 def test_the_shares_in_view_are_those_of_the_pixels_under_the_points() -> None:

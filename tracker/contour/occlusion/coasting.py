@@ -212,8 +212,8 @@ def look_at(
     fit = np.add.reduce(differences[0] * view.model.weights)
     chance = float(probability(np.array([fit], dtype=np.float32), config.likelihood)[0])
     features, away = view.describe(rows, surroundings.hiding), np.nan
-    if person.looks is not None and features is not None:
-        away = float(squared_distances(features, person.looks)[0])
+    if person.appearance is not None and features is not None:
+        away = float(squared_distances(features, person.appearance)[0])
     growth = abs(np.log(max(belief.estimate[H], 1.0) / max(person.shown[H], 1.0)))
     is_alike = growth < SIZE_GATE and not away > LOOKS_GATE
     is_free = not (overlap_shares(rows, surroundings.rivals, config) > CLAIMED).any()

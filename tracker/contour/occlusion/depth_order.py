@@ -57,9 +57,9 @@ def expected(
 
 
 def _unlikeness(person: TrackedPerson, features: Floats) -> float:
-    if person.looks is None:
+    if person.appearance is None:
         return 0.0
-    distance = float(squared_distances(features[None], person.looks)[0])
+    distance = float(squared_distances(features[None], person.appearance)[0])
     return 0.0 if np.isnan(distance) else distance
 
 

@@ -89,7 +89,7 @@ def features_of(
 ) -> Features:
     """Measure the features (P, 6) of pairs (P, 2) among people (M,)."""
     states = np.array([figure.state for figure in figures])
-    models = [figure.person.looks for figure in figures]
+    models = [figure.person.appearance for figure in figures]
     feet = [figure.person.foot for figure in figures] if remembers_feet else None
     return pair_features(states, models, pairs, view, feet)
 

@@ -32,19 +32,21 @@ def views(representation: str) -> tuple[ColourView, AppearanceView]:
 @pytest.mark.parametrize("representation", ["moments1", "moments2"])
 def test_looks_are_the_first_moments_of_both_images_to_the_last_bit(representation: str) -> None:
     state = samples()
-    colour, looks = views(representation)
+    colour, appearance = views(representation)
     each = np.empty((len(state), PARTS, 4), np.float32)
     each[:, :, :3] = colour.describe(state).reshape(len(state), PARTS, 3, -1)[..., 0]
-    each[:, :, 3] = looks.thermal.describe(state)
+    each[:, :, 3] = appearance.thermal.describe(state)
     assert 0.1 < np.isnan(each).mean() < 0.9
-    assert np.array_equal(looks.describe(state), (each * looks.scale).reshape(len(state), -1), equal_nan=True)
+    assert np.array_equal(
+        appearance.describe(state), (each * appearance.scale).reshape(len(state), -1), equal_nan=True
+    )
 
 
 def test_in_the_dark_there_are_no_colours() -> None:
     state = samples()
     colour = ColourView.build(np.zeros((*SHAPE, 3), np.uint8), SHAPE, ColourConfig())
-    looks = AppearanceView.build(np.full(SHAPE, 99, np.uint8), colour, AppearanceConfig())
-    described = looks.describe(state).reshape(-1, 4)
+    appearance = AppearanceView.build(np.full(SHAPE, 99, np.uint8), colour, AppearanceConfig())
+    described = appearance.describe(state).reshape(-1, 4)
     assert np.isnan(described[:, :3]).all()
     assert np.isfinite(described[:, 3]).any()
 

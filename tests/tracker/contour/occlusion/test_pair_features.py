@@ -115,7 +115,7 @@ def test_everybody_is_compared_at_once_as_they_are_two_by_two():
     models = known_colours()
     states = [NEAR, FAR, (290.0, 120.0, 9.0, 25.0)]
     figures = [
-        SimpleNamespace(state=people(state)[0], person=SimpleNamespace(looks=model, foot=foot))
+        SimpleNamespace(state=people(state)[0], person=SimpleNamespace(appearance=model, foot=foot))
         for state, model, foot in zip(states, [*models, None], [216.0, 179.0, 171.0], strict=True)
     ]
     view = surroundings(1, 0)

@@ -101,8 +101,8 @@ def test_a_hidden_person_is_behind_those_who_cover_it_and_behind_nobody_where_it
 def test_looks_are_not_learnt_while_somebody_is_in_front():
     alone = judged(PEOPLEBOY, person(1, 160, 30))
     beside = judged(PEOPLEBOY, person(1, 160, 30), person(2, 183, 40))
-    assert alone.looks is not None
-    assert beside.looks is None
+    assert alone.appearance is not None
+    assert beside.appearance is None
 
 
 def test_who_is_lost_in_mid_image_is_hidden_by_something_unknown():

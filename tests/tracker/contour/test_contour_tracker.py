@@ -86,13 +86,13 @@ def test_the_image_is_measured_once_for_each_person_and_in_each_look_of_the_dete
         calls.clear()
         before = len(tracker.explanation.particles.keys() - {0})
         tracker.update(frame(i, *THREE))
-        assert calls == [1000] * (before + APART.search.looks)
+        assert calls == [1000] * (before + APART.search.scans)
 
 
-def searching(looks, **changes):
+def searching(scans, **changes):
     """A tracker in which nobody is ever born, so that its detector goes on."""
     detector = replace(PEOPLEBOY.detector, **changes)
-    search = replace(PEOPLEBOY.search, looks=looks, clear_frames=99)
+    search = replace(PEOPLEBOY.search, scans=scans, clear_frames=99)
     life = replace(PEOPLEBOY.life, birth_frames=99)
     config = replace(PEOPLEBOY, detector=detector, search=search, life=life)
     return ContourTracker(config, np.random.default_rng(0))
@@ -105,7 +105,7 @@ def samples_after(tracker, frames):
 
 
 def test_two_looks_at_an_image_are_worth_two_images():
-    once, twice = searching(looks=1), searching(looks=2)
+    once, twice = searching(scans=1), searching(scans=2)
     frames = [frame(i, (100, 30)) for i in range(6)]
     assert np.array_equal(samples_after(once, frames), samples_after(twice, frames[:3]))
 
@@ -115,7 +115,7 @@ def test_the_camera_turns_once_in_however_many_looks():
     (focal_px, _, centre_px), *_ = ROBOTS_OWN.intrinsics.tolist()
     x = centre_px + focal_px * math.tan(turn_rad + math.atan((100 - centre_px) / focal_px))
     turned = replace(frame(2, (x, 30)), odometry=Odometry(turn_rad=turn_rad))
-    tracker = searching(looks=2, fresh_share=0.0)
+    tracker = searching(scans=2, fresh_share=0.0)
     states = samples_after(tracker, (frame(0, (100, 30)), frame(1, (100, 30)), turned))
     assert np.median(states[:, X]) == pytest.approx(x, abs=4)
 

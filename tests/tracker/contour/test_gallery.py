@@ -40,7 +40,7 @@ def person(number, x=160.0, h=30.0, colour=0.0, hidden_s=1.0, **more):
         size=state[SIZE],
         status=Status.TOTALLY_OCCLUDED,
         hidden_s=hidden_s,
-        looks=model,
+        appearance=model,
         **more,
     )
 
@@ -65,7 +65,10 @@ def test_the_thesis_asks_that_the_nearest_is_also_the_most_alike():
     assert most_alike_and_nearest(person(9), (near_but_other, far_but_alike)) is None
     near = person(3, x=155.0, colour=0.1)
     assert (
-        most_alike_and_nearest(person(9), (near, replace(far_but_alike, looks=near_but_other.looks))) is near
+        most_alike_and_nearest(
+            person(9), (near, replace(far_but_alike, appearance=near_but_other.appearance))
+        )
+        is near
     )
 
 
@@ -73,7 +76,7 @@ def seen_in_part(number, share):
     """Somebody of whose 12 features a share is known."""
     mean = np.zeros((1, 12), dtype=np.float32)
     mean[:, round(12 * share) :] = np.nan
-    return replace(person(number), looks=ColourModel(mean, 10))
+    return replace(person(number), appearance=ColourModel(mean, 10))
 
 
 @pytest.mark.parametrize(("share", "is_enough"), [(1.0, True), (0.5, True), (0.4, False), (0.0, False)])
@@ -83,4 +86,4 @@ def test_who_is_seen_by_half_of_what_is_known_can_be_compared(share, is_enough):
 
 def test_what_was_never_known_need_not_be_seen():
     assert is_comparable(seen_in_part(9, 0.3), seen_in_part(1, 0.3))
-    assert is_comparable(replace(person(9), looks=None), person(1))
+    assert is_comparable(replace(person(9), appearance=None), person(1))
