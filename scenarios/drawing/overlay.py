@@ -27,10 +27,10 @@ from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.boxes import Box, corners
+from peopleboy.tracker.contour.explanation import ContourExplanation
+from peopleboy.tracker.contour.measurement.section_evidence import outline
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.fusion.explanations import BothExplanations
-from peopleboy.tracker.thermal.contour.outline import outline
-from peopleboy.tracker.thermal.explanation import ContourExplanation
 from peopleboy.tracker.track import Status, Track
 
 Line = NDArray[np.float64]  # (K, 2) [px] in the thermal image

@@ -22,8 +22,8 @@ from peopleboy.sim.observation import Observation
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, WHEEL_DISTANCE_M
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.boxes import image_shares
+from peopleboy.tracker.contour.box_interaction import standing_box
 from peopleboy.tracker.frame import THERMAL, Calibration, Frame, Odometry
-from peopleboy.tracker.thermal.whereabouts import standing_box
 from peopleboy.tracker.track import Box, Status, Track
 from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again
 

@@ -16,11 +16,10 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
+from peopleboy.tracker.contour.explanation import ContourExplanation, Ellipse
+from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplanation
-from peopleboy.tracker.thermal.ellipse import Ellipse
-from peopleboy.tracker.thermal.explanation import ContourExplanation
-from peopleboy.tracker.thermal.variants import VARIANTS
 from peopleboy.tracker.track import FloorPlace, Status, Track
 
 STATE = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")

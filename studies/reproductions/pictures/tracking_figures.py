@@ -16,15 +16,15 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.studies.reproductions.evaluations.playback import play
 from peopleboy.studies.reproductions.pictures.canvas import canvas, frame_box, label
+from peopleboy.tracker.contour.contour_tracker import ContourTracker
+from peopleboy.tracker.contour.explanation import Ellipse
+from peopleboy.tracker.contour.measurement.likelihood import ContourModel
+from peopleboy.tracker.contour.measurement.section_evidence import outline
+from peopleboy.tracker.contour.particles import CROWN, FOOT, H, Y, draw_around, draw_prior
+from peopleboy.tracker.contour.variants import THESIS
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.frame import THERMAL, Frame
-from peopleboy.tracker.thermal.contour.likelihood import ContourModel
-from peopleboy.tracker.thermal.contour.outline import outline
-from peopleboy.tracker.thermal.ellipse import Ellipse
-from peopleboy.tracker.thermal.particles import CROWN, FOOT, H, Y, draw_around, draw_prior
-from peopleboy.tracker.thermal.people_tracker import PeopleTracker
-from peopleboy.tracker.thermal.variants import THESIS
 from peopleboy.tracker.track import Box
 
 Floats = NDArray[np.float64]
@@ -273,7 +273,7 @@ def find_meeting() -> Meeting:
 def contours_after(meeting: Meeting, penalty: float, number: int) -> list[Ellipse]:
     """Follow the two with a random stream of the literal tracker, and give the contours at the end."""
     config = replace(THESIS, interaction=replace(THESIS.interaction, penalty=penalty))
-    tracker = PeopleTracker(config, stream(number, "reproduce.interaction"))
+    tracker = ContourTracker(config, stream(number, "reproduce.interaction"))
     for box, frame in zip((*meeting.boxes, *[None] * len(meeting.frames)), meeting.frames, strict=False):
         if box is not None:
             tracker.introduce(box)

@@ -21,8 +21,8 @@ from peopleboy.scenarios.drawing.overlay import (
     show_thermal,
 )
 from peopleboy.scenarios.drawing.palette import TRUTH, track_colour
+from peopleboy.tracker.contour.measurement.section_evidence import outline
 from peopleboy.tracker.fusion.explanations import BothExplanations
-from peopleboy.tracker.thermal.contour.outline import outline
 from peopleboy.tracker.track import Status
 from tests.helpers.runs import synthetic_ticks as made
 

@@ -3,8 +3,8 @@ from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import Eyes, thermal_box
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
+from peopleboy.tracker.contour.box_interaction import standing_box
 from peopleboy.tracker.frame import THERMAL
-from peopleboy.tracker.thermal.whereabouts import standing_box
 from tests.helpers.runs.hand_made_tracks import track
 
 EMPTY = {
