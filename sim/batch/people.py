@@ -1,4 +1,4 @@
-"""The people of many worlds, walking together where scripts and who is in the way alone guide them."""
+"""The people of many worlds: they walk, and their visible bodies are posed, by kernels over all worlds."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from peopleboy.sim.geometry.poses import quaternions
 from peopleboy.sim.people.body.placing import carry, put_on_floor
 from peopleboy.sim.people.body.stance import STANCE, Builds, Stances, hold, move_limbs
 from peopleboy.sim.people.person import Person, pace_m_s
-from peopleboy.sim.people.walking.script import WALK, Records, Script, Scripts, join_records, join_scripts
+from peopleboy.sim.people.walking.script import WALK, Records, Scripts, join_records, join_scripts
 from peopleboy.sim.people.walking.walk_kernels import walk_on
 from peopleboy.sim.physics.kinematic import Kinematic
 from peopleboy.sim.physics.solid_shapes import Array
@@ -23,42 +23,33 @@ from peopleboy.sim.shapes.joined_tables import Numbers, ends
 from peopleboy.sim.world import World
 
 _TWO = 2.0  # see `walk_on`
-_NO_SCRIPT = Script.nothing()
 
 
 class BatchWalks:
-    """Everybody in B worlds; those of worlds in which not all are scripted walk by themselves.
+    """The people of B worlds, whose records lie in one array from now on.
 
     Attributes:
         first: (B + 1,) where the people of each world begin.
-        world: (Q,) where everybody is.
-        is_scripted: (B,) in which worlds all are.
+        world: (Q,) number of everybody's world.
+        is_scripted: (B,) worlds in which all walk here; in others they walk by themselves.
         makes_way: (B,) in which of these somebody makes way.
-        records: (Q,) WALK of everybody; of those who walk by themselves only where they are, how they move,
-            and whether they are there.
+        records: (Q,) WALK of everybody.
     """
 
     def __init__(self, worlds: Sequence[World]) -> None:
-        self._crowds = [world.crowd for world in worlds]
-        counts = [len(crowd.people) for crowd in self._crowds]
+        crowds = [world.crowd for world in worlds]
+        counts = [len(crowd.people) for crowd in crowds]
         self.first, self.world = ends(counts), np.repeat(np.arange(len(counts)), counts)
-        own = [world.crowd.follow_scripts(has_begun=world.time_s > 0.0) for world in worlds]
-        self.is_scripted = np.array([each is not None for each in own], np.bool_)
-        scripts: list[Script] = []
-        records: list[Records] = []
-        walls = [np.empty((0, 4)) if each is None else each.walls for each in own]
-        self._walls = np.concatenate([np.empty((0, 4)), *walls])
-        self._first_wall = ends([len(each) for each in walls])
-        for each, count in zip(own, counts, strict=True):
-            scripts += [_NO_SCRIPT] * count if each is None else each.scripts
-            records.append(np.zeros(count, WALK) if each is None else each.records)
-        self._scripts = join_scripts(scripts)
-        self.records = join_records(records, WALK)
-        self.makes_way = np.array([each is not None and bool(each.records["yields"].any()) for each in own])
-        for crowd, each, first, end in zip(self._crowds, own, self.first, self.first[1:], strict=False):
-            if each is not None:
-                crowd.rebind(self.records[first:end])
-        self._follow(np.arange(len(worlds)))
+        self.is_scripted = np.array([crowd.is_scripted for crowd in crowds], np.bool_)
+        self.makes_way = np.array(
+            [crowd.is_scripted and bool(crowd.walks["yields"].any()) for crowd in crowds], np.bool_
+        )
+        self._walls = np.concatenate([np.empty((0, 4)), *(crowd.walls for crowd in crowds)])
+        self._first_wall = ends([len(crowd.walls) for crowd in crowds])
+        self._scripts = join_scripts([script for crowd in crowds for script in crowd.scripts])
+        self.records = join_records([crowd.walks for crowd in crowds], WALK)
+        for crowd, first, end in zip(crowds, self.first, self.first[1:], strict=False):
+            crowd.rebind(self.records[first:end])
 
     def step(self, active: Numbers, times_s: Array, dt_s: float, robots: Array) -> None:
         """Let all walk on who are guided by scripts; the others have just walked.
@@ -73,22 +64,6 @@ class BatchWalks:
             active, self.is_scripted, self.first, self.records, self._scripts, times_s, dt_s,
             robots, self._walls, self._first_wall, _TWO,
         )  # fmt: skip
-        records = self.records
-        headings, present = records["heading"].tolist(), records["is_present"].tolist()
-        postures = records["posture"].tolist()
-        borders = self.first.tolist()
-        for number in active[self.is_scripted[active]].tolist():
-            first, end = borders[number], borders[number + 1]
-            self._crowds[number].take_over(headings[first:end], present[first:end], postures[first:end])
-        self._follow(active)
-
-    def _follow(self, active: Numbers) -> None:
-        """Write down where those are now who walk by themselves."""
-        for number in active[~self.is_scripted[active]].tolist():
-            own = self.records[self.first[number] : self.first[number + 1]]
-            for record, person in zip(own, self._crowds[number].people, strict=True):
-                record["position"], record["velocity"] = person.position, person.velocity
-                record["heading"], record["is_present"] = person.heading, person.present
 
 
 @njit(cache=True, nogil=True)
@@ -111,9 +86,6 @@ def _walk_worlds(
             robot = (robots[row, 0], robots[row, 1], robots[row, 2], robots[row, 3], robots[row, 4])
             own = walls[first_wall[world] : first_wall[world + 1]]
             walk_on(first[world], first[world + 1], walks, scripts, times_s[row], dt_s, robot, own, two)
-
-
-# The bodies of all people who are seen in many worlds, held and placed together.
 
 
 class Parts(NamedTuple):

@@ -10,19 +10,19 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.poses import quaternions
 from peopleboy.sim.people.appearance.finisher import Finisher, looks_stream
-from peopleboy.sim.people.body.stance import POSTURES
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.script import (
     WALK,
     Records,
-    ScriptedWalk,
+    Script,
     is_scripted,
-    start_walk,
-    write_script,
+    join_records,
+    join_scripts,
 )
-from peopleboy.sim.people.walking.social_force import PlanarState
+from peopleboy.sim.people.walking.social_force import PlanarState, robot_motion
 from peopleboy.sim.people.walking.surroundings import Present
+from peopleboy.sim.people.walking.walk_kernels import walk_on
 from peopleboy.sim.physics.physics import Physics
 from peopleboy.sim.places.moving import Action, Mover, ThingState, ease
 from peopleboy.sim.places.place import Place, air_of, is_outdoors
@@ -33,7 +33,7 @@ from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Shape, ShapeKind
 # What robots bump into and sonars hear: an upright capsule, which no camera sees.
 _SOLID = "solid"
 
-_POSTURES = tuple(POSTURES)
+_TWO = 2.0  # see `walk_on`
 _OUT_OF_REACH_M = 1.5  # nobody who is so far away and the robot meet within a control step
 
 
@@ -62,7 +62,10 @@ class Crowd:
         self._is_fine = is_visible and detail == "full"
         self.people = tuple(self._make(config, seed) for config in configs)
         self.materials: dict[str, Material] = {}
-        self._walk: ScriptedWalk | None = None
+        stands_still = not (place.movers and any(config.yields for config in configs))
+        self._is_scripted = stands_still and all(map(is_scripted, configs))
+        self._scripts = join_scripts(self.scripts)
+        self.rebind(join_records([person.walker.walks for person in self.people], WALK))
         self._is_shown = dict.fromkeys((person.name for person in self.people), True)
         self._solid: set[str] = set()
         self._before: dict[str, NDArray[np.float64]] = {}
@@ -73,39 +76,31 @@ class Crowd:
         for person in self.people:
             self._add(person)
 
-    def follow_scripts(self, *, has_begun: bool) -> ScriptedWalk | None:
-        """Walk by records from now on, where scripts and who is in the way alone guide everybody.
+    @property
+    def is_scripted(self) -> bool:
+        """Whether scripts and who is in the way alone guide everybody, among walls that stand still."""
+        return self._is_scripted
 
-        Args:
-            has_begun: whether anybody has walked otherwise before; then they go on as they did.
-        """
-        configs = [person.config for person in self.people]
-        stands_still = not (self._place.movers and any(config.yields for config in configs))
-        is_alone = stands_still and all(is_scripted(config) for config in configs)
-        if self._walk is None and is_alone and not has_begun:
-            records = np.zeros(len(self.people), WALK)
-            for person, record in zip(self.people, records, strict=True):
-                start_walk(person.config, person.walker, person.radius_m, record)
-            scripts = [write_script(person.config, person.walker) for person in self.people]
-            self._walk = ScriptedWalk(scripts, records, self._place.obstacles)
-        return self._walk
+    @property
+    def walks(self) -> Records:
+        """(N,) records WALK of where all are on their ways."""
+        return self._walks
 
-    def rebind(self, records: Records) -> None:
-        """Keep the records of those who walk by them in another array from now on."""
-        assert self._walk is not None
-        self._walk = self._walk._replace(records=records)
-        for person, position, velocity in zip(
-            self.people, records["position"], records["velocity"], strict=True
-        ):
-            person.walker.position, person.walker.velocity = position, velocity
+    @property
+    def scripts(self) -> tuple[Script, ...]:
+        """What all are to do."""
+        return tuple(person.walker.script for person in self.people)
 
-    def take_over(
-        self, headings: Sequence[float], are_present: Sequence[bool], postures: Sequence[int]
-    ) -> None:
-        """Face, be there and hold themselves as the records say by which people have just walked on."""
-        rows = zip(self.people, headings, are_present, postures, strict=True)
-        for person, heading, is_present, posture in rows:
-            person.take_over(heading, _POSTURES[posture], is_present=is_present)
+    @property
+    def walls(self) -> NDArray[np.float64]:
+        """(K, 4) [m] rectangles min_x, min_y, max_x, max_y that a scripted crowd makes way for."""
+        return self._place.obstacles
+
+    def rebind(self, walks: Records) -> None:
+        """Keep the records of where all are in another array from now on, which holds the same already."""
+        self._walks = walks
+        for k, person in enumerate(self.people):
+            person.walker.rebind(walks[k : k + 1])
 
     @property
     def are_shown(self) -> bool:
@@ -114,13 +109,23 @@ class Crowd:
 
     def step(self, time_s: float, dt_s: float, robot: PlanarState) -> None:
         """Let everybody walk on for dt_s from time_s, knowing where the others and the robot are now."""
-        present = those_present(self.people)
-        obstacles = self._place.obstacles_at(time_s)
-        members = [(p, p.progress) for p in self.people if p.present and p.config.group is not None]
         self._before.clear()
         for person in self.people:
             if person.name in self._solid and math.dist(person.position, robot.position) < _OUT_OF_REACH_M:
-                self._before[person.name] = person.position.copy()
+                self._before[person.name] = person.position
+        if self._is_scripted:
+            count, walls = len(self.people), self._place.obstacles
+            walk_on(0, count, self._walks, self._scripts, time_s, dt_s, robot_motion(robot), walls, _TWO)
+            for person in self.people:
+                person.move_limbs(dt_s)
+        else:
+            self._step_each(time_s, dt_s, robot)
+
+    def _step_each(self, time_s: float, dt_s: float, robot: PlanarState) -> None:
+        """Let everybody make up their minds and walk on, one after the other."""
+        present, obstacles = those_present(self.people), self._place.obstacles_at(time_s)
+        members = [(p, p.progress) for p in self.people if p.present and p.config.group is not None]
+        for person in self.people:
             company = [
                 progress
                 for other, progress in members

@@ -87,7 +87,6 @@ class Person:
         config: as given.
         name: as configured.
         parts: what it is made of, fixed for life; `poses` is in their order.
-        present: whether it is in the world now.
         stance: (1,) records STANCE, how it holds itself now.
     """
 
@@ -96,7 +95,6 @@ class Person:
     ) -> None:
         self.config = config
         self.name = config.name
-        self.present = config.enter_s <= 0.0
         self._size = measure(config.height_m, config.sex, config.build)
         geometry = _geometry(config, self._size, NOTHING_MORE if finisher is None else finisher.outfit)
         materials = dress(config.clothes, rng) | {BAG_PART: _BAG_LOOK}
@@ -110,7 +108,8 @@ class Person:
         self._soles = sole_points(config.height_m)
         self._manner = USUAL if finisher is None else finisher.manner
         self._gait = Gait(self._offsets, config.height_m, self._manner)
-        self._walker = Walker(config.path, config.yields, self.radius_m)
+        leave_s = math.inf if config.leave_s is None else config.leave_s
+        self._walker = Walker(config.path, config.yields, self.radius_m, (config.enter_s, leave_s))
         self._mind = Mind([waypoint.at_m for waypoint in config.path], config.reacts, config.leads)
         self._wish = AS_PLANNED
         self._gaze = Gaze()
@@ -119,12 +118,18 @@ class Person:
         self.stance["blend"][0, POSTURES[self._walker.posture]] = 1.0
         self._build: Builds | None = None
         self._bones: Array | None = None
+        self._bones_s = 0.0
         self._grasp: _Grasp | None = None
 
     @property
     def walker(self) -> Walker:
         """Where it goes, and how."""
         return self._walker
+
+    @property
+    def present(self) -> bool:
+        """Whether it is in the world now."""
+        return self._walker.present
 
     @property
     def position(self) -> Array:
@@ -176,26 +181,25 @@ class Person:
             walls: (K, 4) [m] rectangles min_x, min_y, max_x, max_y.
             company: progress of the others of its group who are present.
         """
-        config = self.config
-        was_present = self.present
-        now_s = time_s + dt_s
-        self.stance["time_s"] = now_s
-        has_left = config.leave_s is not None and now_s > config.leave_s - 1e-9
-        self.present = config.enter_s <= now_s + 1e-9 and not has_left
         around = Surroundings(people=people, walker=people.rows.get(self.name, -1), robot=robot, walls=walls)
-        if self.present and was_present:
+        if self._walker.come_or_go(time_s + dt_s):
             self._wish = self._make_up_mind(dt_s, around, company)
             self._walker.step(dt_s, around, self._wish)
             self._look(dt_s, robot)
-            self._move_limbs(dt_s)
         elif self.present:
             self._walker.enter(around)
-            self._bones = None
+        self.move_limbs(dt_s)
 
-    def take_over(self, heading: float, posture: Posture, *, is_present: bool) -> None:
-        """Be as somebody else has moved it, whose are the place, the velocity and the stance already."""
-        self._walker.heading, self._walker.posture, self.present = heading, posture, is_present
-        self._bones = None
+    def move_limbs(self, dt_s: float) -> None:
+        """Advance gait and postures by a time step, in which it has walked on."""
+        walker, gait = self._walker, self._gait
+        self.stance["time_s"] = walker.now_s
+        if walker.has_moved:
+            pace, turn_rate = pace_m_s(walker.velocity.tolist(), walker.turn_rate), walker.turn_rate
+            move_limbs(
+                self.stance, 0, gait.unit_stride_m, gait.root_scale, pace, turn_rate, walker.is_walking,
+                POSTURES[self.posture], dt_s,
+            )  # fmt: skip
 
     def _make_up_mind(self, dt_s: float, around: Surroundings, company: Iterable[float]) -> Wish:
         """Decide how to change the script, if at all."""
@@ -250,17 +254,6 @@ class Person:
         dx, dy = point[:2] - self.position
         aside = math.cos(self.heading) * dy - math.sin(self.heading) * dx
         return "left" if self.config.bag or aside > _AHEAD_M else "right"
-
-    def _move_limbs(self, dt_s: float) -> None:
-        """Advance gait and postures by a time step."""
-        walker = self._walker
-        pace = pace_m_s(walker.velocity.tolist(), walker.turn_rate)
-        posture, gait = POSTURES[self.posture], self._gait
-        move_limbs(
-            self.stance, 0, gait.unit_stride_m, gait.root_scale, pace, walker.turn_rate, walker.is_walking,
-            posture, dt_s,
-        )  # fmt: skip
-        self._bones = None
 
     @property
     def gait(self) -> Gait:
@@ -318,8 +311,8 @@ class Person:
 
     def _world_bones(self) -> Array:
         """(17, 4, 4) world from bone."""
-        if self._bones is None:
-            self._bones = self._place()
+        if self._bones is None or self._bones_s != self._walker.now_s:
+            self._bones, self._bones_s = self._place(), self._walker.now_s
         return self._bones
 
     def _place(self) -> Array:

@@ -1,8 +1,10 @@
-"""Scripts and who follows them, as arrays for kernels."""
+"""Scripts of people, and how far along them the people are, as arrays for kernels."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -10,18 +12,21 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.body.stance import POSTURES
-from peopleboy.sim.people.person_config import PersonConfig
-from peopleboy.sim.people.walking.path import PathPiece, route
-from peopleboy.sim.people.walking.walker import Walker
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
+from peopleboy.sim.people.walking.path import PathPiece, is_about_turn, route
 
 Records = NDArray[Any]
 
-NOTHING, POINT, ROBOT = 0, 1, 2  # what to face while pausing
+TURN_RATE_RAD_S = math.radians(150.0)
+
+NOTHING, POINT, ROBOT, ABSENT = 0, 1, 2, 3  # what to face while pausing; the last: a person who is not there
 WAYPOINT: Final = np.dtype(
     [
         ("at", np.float64, 2),  # [m]
         ("pause_s", np.float64),  # inf at the last one
         ("has_pause", np.bool_),
+        ("until_robot_within_m", np.float64),  # negative: does not wait for the robot
+        ("waits_at_most_s", np.float64),
         ("posture", np.int64),  # there, its number in `POSTURES`
         ("faces", np.int64),
         ("face", np.float64, 2),  # [m]
@@ -50,97 +55,49 @@ WALK: Final = np.dtype(
         ("position", np.float64, 2),  # [m]
         ("velocity", np.float64, 2),  # [m/s]
         ("heading", np.float64),  # [rad]
+        ("turn_rate", np.float64),  # [rad/s]
         ("speed", np.float64),  # [m/s]
         ("along", np.float64),  # [m] on the piece
         ("pause_left", np.float64),  # [s]
+        ("wait_left", np.float64),  # [s] after the pause, for the robot
         ("on_feet_in", np.float64),  # [s]
-        ("reached", np.int64),
+        ("blocked_s", np.float64),  # for how long it has made little progress
+        ("reached", np.int64),  # number of the last waypoint reached
         ("piece", np.int64),  # under way on it; -1 in a pause
         ("end_piece", np.int64),
-        ("turn_rate", np.float64),  # [rad/s]
         ("posture", np.int64),  # the one to take up, its number in `POSTURES`
+        ("is_astray", np.bool_),  # off the way of the script
+        ("is_homing", np.bool_),  # under way to the waypoint reached, from astray
+        ("is_turned_away", np.bool_),  # from the way, after a stop
         ("is_present", np.bool_),
         ("has_moved", np.bool_),  # in the last step, there before and after it
+        ("now_s", np.float64),  # [s] at the end of the last step
         ("enter_s", np.float64),
         ("leave_s", np.float64),  # inf for never
         ("radius_m", np.float64),
         ("yields", np.bool_),
-        ("blocked_s", np.float64),  # for how long it has got on badly
+        # The wish that changes the script during this step, see `Wish`.
+        ("goes_to", np.float64, 2),  # [m]
+        ("is_sent", np.bool_),  # whether `goes_to` counts
+        ("stands", np.bool_),
+        ("faces", np.float64, 2),  # [m]
+        ("has_face", np.bool_),  # whether `faces` counts
+        ("pace", np.float64),
+        ("clear_m", np.float64),  # negative for what is usual
+        ("heeds_robot", np.bool_),
     ]
 )
-"""What a `Walker` knows of itself while its script and who is in its way alone decide where it goes."""
+"""Where a person is on its way through its script."""
 
 
 class Script(NamedTuple):
-    """What somebody is to do: (W,) records WAYPOINT and (P,) records PIECE."""
+    """What a person is to do: (W,) records WAYPOINT and (P,) records PIECE.
+
+    The last pieces are room for one leg that is planned anew, see `plan_leg`.
+    """
 
     waypoints: Records
     pieces: Records
-
-    @classmethod
-    def nothing(cls) -> Script:
-        """That of somebody who has none."""
-        return cls(np.zeros(0, WAYPOINT), np.zeros(0, PIECE))
-
-
-class ScriptedWalk(NamedTuple):
-    """What the people of one world are to do, and (N,) records WALK of how far they are.
-
-    Its walls are (K, 4) [m] rectangles min_x, min_y, max_x, max_y.
-    """
-
-    scripts: list[Script]
-    records: Records
-    walls: NDArray[np.float64]
-
-
-def is_scripted(config: PersonConfig) -> bool:
-    """Whether nothing decides where a person goes and looks but its script and who is in its way."""
-    is_alone = config.reacts is None and config.leads is None and config.group is None
-    return is_alone and all(
-        waypoint.until_robot_within_m is None
-        and (not isinstance(waypoint.face, str) or waypoint.face == "robot")
-        for waypoint in config.path
-    )
-
-
-def write_script(config: PersonConfig, walker: Walker) -> Script:
-    """Plan all ways between stops at once; the walker is that of the person."""
-    path = config.path
-    pieces: list[PathPiece] = []
-    waypoints = np.zeros(len(path), WAYPOINT)
-    for index, (waypoint, row) in enumerate(zip(path, waypoints, strict=True)):
-        row["at"], row["pause_s"] = waypoint.at_m, walker.pause_of(index)
-        row["speed"] = waypoint.speed_m_s
-        row["has_pause"] = walker.has_pause(index)
-        row["posture"] = POSTURES[Posture(waypoint.posture)]
-        if waypoint.face is not None:
-            row["faces"] = ROBOT if isinstance(waypoint.face, str) else POINT
-            row["face"] = (0.0, 0.0) if isinstance(waypoint.face, str) else waypoint.face
-        row["first_piece"] = len(pieces)
-        if index < len(path) - 1 and (index == 0 or walker.stops_at(index)):
-            stop = index + 1
-            while not walker.stops_at(stop):
-                stop += 1
-            pieces += route([each.at_m for each in path[index : stop + 1]], index + 1)
-        row["end_piece"] = len(pieces)
-    speeds = [walker.piece_speed(piece) for piece in pieces]
-    rows = [
-        (piece.start, piece.heading_rad, piece.length_m, piece.curvature, piece.goal, speed, speed**2)
-        for piece, speed in zip(pieces, speeds, strict=True)
-    ]
-    return Script(waypoints, np.array(rows, PIECE))
-
-
-def start_walk(config: PersonConfig, walker: Walker, radius_m: float, walk: np.void) -> None:
-    """Fill the record WALK of a person who has not moved yet."""
-    walk["position"], walk["heading"] = walker.position, walker.heading
-    walk["pause_left"], walk["piece"] = walker.pause_of(0), -1
-    walk["posture"] = POSTURES[walker.posture]
-    walk["is_present"] = config.enter_s <= 0.0
-    walk["enter_s"] = config.enter_s
-    walk["leave_s"] = np.inf if config.leave_s is None else config.leave_s
-    walk["radius_m"], walk["yields"] = radius_m, config.yields
 
 
 class Scripts(NamedTuple):
@@ -155,6 +112,118 @@ class Scripts(NamedTuple):
     pieces: Records
     first_waypoint: NDArray[np.int64]
     first_piece: NDArray[np.int64]
+
+
+def is_scripted(config: PersonConfig) -> bool:
+    """Return whether nothing decides where a person walks and looks but its script and who is in its way."""
+    is_alone = config.reacts is None and config.leads is None and config.group is None
+    return is_alone and all(
+        waypoint.until_robot_within_m is None
+        and (not isinstance(waypoint.face, str) or waypoint.face == "robot")
+        for waypoint in config.path
+    )
+
+
+def has_pause(path: Sequence[Waypoint], index: int) -> bool:
+    """Return whether a person stays at a waypoint."""
+    waypoint = path[index]
+    is_kept = waypoint.pause_s > 0.0 or waypoint.until_robot_within_m is not None
+    return index == len(path) - 1 or is_kept
+
+
+def stops_at(path: Sequence[Waypoint], index: int) -> bool:
+    """Return whether a person comes to a stand at a waypoint."""
+    if has_pause(path, index):
+        return True
+    before, corner, after = (w.at_m for w in path[index - 1 : index + 2])
+    return is_about_turn(before, corner, after)
+
+
+def write_script(path: Sequence[Waypoint]) -> Script:
+    """Plan the ways between all stops of a path."""
+    stops = [0, *(index for index in range(1, len(path)) if stops_at(path, index))]
+    pieces: list[PathPiece] = []
+    waypoints = np.zeros(len(path), WAYPOINT)
+    for index, (waypoint, row) in enumerate(zip(path, waypoints, strict=True)):
+        within_m = waypoint.until_robot_within_m
+        row["at"], row["speed"] = waypoint.at_m, waypoint.speed_m_s
+        row["pause_s"] = math.inf if index == len(path) - 1 else waypoint.pause_s
+        row["has_pause"], row["posture"] = has_pause(path, index), POSTURES[Posture(waypoint.posture)]
+        row["until_robot_within_m"] = -1.0 if within_m is None else within_m
+        row["waits_at_most_s"] = waypoint.waits_at_most_s
+        if isinstance(waypoint.face, str):
+            row["faces"] = ROBOT if waypoint.face == "robot" else ABSENT
+        elif waypoint.face is not None:
+            row["faces"], row["face"] = POINT, waypoint.face
+    for start, stop in pairwise(stops):
+        leg = route([each.at_m for each in path[start : stop + 1]], start + 1)
+        for index in range(start, stop):  # who was astray may go on from between two stops
+            skipped = next(k for k, piece in enumerate(leg) if piece.goal == index + 1)
+            waypoints[index]["first_piece"] = len(pieces) + skipped
+            waypoints[index]["end_piece"] = len(pieces) + len(leg)
+        pieces += leg
+    rows = _piece_rows(path, pieces)
+    return Script(waypoints, join_records([rows, np.zeros(2 * len(path), PIECE)], PIECE))
+
+
+def plan_leg(path: Sequence[Waypoint], script: Script, start: tuple[float, float], reached: int) -> slice:
+    """Plan the way from a point [m] beside a waypoint to the next stop, into the last pieces of a script.
+
+    Returns:
+        Which of the pieces they are.
+    """
+    stop = reached + 1
+    while not stops_at(path, stop):
+        stop += 1
+    rows = _piece_rows(path, route([start, *(w.at_m for w in path[reached + 1 : stop + 1])], reached + 1))
+    first = len(script.pieces) - 2 * len(path)
+    script.pieces[first : first + len(rows)] = rows
+    return slice(first, first + len(rows))
+
+
+def _piece_rows(path: Sequence[Waypoint], pieces: Sequence[PathPiece]) -> Records:
+    speeds = [_piece_speed(path, piece) for piece in pieces]
+    rows = [
+        (piece.start, piece.heading_rad, piece.length_m, piece.curvature, piece.goal, speed, speed**2)
+        for piece, speed in zip(pieces, speeds, strict=True)
+    ]
+    return np.array(rows, PIECE)
+
+
+def _piece_speed(path: Sequence[Waypoint], piece: PathPiece) -> float:
+    """Planned speed [m/s], less where the arc is too tight to turn so fast."""
+    speed = path[piece.goal].speed_m_s
+    return speed if piece.curvature == 0.0 else min(speed, TURN_RATE_RAD_S * 0.8 / abs(piece.curvature))
+
+
+def face_people(path: Sequence[Waypoint], script: Script, places: Mapping[str, NDArray[np.float64]]) -> None:
+    """Write down where the people are now, by name (2,) [m], whom a script says to face."""
+    for waypoint, row in zip(path, script.waypoints, strict=True):
+        if isinstance(waypoint.face, str) and waypoint.face != "robot":
+            place = places.get(waypoint.face)
+            row["faces"] = ABSENT if place is None else POINT
+            if place is not None:
+                row["face"] = place
+
+
+def start_walk(path: Sequence[Waypoint], script: Script, *, yields: bool, radius_m: float) -> Records:
+    """(1,) records WALK of a person who is there for good and has not moved yet."""
+    walks, first = np.zeros(1, WALK), script.waypoints[0]
+    walk = walks[0]
+    walk["position"], walk["pause_left"], walk["piece"] = first["at"], first["pause_s"], -1
+    walk["wait_left"] = first["waits_at_most_s"]
+    walk["posture"] = first["posture"] if first["has_pause"] else POSTURES[Posture.STANDING]
+    walk["radius_m"], walk["yields"], walk["leave_s"] = radius_m, yields, math.inf
+    walk["is_present"], walk["pace"], walk["clear_m"], walk["heeds_robot"] = True, 1.0, -1.0, True
+    if first["has_pause"] and first["faces"] == POINT:
+        target = path[0].face
+    elif len(path) > 1:
+        target = path[1].at_m
+    else:
+        return walks
+    assert isinstance(target, tuple)
+    walk["heading"] = math.atan2(target[1] - path[0].at_m[1], target[0] - path[0].at_m[0])
+    return walks
 
 
 def join_records(records: Sequence[Records], kind: np.dtype[Any]) -> Records:

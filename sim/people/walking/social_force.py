@@ -51,6 +51,13 @@ class PlanarState:
     heading_rad: float = 0.0
 
 
+def robot_motion(robot: PlanarState | None) -> RobotMotion:
+    """Where a robot is and how it moves, as kernels take it."""
+    if robot is None:
+        return NO_ROBOT
+    return *robot.position.tolist(), *robot.velocity.tolist(), robot.radius_m
+
+
 class Obstacles(NamedTuple):
     """What a person who walks makes way for.
 

@@ -1,23 +1,34 @@
-"""One control step of people whom nothing guides but their scripts and who is in their way (numba kernels).
+"""One control step of people: following scripts and wishes, giving way, waiting (numba kernels).
 
-Does to the last bit what `Walker` does, of which it is the part without errands and wishes.
+Records are WALK of all people, changed in place; those of the scripts are read only.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.angles import remainder
+from peopleboy.sim.geometry.products import fma
 from peopleboy.sim.people.body.postures import RISE_S, Posture
 from peopleboy.sim.people.body.stance import POSTURES
-from peopleboy.sim.people.walking.script import NOTHING, POINT, Records, Scripts
+from peopleboy.sim.people.walking.script import (
+    ABSENT,
+    NOTHING,
+    POINT,
+    ROBOT,
+    TURN_RATE_RAD_S,
+    Records,
+    Scripts,
+)
 from peopleboy.sim.people.walking.social_force import (
     HURRY,
+    NO_ROBOT,
+    POINT_RADIUS_M,
     TAKEN_WITHIN_M,
     TURNS_M_S,
     Obstacles,
@@ -29,131 +40,21 @@ from peopleboy.sim.people.walking.social_force import (
     is_taken,
     velocity_by_force,
 )
-from peopleboy.sim.people.walking.walker import (
-    ACCELERATION_M_S2,
-    BRAKE_M_S2,
-    KEEP_CLEAR_M,
-    LONGEST_STEP_S,
-    START_WITHIN_RAD,
-    STEER_GAIN,
-    TURN_RATE_RAD_S,
-)
-
-# Walking by records and making way for others (numba kernels).
-
-
-@njit(cache=True)
-def motion_of(first: int, end: int, walks: Records) -> Array:
-    """Give (N, 4) x, y [m] and velocities [m/s] of those who are there, if anybody makes way."""
-    yields, count = False, 0
-    motion = np.empty((end - first, 4))
-    for q in range(first, end):
-        walk = walks[q]
-        yields = yields or walk.yields
-        if walk.is_present:
-            motion[count, 0], motion[count, 1] = walk.position[0], walk.position[1]
-            motion[count, 2], motion[count, 3] = walk.velocity[0], walk.velocity[1]
-            count += 1
-    return motion[: count if yields else 0]
-
-
-@njit(cache=True)
-def make_way(
-    walk: Record,
-    scripts: Scripts,
-    q: int,
-    dt_s: float,
-    obstacles: Obstacles,
-    two: float,
-) -> None:
-    """See `Walker._give_way`."""
-    pieces, first = scripts.pieces, scripts.first_piece[q]
-    goal = pieces[first + walk.piece].goal
-    waypoint = scripts.waypoints[scripts.first_waypoint[q] + goal]
-    target = (waypoint.at[0], waypoint.at[1])
-    wanted, limit = waypoint.speed, HURRY * waypoint.speed
-    is_last = goal == pieces[first + walk.end_piece - 1].goal
-    if is_last:
-        braking = braking_speed(_gap(walk, target), 0.0, dt_s, two)
-        wanted, limit = min(wanted, braking), min(limit, braking)
-    x, y = velocity_by_force(
-        (walk.position[0], walk.position[1]), (walk.velocity[0], walk.velocity[1]), target, wanted,
-        obstacles, bend_rad(walk.blocked_s), dt_s,
-    )  # fmt: skip
-    fast = math.sqrt(x * x + y * y)
-    share = 1.0 if fast <= limit else limit / fast
-    walk.speed = min(fast, limit)
-    walk.velocity[0], walk.velocity[1] = x * share, y * share
-    walk.position[0] += walk.velocity[0] * dt_s
-    walk.position[1] += walk.velocity[1] * dt_s
-    if walk.speed > TURNS_M_S:
-        turn_to(walk, dt_s, math.atan2(y, x))
-    walk.blocked_s = blocked_s(walk.blocked_s, walk.speed, wanted, dt_s)
-    if _gap(walk, target) < TAKEN_WITHIN_M:
-        _pass_waypoint(walk, scripts, q, goal, target, is_last, is_taken(target, obstacles))
-
-
-@njit(cache=True)
-def _pass_waypoint(
-    walk: Record,
-    scripts: Scripts,
-    q: int,
-    goal: int,
-    target: tuple[float, float],
-    is_last: bool,
-    is_occupied: bool,
-) -> None:
-    """See `Walker._pass_waypoint`."""
-    distance = _gap(walk, target)
-    if is_last:
-        if has_arrived(distance, walk.blocked_s, walk.speed, is_occupied):
-            arrive(walk, scripts, q, goal)
-    elif has_passed(distance, is_occupied):
-        walk.reached = goal
-        while scripts.pieces[scripts.first_piece[q] + walk.piece].goal <= goal:
-            walk.piece += 1
-
-
-@njit(cache=True)
-def _gap(walk: Record, target: tuple[float, float]) -> float:
-    x, y = target[0] - walk.position[0], target[1] - walk.position[1]
-    return math.sqrt(x * x + y * y)
-
-
-# What all who walk by records do: turn, stop at the end of a way, brake in time (numba kernels).
-
-Record = Any  # a row of records
-
-
-@njit(cache=True)
-def arrive(walk: Record, scripts: Scripts, q: int, goal: int) -> None:
-    """See `Walker._arrive`."""
-    waypoint = scripts.waypoints[scripts.first_waypoint[q] + goal]
-    walk.velocity[0] = walk.velocity[1] = walk.speed = 0.0
-    walk.pause_left, walk.reached, walk.piece = waypoint.pause_s, goal, -1
-    if waypoint.has_pause:
-        walk.posture = waypoint.posture
-
-
-@njit(cache=True)
-def braking_speed(distance: float, final_squared: float, dt_s: float, two: float) -> float:
-    """Give the highest speed [m/s] from which the final one is reached within a distance [m]."""
-    lost = ACCELERATION_M_S2 * dt_s / 2.0
-    return math.sqrt(lost**two + 2.0 * ACCELERATION_M_S2 * max(distance, 0.0) + final_squared) - lost
-
-
-@njit(cache=True)
-def turn_to(walk: Record, dt_s: float, wanted: float) -> None:
-    """See `Walker._turn`."""
-    turn = remainder(wanted - walk.heading) * min(STEER_GAIN * dt_s, 1.0)
-    turn = min(max(turn, -TURN_RATE_RAD_S * dt_s), TURN_RATE_RAD_S * dt_s)
-    walk.turn_rate = turn / dt_s
-    walk.heading = remainder(walk.heading + turn)
-
 
 Array = NDArray[np.float64]
+Record = Any  # a row of records
 
-STANDING = POSTURES[Posture.STANDING]
+ACCELERATION_M_S2: Final = 1.0
+LONGEST_STEP_S: Final = 1.0 / 60.0  # longer control steps are divided
+_BRAKE_M_S2: Final = 2.0
+_KEEP_CLEAR_M: Final = 0.25  # of the robot, where a person that waits for it comes to stand
+_STEER_GAIN: Final = 8.0  # [1/s]
+_START_WITHIN_RAD: Final = math.radians(25.0)
+_ERRAND_M_S: Final = 1.2  # how fast one goes where no script sends one
+_NEARLY_M: Final = 0.1  # how near to the goal of an errand one has arrived
+_SIDESTEP_M: Final = 0.8  # the last of an errand, on which one does not turn away from what one faces
+_STANDING, _SITTING = POSTURES[Posture.STANDING], POSTURES[Posture.SITTING]
+_CALLING = POSTURES[Posture.CALLING]
 
 
 @njit(cache=True, nogil=True)
@@ -168,75 +69,235 @@ def walk_on(
     walls: Array,
     two: float,
 ) -> None:
-    """Let the people of a world walk on, come and go.
+    """Let the people of a world walk on, come and go, who follow their scripts alone.
 
     Args:
         first: number of the first of them.
         end: and after the last.
-        walks: (Q,) records WALK of all people, changed in place.
+        walks: (Q,) of all people.
         scripts: of all people.
         time_s: [s] at the start of the step.
         dt_s: [s] length of the step.
         robot: where it is now, and how it moves.
         walls: (K, 4) [m] rectangles min_x, min_y, max_x, max_y, for those who make way.
-        two: 2, told so late that squares are made by the library's power, as Python makes them.
+        two: 2, an argument so that squares are made by the library's power, as Python makes them.
     """
-    now_s = time_s + dt_s
-    count = max(math.ceil(dt_s / LONGEST_STEP_S - 1e-9), 1)
-    people, row = motion_of(first, end, walks), -1
+    people, row = _motion_of(first, end, walks), -1
     for q in range(first, end):
-        walk = walks[q]
-        was_present = walk.is_present
+        was_present = walks[q].is_present
         row += was_present
-        walk.has_moved = False
-        walk.is_present = walk.enter_s <= now_s + 1e-9 and not now_s > walk.leave_s - 1e-9
-        if not walk.is_present:
-            continue
-        if was_present:
-            walk.has_moved = True
-            for _ in range(count):
-                if walk.piece >= 0 and walk.yields:
-                    make_way(walk, scripts, q, dt_s / count, Obstacles(people, row, robot, walls), two)
-                elif walk.piece >= 0:
-                    _follow(walk, scripts, q, dt_s / count, robot, two)
-                else:
-                    _pause(walk, scripts, q, dt_s / count, robot)
-        else:
-            waypoint = scripts.waypoints[scripts.first_waypoint[q]]
-            if waypoint.has_pause and waypoint.faces != NOTHING:
-                walk.heading = _faced(walk, waypoint, robot)
+        if come_or_go(walks, q, time_s + dt_s):
+            walk_person(walks, q, scripts, dt_s, steps_in(dt_s), Obstacles(people, row, robot, walls), two)
+        elif walks[q].is_present:
+            enter(walks, q, scripts, robot)
 
 
 @njit(cache=True)
-def _pause(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: RobotMotion) -> None:
-    """See `Walker._pause`."""
+def _motion_of(first: int, end: int, walks: Records) -> Array:
+    """(N, 4) x, y [m] and velocities [m/s] of those who are present."""
+    count, motion = 0, np.empty((end - first, 4))
+    for q in range(first, end):
+        walk = walks[q]
+        if walk.is_present:
+            motion[count, 0], motion[count, 1] = walk.position[0], walk.position[1]
+            motion[count, 2], motion[count, 3] = walk.velocity[0], walk.velocity[1]
+            count += 1
+    return motion[:count]
+
+
+@njit(cache=True)
+def steps_in(dt_s: float) -> int:
+    """How many equal steps, none longer than `LONGEST_STEP_S`, a control step is divided into."""
+    return max(math.ceil(dt_s / LONGEST_STEP_S - 1e-9), 1)
+
+
+@njit(cache=True, nogil=True)
+def come_or_go(walks: Records, q: int, now_s: float) -> bool:
+    """Take a person into the world or out of it at a time [s], and return whether it walks until then."""
+    walk = walks[q]
+    was_present = walk.is_present
+    walk.now_s = now_s
+    walk.is_present = walk.enter_s <= now_s + 1e-9 and not now_s > walk.leave_s - 1e-9
+    walk.has_moved = was_present and walk.is_present
+    return bool(walk.has_moved)
+
+
+@njit(cache=True, nogil=True)
+def enter(walks: Records, q: int, scripts: Scripts, robot: RobotMotion) -> None:
+    """Let a person who has just come face at once what its first waypoint says, if it is there."""
+    walk, waypoint = walks[q], scripts.waypoints[scripts.first_waypoint[q]]
+    if waypoint.has_pause and waypoint.faces != NOTHING:
+        walk.heading = _faced(walk, waypoint.faces, waypoint, robot)
+
+
+@njit(cache=True, nogil=True)
+def walk_person(
+    walks: Records, q: int, scripts: Scripts, dt_s: float, steps: int, obstacles: Obstacles, two: float
+) -> int:
+    """Move one person on by its script, as far as its wish leaves it.
+
+    Args:
+        walks: see `walk_on`.
+        q: number of the person.
+        scripts: see `walk_on`.
+        dt_s: [s] length of the control step.
+        steps: how many of its steps are to be done.
+        obstacles: what is around at the start of the control step.
+        two: see `walk_on`.
+
+    Returns:
+        -1 mostly; how many steps are left if the person has set off from beside its waypoint, so that its way
+        must be planned before they are done.
+    """
+    walk, dt_s = walks[q], dt_s / steps_in(dt_s)
+    for k in range(steps):
+        if walk.is_sent:
+            _stray(walk, scripts, q, dt_s, obstacles, two)
+        elif walk.stands:
+            _halt(walk, scripts, q, dt_s, obstacles.robot, two)
+        elif walk.is_astray and walk.piece < 0:
+            _turn_back(walk, scripts, q)
+        elif walk.piece >= 0 and walk.is_turned_away:
+            _turn_to_the_way(walk, scripts, q, dt_s)
+        elif walk.piece >= 0 and (walk.yields or walk.is_astray or walk.clear_m >= 0.0):
+            _give_way(walk, scripts, q, dt_s, obstacles, two)
+        elif walk.piece >= 0:
+            _follow(walk, scripts, q, dt_s, obstacles.robot, walk.pace, two)
+        elif _pause(walk, scripts, q, dt_s, obstacles.robot):
+            return steps - k - 1
+    return -1
+
+
+@njit(cache=True)
+def _pause(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: RobotMotion) -> bool:
+    """Stand, turn to what the script says, set off when the pause is over; returns what `_set_off` does."""
     walk.velocity[0] = walk.velocity[1] = walk.speed = 0.0
     walk.pause_left -= dt_s
     waypoint = scripts.waypoints[scripts.first_waypoint[q] + walk.reached]
-    if walk.pause_left > 1e-9:
-        turn_to(walk, dt_s, walk.heading if waypoint.faces == NOTHING else _faced(walk, waypoint, robot))
-        return
-    if walk.posture != STANDING:
-        walk.posture = STANDING
+    waits = waypoint.until_robot_within_m >= 0.0
+    is_awaiting = waits and _awaits(walk, waypoint, robot)
+    if walk.pause_left > 1e-9 or is_awaiting:
+        if walk.pause_left <= 1e-9 or walk.pause_left == math.inf:
+            walk.wait_left -= dt_s
+        if waits and not is_awaiting and walk.posture == _CALLING:  # its call was heard: the robot has come
+            walk.posture = _STANDING
+        faces = waypoint.faces
+        if is_awaiting and faces == NOTHING:
+            faces = ROBOT
+        _turn(walk, dt_s, walk.heading if faces == NOTHING else _faced(walk, faces, waypoint, robot))
+        return False
+    if walk.posture != _STANDING:
+        walk.posture = _STANDING
         walk.on_feet_in = RISE_S
     walk.on_feet_in -= dt_s
     following = scripts.waypoints[scripts.first_waypoint[q] + walk.reached + 1]
     bearing = _bearing(walk, following.at[0], following.at[1])
-    turn_to(walk, dt_s, bearing)
-    if walk.on_feet_in <= 0.0 and abs(remainder(bearing - walk.heading)) < START_WITHIN_RAD:
-        walk.piece, walk.end_piece = waypoint.first_piece, waypoint.end_piece
-        walk.along = walk.pause_left = 0.0
+    _turn(walk, dt_s, bearing)
+    if walk.on_feet_in <= 0.0 and abs(remainder(bearing - walk.heading)) < _START_WITHIN_RAD:
+        return _set_off(walk, scripts, q)
+    return False
 
 
 @njit(cache=True)
-def _follow(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: RobotMotion, two: float) -> None:
-    """See `Walker._follow`."""
+def _awaits(walk: Record, waypoint: Record, robot: RobotMotion) -> bool:
+    """Whether a person in a pause waits for a robot that is not near enough yet."""
+    if robot[4] < 0.0 or walk.wait_left <= 0.0:
+        return False
+    return bool(_gap(walk, robot[0], robot[1]) > waypoint.until_robot_within_m)
+
+
+@njit(cache=True)
+def _set_off(walk: Record, scripts: Scripts, q: int) -> bool:
+    """Start on the way to the next stop; return whether it must be planned first.
+
+    Who makes way needs no more of a way than its waypoints; others follow lines, which begin at the waypoint.
+    """
+    waypoint = scripts.waypoints[scripts.first_waypoint[q] + walk.reached]
+    walk.piece, walk.end_piece = waypoint.first_piece, waypoint.end_piece
+    walk.along = walk.pause_left = 0.0
+    is_beside = walk.position[0] != waypoint.at[0] or walk.position[1] != waypoint.at[1]
+    return bool(is_beside and not (walk.yields or walk.is_astray))
+
+
+@njit(cache=True)
+def _halt(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: RobotMotion, two: float) -> None:
+    """Come to a stand, and turn to what is to be faced."""
+    if walk.speed > 0.0 and walk.piece >= 0 and not walk.is_astray and not walk.yields:
+        _follow(walk, scripts, q, dt_s, robot, 0.0, two)
+        return
+    walk.speed = max(walk.speed - 2.0 * _BRAKE_M_S2 * dt_s, 0.0)
+    length = _hypot(walk.velocity[0], walk.velocity[1])
+    if length > walk.speed:
+        walk.velocity[0] *= walk.speed / length
+        walk.velocity[1] *= walk.speed / length
+    walk.position[0] += walk.velocity[0] * dt_s
+    walk.position[1] += walk.velocity[1] * dt_s
+    if walk.speed == 0.0 and walk.posture != _SITTING:
+        wanted = walk.heading
+        if walk.has_face:
+            wanted = _bearing(walk, walk.faces[0], walk.faces[1])
+        _turn(walk, dt_s, wanted)
+        walk.is_turned_away = walk.has_face
+
+
+@njit(cache=True)
+def _turn_to_the_way(walk: Record, scripts: Scripts, q: int, dt_s: float) -> None:
+    """Turn back to where the way leads, after a stop to look elsewhere."""
+    goal = scripts.waypoints[scripts.first_waypoint[q] + _goal_of(walk, scripts, q)]
+    bearing = _bearing(walk, goal.at[0], goal.at[1])
+    _turn(walk, dt_s, bearing)
+    walk.is_turned_away = abs(remainder(bearing - walk.heading)) > _START_WITHIN_RAD
+
+
+@njit(cache=True)
+def _stray(walk: Record, scripts: Scripts, q: int, dt_s: float, obstacles: Obstacles, two: float) -> None:
+    """Leave the way of the script, on foot, for a point of the floor."""
+    if walk.posture != _STANDING:
+        walk.posture = _STANDING
+        walk.on_feet_in = RISE_S
+    walk.is_astray, walk.is_turned_away, walk.is_homing, walk.piece = True, False, False, -1
+    walk.on_feet_in -= dt_s
+    distance = _gap(walk, walk.goes_to[0], walk.goes_to[1])
+    if walk.on_feet_in > 0.0 or distance < _NEARLY_M:
+        _halt(walk, scripts, q, dt_s, obstacles.robot, two)
+        return
+    wanted = min(_ERRAND_M_S, _braking_speed(distance, 0.0, dt_s, two))
+    goal = (walk.goes_to[0], walk.goes_to[1])
+    _walk_by_force(walk, dt_s, goal, wanted, HURRY * _ERRAND_M_S, obstacles, two)
+    if walk.has_face and distance < _SIDESTEP_M:
+        _turn(walk, dt_s, _bearing(walk, walk.faces[0], walk.faces[1]))
+
+
+@njit(cache=True)
+def _turn_back(walk: Record, scripts: Scripts, q: int) -> None:
+    """Start on the way back to the script: to the waypoint to stay at, or to the next one."""
+    if walk.pause_left <= 0.0:
+        _set_off(walk, scripts, q)
+        return
+    home = scripts.waypoints[scripts.first_waypoint[q] + walk.reached]
+    if _gap(walk, home.at[0], home.at[1]) < _NEARLY_M:
+        walk.is_astray = False
+    else:
+        walk.is_homing, walk.piece, walk.along = True, 0, 0.0
+
+
+@njit(cache=True)
+def _goal_of(walk: Record, scripts: Scripts, q: int) -> int:
+    """Number of the waypoint to which a person is under way."""
+    return int(walk.reached if walk.is_homing else scripts.pieces[scripts.first_piece[q] + walk.piece].goal)
+
+
+@njit(cache=True)
+def _follow(
+    walk: Record, scripts: Scripts, q: int, dt_s: float, robot: RobotMotion, pace: float, two: float
+) -> None:
+    """Move along the planned way, exactly, at a share of the planned speed."""
     pieces, first = scripts.pieces, scripts.first_piece[q]
     piece = pieces[first + walk.piece]
     ahead = piece.heading + piece.curvature * walk.along
-    limit = min(_speed_limit(walk, scripts, q, dt_s, two), _limit_by_robot(walk, robot, ahead, two))
+    limit = pace * min(_speed_limit(walk, scripts, q, dt_s, two), _limit_by_robot(walk, robot, ahead, two))
     rise = ACCELERATION_M_S2 * dt_s
-    walk.speed = max(min(limit, walk.speed + rise), walk.speed - 2.0 * BRAKE_M_S2 * dt_s, 0.0)
+    walk.speed = max(min(limit, walk.speed + rise), walk.speed - 2.0 * _BRAKE_M_S2 * dt_s, 0.0)
     walk.along += walk.speed * dt_s
     while walk.along >= pieces[first + walk.piece].length - 1e-4:
         walk.along -= pieces[first + walk.piece].length
@@ -244,19 +305,19 @@ def _follow(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: RobotMot
             goal = pieces[first + walk.piece].goal
             end = scripts.waypoints[scripts.first_waypoint[q] + goal]
             walk.position[0], walk.position[1] = end.at[0], end.at[1]
-            arrive(walk, scripts, q, goal)
+            _arrive(walk, scripts, q, goal)
             return
         walk.piece += 1
         walk.reached = pieces[first + walk.piece].goal - 1
     direction = _put(walk, pieces[first + walk.piece])
     walk.velocity[0] = walk.speed * math.cos(direction)
     walk.velocity[1] = walk.speed * math.sin(direction)
-    turn_to(walk, dt_s, direction)
+    _turn(walk, dt_s, direction)
 
 
 @njit(cache=True)
 def _put(walk: Record, piece: Record) -> float:
-    """Put somebody where they have got to on a piece, and tell its direction there; see `PathPiece.at`."""
+    """Put a person where it has got to on a piece, and return its direction there; see `PathPiece.at`."""
     heading: float = piece.heading + piece.curvature * walk.along
     if piece.curvature == 0.0:
         walk.position[0] = piece.start[0] + walk.along * math.cos(heading)
@@ -271,42 +332,159 @@ def _put(walk: Record, piece: Record) -> float:
 
 @njit(cache=True)
 def _speed_limit(walk: Record, scripts: Scripts, q: int, dt_s: float, two: float) -> float:
-    """See `Walker._speed_limit`."""
+    """Speed [m/s] from which every slower piece ahead, and the stop, can be reached by gentle braking."""
     first = scripts.first_piece[q]
     piece = scripts.pieces[first + walk.piece]
     limit: float = piece.speed
     ahead = piece.length - walk.along
     for k in range(first + walk.piece + 1, first + walk.end_piece):
         piece = scripts.pieces[k]
-        limit = min(limit, braking_speed(ahead, piece.speed_squared, dt_s, two))
+        limit = min(limit, _braking_speed(ahead, piece.speed_squared, dt_s, two))
         ahead += piece.length
-    return min(limit, braking_speed(ahead, 0.0, dt_s, two))
+    return min(limit, _braking_speed(ahead, 0.0, dt_s, two))
+
+
+@njit(cache=True)
+def _braking_speed(distance: float, final_squared: float, dt_s: float, two: float) -> float:
+    """Highest speed [m/s] for this step from which the final one is reached within a distance [m]."""
+    lost = ACCELERATION_M_S2 * dt_s / 2.0
+    return math.sqrt(lost**two + 2.0 * ACCELERATION_M_S2 * max(distance, 0.0) + final_squared) - lost
 
 
 @njit(cache=True)
 def _limit_by_robot(walk: Record, robot: RobotMotion, direction: float, two: float) -> float:
-    """See `Walker._limit_by_robot`."""
+    """Speed [m/s] in a direction [rad] at which a person does not walk into a robot that stands there."""
+    if robot[4] < 0.0:
+        return math.inf
     x, y = robot[0] - walk.position[0], robot[1] - walk.position[1]
     ahead = x * math.cos(direction) + y * math.sin(direction)
     aside = abs(y * math.cos(direction) - x * math.sin(direction))
     reach = walk.radius_m + robot[4]
     if ahead < 0.0 or aside > reach:
         return math.inf
-    clear = ahead - math.sqrt(max(reach**two - aside**two, 0.0)) - KEEP_CLEAR_M
-    return math.sqrt(2.0 * BRAKE_M_S2 * max(clear, 0.0))
+    clear = ahead - math.sqrt(max(reach**two - aside**two, 0.0)) - _KEEP_CLEAR_M
+    return math.sqrt(2.0 * _BRAKE_M_S2 * max(clear, 0.0))
 
 
 @njit(cache=True)
-def _faced(walk: Record, waypoint: Record, robot: RobotMotion) -> float:
-    """Direction [rad] of what a waypoint says is to be faced."""
-    if waypoint.faces == POINT:
+def _give_way(walk: Record, scripts: Scripts, q: int, dt_s: float, obstacles: Obstacles, two: float) -> None:
+    """Move by social force towards the next waypoint."""
+    walk.is_astray = walk.is_astray or not walk.yields
+    goal = _goal_of(walk, scripts, q)
+    waypoint = scripts.waypoints[scripts.first_waypoint[q] + goal]
+    target = (waypoint.at[0], waypoint.at[1])
+    wanted, limit = waypoint.speed, HURRY * waypoint.speed
+    is_last = walk.is_homing or goal == scripts.pieces[scripts.first_piece[q] + walk.end_piece - 1].goal
+    if is_last:
+        braking = _braking_speed(_gap(walk, target[0], target[1]), 0.0, dt_s, two)
+        wanted, limit = min(wanted, braking), min(limit, braking)
+    wanted = walk.pace * wanted
+    seen = _walk_by_force(walk, dt_s, target, wanted, limit, obstacles, two)
+    walk.blocked_s = blocked_s(walk.blocked_s, walk.speed, wanted, dt_s)
+    distance = _gap(walk, target[0], target[1])
+    if distance < TAKEN_WITHIN_M:
+        is_occupied = is_taken(target, seen)
+        if is_last:
+            if has_arrived(distance, walk.blocked_s, walk.speed, is_occupied):
+                _arrive(walk, scripts, q, goal)
+        elif has_passed(distance, is_occupied):
+            walk.reached = goal
+            while scripts.pieces[scripts.first_piece[q] + walk.piece].goal <= goal:
+                walk.piece += 1
+
+
+@njit(cache=True)
+def _walk_by_force(
+    walk: Record,
+    dt_s: float,
+    goal: tuple[float, float],
+    wanted: float,
+    limit: float,
+    obstacles: Obstacles,
+    two: float,
+) -> Obstacles:
+    """Move by social force towards a goal [m], as fast as is wanted, up to a limit [m/s].
+
+    Returns:
+        What the person makes way for: for the robot as if it were larger, or not at all, if it wishes so.
+    """
+    robot = obstacles.robot
+    if not walk.heeds_robot:
+        robot = NO_ROBOT
+    elif robot[4] >= 0.0 and walk.clear_m >= 0.0:
+        robot = (robot[0], robot[1], robot[2], robot[3], max(robot[4], walk.clear_m - POINT_RADIUS_M))
+    seen = Obstacles(obstacles.people, obstacles.walker, robot, obstacles.walls)
+    x, y = velocity_by_force(
+        (walk.position[0], walk.position[1]), (walk.velocity[0], walk.velocity[1]), goal, wanted, seen,
+        bend_rad(walk.blocked_s), dt_s,
+    )  # fmt: skip
+    if not walk.heeds_robot:
+        limit = min(limit, _limit_by_robot(walk, obstacles.robot, math.atan2(y, x), two))
+    fast = math.sqrt(x * x + y * y)
+    share = 1.0 if fast <= limit else limit / fast
+    walk.speed = min(fast, limit)
+    walk.velocity[0], walk.velocity[1] = x * share, y * share
+    walk.position[0] += walk.velocity[0] * dt_s
+    walk.position[1] += walk.velocity[1] * dt_s
+    if walk.speed > TURNS_M_S:
+        _turn(walk, dt_s, math.atan2(y, x))
+    return seen
+
+
+@njit(cache=True)
+def _arrive(walk: Record, scripts: Scripts, q: int, goal: int) -> None:
+    """Stop at the end of the planned way."""
+    waypoint = scripts.waypoints[scripts.first_waypoint[q] + goal]
+    walk.velocity[0] = walk.velocity[1] = walk.speed = 0.0
+    if goal > walk.reached:  # else it has come back to where it was to stay
+        walk.pause_left, walk.wait_left = waypoint.pause_s, waypoint.waits_at_most_s
+    walk.reached, walk.piece, walk.is_astray, walk.is_homing = goal, -1, False, False
+    if waypoint.has_pause:
+        walk.posture = waypoint.posture
+
+
+@njit(cache=True)
+def _turn(walk: Record, dt_s: float, wanted: float) -> None:
+    """Turn towards a direction [rad], fast at first and gently at the end."""
+    turn = remainder(wanted - walk.heading) * min(_STEER_GAIN * dt_s, 1.0)
+    turn = min(max(turn, -TURN_RATE_RAD_S * dt_s), TURN_RATE_RAD_S * dt_s)
+    walk.turn_rate = turn / dt_s
+    walk.heading = remainder(walk.heading + turn)
+
+
+@njit(cache=True)
+def _faced(walk: Record, faces: int, waypoint: Record, robot: RobotMotion) -> float:
+    """Direction [rad] of what is to be faced; the present heading if it is not there."""
+    if faces == POINT:
         return _bearing(walk, waypoint.face[0], waypoint.face[1])
+    if faces == ABSENT or robot[4] < 0.0:
+        return float(walk.heading)
     return _bearing(walk, robot[0], robot[1])
 
 
 @njit(cache=True)
 def _bearing(walk: Record, x: float, y: float) -> float:
-    """See `Walker._bearing`."""
+    """Direction [rad] of a point [m]; the present heading if it is here."""
     dx, dy = x - walk.position[0], y - walk.position[1]
     heading: float = walk.heading
     return heading if math.hypot(dx, dy) < 1e-6 else math.atan2(dy, dx)
+
+
+@njit(cache=True)
+def _gap(walk: Record, x: float, y: float) -> float:
+    """Distance [m] of a point [m]."""
+    dx, dy = x - walk.position[0], y - walk.position[1]
+    return math.sqrt(dx * dx + dy * dy)
+
+
+@njit(cache=True)
+def _hypot(x: float, y: float) -> float:
+    """Length of a vector, correctly rounded as by Python's `math.hypot`; the one of numba is not."""
+    low, high = min(abs(x), abs(y)), max(abs(x), abs(y))
+    squared = high * high + low * low
+    if squared == 0.0:
+        return 0.0
+    lost = fma(high, high, -(high * high)) + fma(low, low, -(low * low))
+    lost += (high * high - squared) + low * low
+    length = math.sqrt(squared)
+    return length + (fma(-length, length, squared) + lost) / (2.0 * length)

@@ -8,9 +8,9 @@ from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.crowd import those_present
 from peopleboy.sim.people.person import PlanarState, Waypoint
 from peopleboy.sim.people.reaction import Reaction
-from peopleboy.sim.people.walking.script import WALK, is_scripted, join_scripts, start_walk, write_script
+from peopleboy.sim.people.walking.script import WALK, is_scripted, join_records, join_scripts
 from peopleboy.sim.people.walking.surroundings import NOBODY
-from peopleboy.sim.people.walking.walk_kernels import walk_on
+from peopleboy.sim.people.walking.walk_kernels import _hypot, walk_on
 from tests.helpers.worlds.walkers import NO_WALLS, make_person
 
 DT_S = 1 / 15
@@ -44,14 +44,13 @@ def assert_walk_alike(people, walks):
 
 
 def write_down(people):
+    """The records and scripts of all people, side by side."""
     assert all(is_scripted(person.config) for person in people)
-    walks = np.zeros(len(people), WALK)
-    for person, record in zip(people, walks, strict=True):
-        start_walk(person.config, person.walker, person.radius_m, record)
-    return walks, join_scripts([write_script(person.config, person.walker) for person in people])
+    walks = join_records([person.walker.walks for person in people], WALK)
+    return walks, join_scripts([person.walker.script for person in people])
 
 
-def test_records_walk_to_the_last_bit_as_people_do_with_a_robot_in_their_way():
+def test_people_walk_together_to_the_last_bit_as_each_alone_with_a_robot_in_their_way():
     rng = np.random.default_rng(0)
     people = [chance_person(rng) for _ in range(40)]
     walks, scripts = write_down(people)
@@ -70,7 +69,7 @@ def test_records_walk_to_the_last_bit_as_people_do_with_a_robot_in_their_way():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
-def test_records_make_way_to_the_last_bit_as_people_do(seed):
+def test_people_make_way_together_to_the_last_bit_as_each_alone(seed):
     rng = np.random.default_rng(seed)
     people = [chance_person(rng, yields=bool(rng.random() < 0.7), name=f"p{k}") for k in range(12)]
     walks, scripts = write_down(people)
@@ -99,6 +98,11 @@ def test_records_make_way_to_the_last_bit_as_people_do(seed):
 )
 def test_whoever_heeds_somebody_is_not_scripted(settings):
     assert not is_scripted(make_person(**settings).config)
+
+
+def test_the_length_of_a_vector_is_that_of_the_library():
+    pairs = np.random.default_rng(0).normal(size=(2000, 2)).tolist()
+    assert [_hypot(x, y) for x, y in pairs] == [math.hypot(x, y) for x, y in pairs]
 
 
 def test_the_remainder_of_kernels_is_that_of_the_library():
