@@ -196,14 +196,3 @@ def test_a_reaction_that_cannot_be_is_refused(values, said):
 def test_a_leader_that_would_never_go_on_is_refused():
     with pytest.raises(BadInput, match=r"goes_on_within_m 3\.0 must be"):
         Lead(waits_beyond_m=3.0, goes_on_within_m=3.0)
-
-
-def test_who_was_pushed_aside_goes_on_from_there_without_a_jump():
-    path = (Waypoint(at_m=(0.0, 0.0)), Waypoint(at_m=(4.0, 0.0)), Waypoint(at_m=(0.0, 0.2)))
-    beside = 0
-    for x in np.linspace(3.9, 4.5, 16):
-        person = make_person(path=path, reacts=reaction("makes_way"))
-        met = meet(person, drive((x, 0.1), (0.0, 0.0)), 14.0)
-        assert np.linalg.norm(np.diff(met.at, axis=0), axis=1).max() < 2.0 / RATE_HZ
-        beside += np.linalg.norm(met.at - (4.0, 0.0), axis=1).min() > 0.1 and met.at[-1, 0] < 1.0
-    assert beside

@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 from peopleboy.sim.people.person import PlanarState, Posture, Waypoint, timetable
 from peopleboy.sim.people.walking.path import CORNER_CUT_M, abreast, route
 from peopleboy.sim.people.walking.script import TURN_RATE_RAD_S
-from peopleboy.sim.people.walking.surroundings import Present
+from peopleboy.sim.people.walking.surroundings import ALONE, Present, Wish
 from peopleboy.sim.people.walking.walk_kernels import ACCELERATION_M_S2
+from peopleboy.sim.people.walking.walker import Walker
 from tests.helpers.worlds.walkers import make_person, settle, walk, walk_together
 
 
@@ -284,3 +285,18 @@ def test_who_yields_stops_before_a_wall_that_is_too_near_and_goes_on(gap):
     farthest = max(person.position[0] for _ in walk(person, 12.0, walls=wall))
     assert farthest > 3.5
     np.testing.assert_allclose(person.position, (0.0, 0.0), atol=0.03)
+
+
+@pytest.mark.parametrize("dt_s", [1 / 60, 1 / 15])
+def test_an_errand_that_ends_beside_the_waypoint_goes_on_from_there_without_a_jump(dt_s):
+    walker = Walker((Waypoint(at_m=(0.0, 0.0), pause_s=6.0), Waypoint(at_m=(4.0, 0.0))), False, 0.2)
+    errands = {0: Wish(goes_to=np.array([1.0, 0.3])), 2: Wish(goes_to=np.zeros(2)), 5: Wish()}
+    track = [walker.position]
+    for k in range(round(14.0 / dt_s)):
+        due = max(start for start in errands if start <= k * dt_s)
+        walker.step(dt_s, ALONE, errands[due])
+        track.append(walker.position)
+        if not walker.is_walking and k * dt_s > 5.0 and walker.reached == 0:
+            assert 0.0 < math.dist(walker.position, (0.0, 0.0)) < 0.12
+    assert np.linalg.norm(np.diff(track, axis=0), axis=1).max() < 2.0 * dt_s
+    assert walker.position.tolist() == [4.0, 0.0]
