@@ -292,7 +292,7 @@ def test_an_errand_that_ends_beside_the_waypoint_goes_on_from_there_without_a_ju
     walker = Walker((Waypoint(at_m=(0.0, 0.0), pause_s=6.0), Waypoint(at_m=(4.0, 0.0))), False, 0.2)
     errands = {0: Wish(goes_to=np.array([1.0, 0.3])), 2: Wish(goes_to=np.zeros(2)), 5: Wish()}
     track = [walker.position]
-    for k in range(round(14.0 / dt_s)):
+    for k in range(round(18.0 / dt_s)):
         due = max(start for start in errands if start <= k * dt_s)
         walker.step(dt_s, ALONE, errands[due])
         track.append(walker.position)
