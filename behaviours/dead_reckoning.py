@@ -6,9 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Self
 
-import numpy as np
-
 from peopleboy.behaviours.percept import Percept, Points
+from peopleboy.geometry.pose2 import Pose2
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,8 +42,5 @@ class Motion:
     def carry(self, points: Points) -> Points:
         """Express points (N, 2) [m] of the robot's frame before the drive in its frame after it."""
         turn = self.turn_rad
-        shift = self.way_m * np.array([math.cos(turn / 2.0), math.sin(turn / 2.0)])
-        cosine, sine = math.cos(turn), math.sin(turn)
-        before_from_after = np.array([[cosine, -sine], [sine, cosine]])
-        carried: Points = (points - shift) @ before_from_after
-        return carried
+        after = Pose2(self.way_m * math.cos(turn / 2.0), self.way_m * math.sin(turn / 2.0), turn)
+        return after.points_to_local(points)

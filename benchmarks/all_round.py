@@ -72,7 +72,7 @@ class _Rows:
     def add(self, frame: int, tick: Tick) -> None:
         robot = tick.truth.robot
         for person in tick.truths[PANORAMA].people:
-            x, y = robot.locate(person.position_m)
+            x, y = robot.to_local(person.position_m)
             counts = NEAREST_M <= math.hypot(x, y) <= FARTHEST_M
             inside = person.inside_fraction
             seen = min(person.visible_fraction / inside, 1.0) if inside > 0 else 0.0
@@ -242,7 +242,7 @@ class _Watch:
 
 def _track_of(tick: Tick, person: PersonTruth, before: int) -> Track | None:
     """Find the track of a person: the one it had before, or the nearest, if it stands within half a metre."""
-    place = tick.truth.robot.locate(person.position_m)
+    place = tick.truth.robot.to_local(person.position_m)
     near = {
         (track.id != before, math.dist(track.place.position_m, place)): track
         for track in tick.tracks

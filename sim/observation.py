@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.planar import Planar
+from peopleboy.geometry.pose2 import Pose2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -25,7 +25,7 @@ class Senses:
 
     time_s: float
     sonar_m: NDArray[np.float64]
-    odometry: Planar
+    odometry: Pose2
     wheel_speeds_m_s: tuple[float, float]
 
 

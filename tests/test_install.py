@@ -36,7 +36,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A user's own folder, with files of names that an ill-kept package would trip over."""
     folder = tmp_path_factory.mktemp("home")
-    for name in ("sim", "tracker", "behaviours", "scenarios", "studies", "bad_input"):
+    for name in ("geometry", "sim", "tracker", "behaviours", "scenarios", "studies", "bad_input"):
         (folder / f"{name}.py").write_text(
             "raise ImportError('this one is the user\\'s')\n", encoding="utf-8"
         )

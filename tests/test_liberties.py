@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-ROOMS = ("sim", "tracker", "behaviours", "scenarios", "studies")
+ROOMS = ("geometry", "sim", "tracker", "behaviours", "scenarios", "studies")
 Name = tuple[str, str]
 
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, Final, Protocol
+from typing import Any, Final, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.pose2 import Pose2
 
 Floats = NDArray[np.float64]
 
@@ -108,6 +109,16 @@ class Odometry:
         """Refuse what no robot does."""
         for name in (column.name for column in fields(self)):
             _check_finite(name, getattr(self, name))
+
+    @classmethod
+    def from_motion(cls, motion: Pose2) -> Self:
+        """Take the pose after a movement, in the robot's frame before it."""
+        return cls(advance_m=motion.x, aside_m=motion.y, turn_rad=motion.heading)
+
+    @property
+    def motion(self) -> Pose2:
+        """Pose of the robot after the movement, in its frame before it."""
+        return Pose2(self.advance_m, self.aside_m, self.turn_rad)
 
 
 class ReadOnlyImages(Mapping[str, NDArray[Any]]):
@@ -253,9 +264,4 @@ def joined(first: Odometry | None, then: Odometry | None) -> Odometry | None:
     """Give the motion that two after each other make; None if one is unknown."""
     if first is None or then is None:
         return None
-    cosine, sine = math.cos(first.turn_rad), math.sin(first.turn_rad)
-    return Odometry(
-        advance_m=first.advance_m + cosine * then.advance_m - sine * then.aside_m,
-        aside_m=first.aside_m + sine * then.advance_m + cosine * then.aside_m,
-        turn_rad=math.remainder(first.turn_rad + then.turn_rad, math.tau),
-    )
+    return Odometry.from_motion(first.motion.compose(then.motion))

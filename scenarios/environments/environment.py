@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.command import Command
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.environments.arguments import check_actions, check_size, check_word, shown_cameras
 from peopleboy.scenarios.environments.judging.episode_figures import Figures, track_in
 from peopleboy.scenarios.environments.judging.episodes import LiveEpisodes, Terms, Verdicts
@@ -40,7 +41,6 @@ from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.scores.following_score import TARGET, following_task
 from peopleboy.sim.batch.snapshot import Snapshot, take_snapshot
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.view import BLIND
@@ -164,7 +164,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             name, cameras = self._tracker_name, config.robot.cameras
             self._tracker = make_checked_eyes(name, self._seed, self._world.truth, cameras)
         self._tracks: tuple[Track, ...] = ()
-        self._before: Planar | None = None
+        self._before: Pose2 | None = None
         self._track = 0  # that lay on the person to follow last
         self._images: Arrays = {}
         terms = Terms(

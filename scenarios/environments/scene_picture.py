@@ -11,11 +11,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.drawing.overlay import Picture, draw_tracks, show_thermal
 from peopleboy.scenarios.drawing.palette import ROBOT, Rgb, person_colour
 from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_things, draw_walls
 from peopleboy.scenarios.drawing.plan_sheet import Labels
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place import Place
@@ -101,7 +101,7 @@ def _draw_person(canvas: Picture, centre: NDArray[np.float64], person: Bystander
     cv2.putText(canvas, person.name, at, cv2.FONT_HERSHEY_SIMPLEX, 0.4, (60, 60, 60), 1, cv2.LINE_AA)
 
 
-def _draw_robot(canvas: Picture, robot: Planar) -> None:
+def _draw_robot(canvas: Picture, robot: Pose2) -> None:
     centre = np.array([WIDTH_PX, HEIGHT_PX]) / 2.0
     _disc(canvas, centre, RADIUS_M, ROBOT, 2)
     _needle(canvas, centre, robot.heading, 1.5 * RADIUS_M, ROBOT)

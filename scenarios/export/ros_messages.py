@@ -17,6 +17,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 from scipy.spatial.transform import Rotation
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.drawing.overlay import encode_jpeg
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.truth_files import further_cameras
@@ -25,7 +26,6 @@ from peopleboy.sim.cameras.depth_image import points_of
 from peopleboy.sim.cameras.thermal import encode_16bit
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, SONAR_POSITION_M, WHEEL_DISTANCE_M
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.truth import Box, Truth
@@ -42,17 +42,17 @@ class OdometryNoise:
 
     def __init__(self, encoder_noise_m: float) -> None:
         self._per_m = encoder_noise_m**2
-        self._before: Planar | None = None
+        self._before: Pose2 | None = None
         self._covariance = np.zeros((3, 3))
 
-    def carry(self, pose: Planar) -> NDArray[np.float64]:
+    def carry(self, pose: Pose2) -> NDArray[np.float64]:
         """Give the covariance (3, 3) of x, y [m] and heading [rad] at the next pose; at the first it is 0."""
         if self._before is not None:
             self._covariance = self._carried(self._before, pose)
         self._before = pose
         return self._covariance.copy()
 
-    def _carried(self, before: Planar, pose: Planar) -> NDArray[np.float64]:
+    def _carried(self, before: Pose2, pose: Pose2) -> NDArray[np.float64]:
         turn = math.remainder(pose.heading - before.heading, math.tau)
         cos, sin = math.cos(before.heading + turn / 2.0), math.sin(before.heading + turn / 2.0)
         advance = (pose.x - before.x) * cos + (pose.y - before.y) * sin
@@ -261,7 +261,7 @@ class Messenger:
         middle = self._make("vision_msgs/Point2D", x=left + width / 2.0, y=top + height / 2.0)
         centre = self._make("vision_msgs/Pose2D", position=middle, theta=0.0)
         hypothesis = self._make("vision_msgs/ObjectHypothesis", class_id="person", score=score)
-        nowhere = self._pose_with_covariance(Planar(0.0, 0.0, 0.0))
+        nowhere = self._pose_with_covariance(Pose2(0.0, 0.0, 0.0))
         return self._make(
             "vision_msgs/Detection2D",
             header=header,
@@ -282,7 +282,7 @@ class Messenger:
         return "/tracks/places", "vision_msgs/msg/Detection3DArray", content
 
     def _standing(self, header: Any, name: str, place: FloorPlace, score: float) -> Any:
-        pose = self._pose_with_covariance(Planar(*place.position_m, 0.0))
+        pose = self._pose_with_covariance(Pose2(*place.position_m, 0.0))
         xx, xy, yy = place.covariance_m2
         pose.covariance[[0, 1, 6, 7]] = xx, xy, xy, yy
         hypothesis = self._make("vision_msgs/ObjectHypothesis", class_id="person", score=score)
@@ -330,11 +330,11 @@ class Messenger:
             self._transform(_ODOM, _BASE, odometry, time_s),
         ]
         for person in tick.truth.people:
-            place = Planar(*person.position_m, person.heading_rad)
+            place = Pose2(*person.position_m, person.heading_rad)
             frames.append(self._transform(_MAP, f"people/{person.name}", place, time_s))
         return frames
 
-    def _transform(self, parent: str, child: str, pose: Planar, time_s: float) -> Any:
+    def _transform(self, parent: str, child: str, pose: Pose2, time_s: float) -> Any:
         turn = Rotation.from_euler("z", pose.heading).as_quat()
         return self._stamped(parent, child, (pose.x, pose.y, 0.0), turn, time_s)
 
@@ -361,7 +361,7 @@ class Messenger:
             transform=transform,
         )
 
-    def _pose_with_covariance(self, pose: Planar) -> Any:
+    def _pose_with_covariance(self, pose: Pose2) -> Any:
         turn = self._quaternion(Rotation.from_euler("z", pose.heading).as_quat())
         place = self._make("geometry_msgs/Point", x=pose.x, y=pose.y, z=0.0)
         return self._make(
@@ -393,10 +393,10 @@ def nanoseconds(time_s: float) -> int:
     return round(time_s * 1e9)
 
 
-def drift(true: Planar, odometry: Planar) -> Planar:
+def drift(true: Pose2, odometry: Pose2) -> Pose2:
     """Give the pose of the odometry's frame in the world: with the odometry on top it gives the true pose."""
     heading = math.remainder(true.heading - odometry.heading, math.tau)
     cos, sin = math.cos(heading), math.sin(heading)
-    return Planar(
+    return Pose2(
         true.x - cos * odometry.x + sin * odometry.y, true.y - sin * odometry.x - cos * odometry.y, heading
     )

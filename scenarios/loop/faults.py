@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.schema.robot import FaultSpec
 from peopleboy.scenarios.loop.loop import Stage, TrackerDown
 from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.truth.truth import Truth
@@ -22,7 +22,7 @@ from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again
 
 JUMP_EVERY_S = 1.0
-JUMP = Planar(x=0.7, y=-0.4, heading=math.radians(50.0))
+JUMP = Pose2(x=0.7, y=-0.4, heading=math.radians(50.0))
 
 
 class FaultySensors:
@@ -121,10 +121,10 @@ def _blackened(image: NDArray[Any]) -> NDArray[Any]:
     return image & np.uint8(1) if is_grey else np.zeros_like(image)  # dead grey still flickers
 
 
-def _jumped(pose: Planar, lasted_s: float) -> Planar:
+def _jumped(pose: Pose2, lasted_s: float) -> Pose2:
     """Give an odometry that has jumped once, and again every second."""
     jumps = 1 + int(lasted_s / JUMP_EVERY_S)
-    return Planar(
+    return Pose2(
         pose.x + jumps * JUMP.x,
         pose.y + jumps * JUMP.y,
         math.remainder(pose.heading + jumps * JUMP.heading, math.tau),

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from peopleboy.behaviours.behaviour import Behaviour
 from peopleboy.behaviours.command import Command
 from peopleboy.behaviours.percept import Percept, SeenPerson
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.own_code import at_frame
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, WHEEL_DISTANCE_M
 from peopleboy.sim.truth.truth import Truth
@@ -178,7 +178,7 @@ def closed_loop(world: Stage, tracker: Tracker, behaviour: Behaviour, frames: in
 
 
 def make_frame(
-    observation: Observation, calibrations: Mapping[str, Calibration], before: Planar | None
+    observation: Observation, calibrations: Mapping[str, Calibration], before: Pose2 | None
 ) -> Frame:
     """Give the tracker its images, and how the odometry moved since the pose before (None: unknown)."""
     return Frame(
@@ -189,13 +189,12 @@ def make_frame(
     )
 
 
-def odometry_way(before: Planar, now: Planar) -> Odometry | None:
+def odometry_way(before: Pose2, now: Pose2) -> Odometry | None:
     """Tell how the odometry moved; a jump that no wheels can make is unknown."""
-    turn = math.remainder(now.heading - before.heading, math.tau)
-    advance, aside = before.locate((now.x, now.y))
-    if abs(turn) > FARTHEST_TURN_RAD or math.hypot(advance, aside) > FARTHEST_WAY_M:
+    motion = now.relative_to(before)
+    if abs(motion.heading) > FARTHEST_TURN_RAD or math.hypot(motion.x, motion.y) > FARTHEST_WAY_M:
         return None
-    return Odometry(advance_m=advance, aside_m=aside, turn_rad=turn)
+    return Odometry.from_motion(motion)
 
 
 def make_percept(

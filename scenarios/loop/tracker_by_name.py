@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.schema.robot import ORACLE
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.scenes import is_seen
 from peopleboy.sim.truth.truth import PersonTruth, Truth
@@ -42,7 +42,7 @@ class OracleTracker:
             if person.box is not None and is_seen(person.inside_fraction)
         )
 
-    def _track(self, person: PersonTruth, robot: Planar, time_s: float) -> Track:
+    def _track(self, person: PersonTruth, robot: Pose2, time_s: float) -> Track:
         assert person.box is not None
         return Track(
             id=person.id,
@@ -54,8 +54,8 @@ class OracleTracker:
         )
 
 
-def _place(person: PersonTruth, robot: Planar) -> FloorPlace:
-    return FloorPlace(position_m=robot.locate(person.position_m), covariance_m2=(0.0, 0.0, 0.0))
+def _place(person: PersonTruth, robot: Pose2) -> FloorPlace:
+    return FloorPlace(position_m=robot.to_local(person.position_m), covariance_m2=(0.0, 0.0, 0.0))
 
 
 def make_eyes(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:

@@ -12,6 +12,7 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.drawing.overlay import encode_jpeg, encode_png, people_parts, track_parts
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine, describe_fully
@@ -46,7 +47,6 @@ from peopleboy.sim.cameras.kinds import shown_to_people, with_boxes
 from peopleboy.sim.cameras.overlap import colour_from_thermal
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Matrix, transform
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.shapes.shapes import Vector
 from peopleboy.sim.truth.truth import ThingTruth
 
@@ -319,6 +319,6 @@ def _from_corner(pixels: NDArray[np.floating]) -> NDArray[np.float32]:
     return rounded(pixels, PIXEL_STEP) + np.float32(0.5)
 
 
-def _planar(pose: Planar) -> dict[str, Any]:
+def _planar(pose: Pose2) -> dict[str, Any]:
     turn = (0.0, 0.0, np.sin(pose.heading / 2.0), np.cos(pose.heading / 2.0))
     return {"translation": np.array([(pose.x, pose.y, 0.0)]), "quaternion": np.array([turn])}

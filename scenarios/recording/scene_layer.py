@@ -10,16 +10,16 @@ from types import TracebackType
 import numpy as np
 import rerun as rr
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.drawing.palette import person_colour, track_colour
 from peopleboy.scenarios.recording.marks import Colours
 from peopleboy.scenarios.recording.recorder import APPLICATION, recording_id
 from peopleboy.scenarios.recording.recording_file import pack
 from peopleboy.scenarios.recording.rows import RowBuffer
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.scene_model.geometry import Geometry
 from peopleboy.tracker.scene_model.scene import Metres, VistaScene
-from peopleboy.tracker.scene_model.vista_spaces import Pose, Surface
+from peopleboy.tracker.scene_model.vista_spaces import Surface
 
 _SCENE = "world/scene"
 _GREY = (170, 170, 170)
@@ -36,9 +36,9 @@ class SceneRecording:
         first: where the robot stood first, in the world.
     """
 
-    def __init__(self, path: Path, title: str, first: Planar) -> None:
+    def __init__(self, path: Path, title: str, first: Pose2) -> None:
         self._path = path
-        self._pose = Pose(x_m=first.x, y_m=first.y, heading_rad=first.heading)
+        self._pose = first
         self._rows = RowBuffer()
         self._stream = rr.RecordingStream(APPLICATION, recording_id=recording_id(title))
         self._stream.set_sinks(rr.FileSink(path))
@@ -53,13 +53,13 @@ class SceneRecording:
         self._stream.disconnect()
         pack(self._path)
 
-    def log(self, frame: int, scene: VistaScene, depth_m: Metres, geometry: Geometry, pose: Pose) -> None:
+    def log(self, frame: int, scene: VistaScene, depth_m: Metres, geometry: Geometry, pose: Pose2) -> None:
         """Add a frame: its things as points in their colours, its people as columns, and what happened."""
         self._rows.begin(frame, scene.time_s)
         points, colours = _coloured(scene, depth_m, geometry)
-        world = self._pose.after(pose).points(points).astype(np.float32)
+        world = self._pose.compose(pose).transform_points(points).astype(np.float32)
         self._rows.add(f"{_SCENE}/things", rr.Points3D, positions=world, colors=colours)
-        places = [(*self._pose.place(one.place_m), 0.9) for one in scene.persons]
+        places = [(*self._pose.transform_point(one.place_m), 0.9) for one in scene.persons]
         shades = [person_colour(one.id) for one in scene.persons]
         labels = [f"person {one.id}" for one in scene.persons]
         self._rows.add(
@@ -80,7 +80,7 @@ class SceneRecording:
 
     def log_map(self, surface: Surface) -> None:
         """Add what stands."""
-        world = self._pose.points(surface.points_m)
+        world = self._pose.transform_points(surface.points_m)
         points = rr.Points3D(world, colors=_GREY, radii=_POINT_M)
         self._stream.log(f"{_SCENE}/static", points, static=True, strict=True)
 

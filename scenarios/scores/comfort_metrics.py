@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.scores.following_metrics import Floats, Row, count_starts
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.robot.robot_body import RADIUS_M, outline_gap
 from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.sim.truth.truth import Truth
@@ -214,7 +214,7 @@ def score_company(table: NDArray[np.float64], people: NDArray[np.float64]) -> Co
 def _gaps(robots: NDArray[np.float64], people: NDArray[np.float64]) -> list[float]:
     """Distances [m] on the floor of people, (Q, 4), from the outlines of robots, (Q, 6), as above."""
     return [
-        outline_gap(Planar(*robot), (x, y))
+        outline_gap(Pose2(*robot), (x, y))
         for robot, (x, y) in zip(robots[:, 1:4].tolist(), people[:, :2].tolist(), strict=True)
     ]
 

@@ -104,7 +104,7 @@ def whose_tracks(tick: Tick, boxes: BoxKind = BoxKind.TORSO, before: int = 0) ->
     """
     robot, is_whole = tick.truth.robot, boxes is BoxKind.WHOLE
     spots = {
-        person.id: Spot(box, robot.locate(person.position_m))
+        person.id: Spot(box, robot.to_local(person.position_m))
         for person in tick.truth.people
         if (box := person.whole_box if is_whole else person.box) is not None
     }

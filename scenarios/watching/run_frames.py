@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import odometry_way
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file
 from peopleboy.sim.cameras.kinds import image_folders
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.tracker.frame import DEPTH, DEPTH_AMPLITUDE, DEPTH_COLOUR, THERMAL, Frame
 
 IMAGES: Final = (DEPTH, DEPTH_COLOUR, DEPTH_AMPLITUDE, THERMAL)
@@ -45,12 +45,12 @@ def run_frames(run: FinishedRun) -> Iterator[Frame]:
     check_frames(run)
     calibrations = calibrations_of(run.robot.cameras)
     folders = {image: folder for folder, image, _ in image_folders(run.robot.cameras) if image in IMAGES}
-    before: Planar | None = None
+    before: Pose2 | None = None
     for row in run.files().robot.to_pylist():
         images = _read(run.folder, folders, row["frame"])
         if DEPTH not in images:
             continue
-        now = Planar(*(row[f"odometry_{name}"] for name in ("x_m", "y_m", "heading_rad")))
+        now = Pose2(*(row[f"odometry_{name}"] for name in ("x_m", "y_m", "heading_rad")))
         odometry = None if before is None else odometry_way(before, now)
         yield Frame(images=images, calibrations=calibrations, time_s=row["time_s"], odometry=odometry)
         before = now

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.watching.true_events import NEAR_M, TrueEvent
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.tracker.scene_model.scene import Happening
 
 
@@ -21,9 +21,7 @@ class _Match(NamedTuple):
     ends: frozenset[str]
 
 
-def thing_names(
-    happenings: Sequence[Happening], events: Sequence[TrueEvent], first: Planar
-) -> dict[int, str]:
+def thing_names(happenings: Sequence[Happening], events: Sequence[TrueEvent], first: Pose2) -> dict[int, str]:
     """Name objects, by their ids, after the things to which truly happened what is told of them.
 
     What was taken must have been where a thing was, and what was put down where a thing is. Each end of what
@@ -46,13 +44,13 @@ def thing_names(
     return names
 
 
-def _matches(happenings: Sequence[Happening], events: Sequence[TrueEvent], first: Planar) -> Iterator[_Match]:
+def _matches(happenings: Sequence[Happening], events: Sequence[TrueEvent], first: Pose2) -> Iterator[_Match]:
     for k, happening in enumerate(happenings):
         told = {"from": happening.from_m, "to": happening.to_m}
         for n, event in enumerate(events):
             true = {"from": event.from_m, "to": event.to_m}
             ways = {
-                end: math.dist(place[:2], first.locate(there))
+                end: math.dist(place[:2], first.to_local(there))
                 for end in told
                 if (place := told[end]) is not None and (there := true[end]) is not None
             }

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.loop.run_events import LogLine
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.truth.events import ThingEvent
 from peopleboy.tracker.scene_model.scene import Happening
 
@@ -62,7 +62,7 @@ class TrueEvent:
 
 
 def matching(
-    happenings: Sequence[Happening], events: Sequence[TrueEvent], first: Planar
+    happenings: Sequence[Happening], events: Sequence[TrueEvent], first: Pose2
 ) -> Mapping[int, tuple[int, ...]]:
     """Tell which events each happening may tell of, by their numbers; those that tell of none are left out.
 
@@ -80,12 +80,12 @@ def matching(
     return found
 
 
-def _apart_m(happening: Happening, event: TrueEvent, first: Planar) -> float:
+def _apart_m(happening: Happening, event: TrueEvent, first: Pose2) -> float:
     """Give the distance of the nearest ends; infinity if it was at another time."""
     if not event.is_about(happening.time_s):
         return math.inf
     ends = [end[:2] for end in (happening.from_m, happening.to_m) if end is not None]
-    return min(math.dist(end, first.locate(place)) for end in ends for place in event.places_m)
+    return min(math.dist(end, first.to_local(place)) for end in ends for place in event.places_m)
 
 
 class WhoIsWho:

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet as pq
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.recording.scene_layer import SceneRecording
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.output import whole
@@ -29,7 +30,6 @@ from peopleboy.scenarios.watching.scene_files import (
 from peopleboy.scenarios.watching.tell import sentence
 from peopleboy.scenarios.watching.thing_names import thing_names
 from peopleboy.scenarios.watching.true_events import KINDS, TrueEvent, WhoIsWho
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.tracker.frame import DEPTH
 from peopleboy.tracker.scene_model.scene import Change, Happening
 from peopleboy.tracker.scene_model.scene_config import PeopleMaskConfig, SceneConfig
@@ -83,8 +83,8 @@ def _watched(
 ) -> list[str]:
     files = run.files(people=_PEOPLE)
     start = files.robot.slice(0, 1).to_pylist()[0]
-    first = Planar(start["x_m"], start["y_m"], start["heading_rad"])
-    people = {k: [(row["name"], first.locate((row["x_m"], row["y_m"]))) for row in rows]
+    first = Pose2(start["x_m"], start["y_m"], start["heading_rad"])
+    people = {k: [(row["name"], first.to_local((row["x_m"], row["y_m"]))) for row in rows]
               for k, rows in files.people_by_frame().items()}  # fmt: skip
     model = SceneModel(SceneConfig(people=PeopleMaskConfig(has_heat=options.has_heat)))
     who, bodies, happenings = WhoIsWho(), Bodies(), list[Happening]()
@@ -134,7 +134,7 @@ def _next(places: Sequence[tuple[int, Spot]], frame: int) -> Spot:
 
 
 def _told(
-    happenings: Sequence[Happening], who: WhoIsWho, events: Sequence[TrueEvent], first: Planar
+    happenings: Sequence[Happening], who: WhoIsWho, events: Sequence[TrueEvent], first: Pose2
 ) -> list[tuple[Happening, str]]:
     """Put what happened into words, with the names of the things that it truly happened to."""
     happenings = _without_halves(happenings)

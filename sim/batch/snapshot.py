@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.planar import Planar
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.truth.scenes import Scenes
@@ -67,7 +67,7 @@ class Snapshot(NamedTuple):
     def senses(self, row: int) -> Senses:
         """What one robot senses; an `Observation` where there are images."""
         time_s, sonar_m = float(self.scenes.worlds["time_s"][row]), self.sonar_m[row]
-        odometry = Planar(*self.odometry[row].tolist())
+        odometry = Pose2(*self.odometry[row].tolist())
         left, right = self.wheel_speeds_m_s[row].tolist()
         if self.pictures is None:
             return Senses(

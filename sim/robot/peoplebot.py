@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.sim.geometry.pinhole import Matrix
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.physics.physics import Physics
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.robot.robot_body import (
@@ -144,9 +144,9 @@ class PeopleBot:
         return self._limits
 
     @property
-    def odometry(self) -> Planar:
+    def odometry(self) -> Pose2:
         """Pose that the wheels' encoders add up to, world frame, exact at the start."""
-        return Planar(*self._gears.odometry.tolist())
+        return Pose2(*self._gears.odometry.tolist())
 
     def sonar(self) -> NDArray[np.float64]:
         """Read the ring once: (16,) [m]."""
@@ -161,10 +161,10 @@ class PeopleBot:
         """(4, 4) true pose of the robot's frame."""
         return self._physics.pose(NAME)
 
-    def pose(self) -> Planar:
+    def pose(self) -> Pose2:
         """Return the true pose on the floor."""
         matrix = self.world_from_robot()
-        return Planar(float(matrix[0, 3]), float(matrix[1, 3]), math.atan2(matrix[1, 0], matrix[0, 0]))
+        return Pose2(float(matrix[0, 3]), float(matrix[1, 3]), math.atan2(matrix[1, 0], matrix[0, 0]))
 
     def gap_to(self, x: float, y: float) -> float:
         """Distance [m] on the floor between its outline and a point, world frame; 0 inside."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from peopleboy.sim.geometry.planar import Planar
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.sim.shapes.materials import Material
 
 NAME = "robot"
@@ -26,11 +26,9 @@ def wheel_speeds(linear: float, angular: float) -> tuple[float, float]:
     return linear - half, linear + half
 
 
-def outline_gap(pose: Planar, point_m: tuple[float, float]) -> float:
+def outline_gap(pose: Pose2, point_m: tuple[float, float]) -> float:
     """Distance [m] on the floor between the outline of a robot at a pose and a point; 0 inside."""
-    cos, sin = math.cos(pose.heading), math.sin(pose.heading)
-    x, y = point_m[0] - pose.x, point_m[1] - pose.y
-    ahead, aside = cos * x + sin * y, cos * y - sin * x
+    ahead, aside = pose.to_local(point_m)
     return math.hypot(max(_REAR_M - ahead, ahead - _FRONT_M, 0.0), max(abs(aside) - _HALF_WIDTH_M, 0.0))
 
 

@@ -7,7 +7,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.planar import Planar
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.sim.truth.truth import Box
 
 # Two measures say how much of a person is visible. `PersonTruth.visible_fraction` counts the pixels of an
@@ -72,7 +72,7 @@ class ImageFreeTruth(NamedTuple):
     """
 
     time_s: float
-    robot: Planar
+    robot: Pose2
     robot_velocity: tuple[float, float]
     contacts: tuple[str, ...]
     people: tuple[Bystander, ...]
@@ -129,7 +129,7 @@ class Scenes(NamedTuple):
         worlds, people = self.worlds, self._bystanders()
         rows = zip(
             worlds["time_s"].tolist(),
-            (Planar(*robot) for robot in worlds["robot"].tolist()),
+            (Pose2(*robot) for robot in worlds["robot"].tolist()),
             _pairs(worlds["velocity"]),
             self.contacts,
             (

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.places.moving import Mover
 
 # A box is left, top, width, height [px] in the camera's image, whose pixel (0, 0) spans -0.5..0.5; bounds
@@ -240,7 +240,7 @@ class Truth:
     depth_m: NDArray[np.float32]
     camera: CameraGeometry
     world_from_camera: Matrix
-    robot: Planar
+    robot: Pose2
     robot_velocity: tuple[float, float]
     contacts: tuple[str, ...]
     things: tuple[ThingTruth, ...]

@@ -11,8 +11,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.sim.geometry.pinhole import Matrix, invert_pose, transform
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.people.crowd import Crowd
 from peopleboy.sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS
 from peopleboy.sim.physics.solid_shapes import PartKey
@@ -79,7 +79,7 @@ class TruthMaker:
         *,
         time_s: float,
         seen: Seen,
-        robot: Planar,
+        robot: Pose2,
         robot_velocity: tuple[float, float],
         contacts: tuple[str, ...],
     ) -> Truth:

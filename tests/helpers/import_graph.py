@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-ROOMS = ("sim", "tracker", "behaviours", "scenarios", "studies")
+ROOMS = ("geometry", "sim", "tracker", "behaviours", "scenarios", "studies")
 PACKAGE = "peopleboy"
 
 Graph = Mapping[str, Collection[str]]

@@ -8,10 +8,10 @@ from typing import Final
 
 import numpy as np
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.frame import THERMAL, Floats, Frame, PinholeCalibration
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.panoramic.people.floor_motion import Motion
-from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.rgbd.observation_model import similarity
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
@@ -55,18 +55,19 @@ class SensorTrack:
         return self.status is Status.TRACKED
 
 
-def to_room_frame(track: Track, pose: RobotPose) -> tuple[Floats, Floats]:
+def to_room_frame(track: Track, pose: Pose2) -> tuple[Floats, Floats]:
     """Give place (2,) [m] and covariance (2, 2) [m2] of a track that has a place, in the room."""
     assert track.place is not None
     xx, xy, yy = track.place.covariance_m2
-    back = RobotPose(heading=-pose.heading)
-    return to_room(np.array(track.place.position_m), pose), back.turned(np.array([[xx, xy], [xy, yy]]))
+    return to_room(np.array(track.place.position_m), pose), pose.inverse().covariance_to_local(
+        np.array([[xx, xy], [xy, yy]])
+    )
 
 
-def to_room(place_m: Floats, pose: RobotPose) -> Floats:
+def to_room(place_m: Floats, pose: Pose2) -> Floats:
     """Put a place (2,) in the robot's frame into the room."""
     ahead, aside = place_m.tolist()
-    return pose.place(math.hypot(ahead, aside), math.atan2(aside, ahead))
+    return pose.transform_polar(math.hypot(ahead, aside), math.atan2(aside, ahead))
 
 
 TALL_M: Final = 1.72
@@ -175,15 +176,15 @@ class Person:
             strange=0,
         )
 
-    def floor_place(self, pose: RobotPose, shared_m: float) -> FloorPlace:
+    def floor_place(self, pose: Pose2, shared_m: float) -> FloorPlace:
         """Tell where the person stands in the robot's frame.
 
         Args:
             pose: of the robot in the room.
             shared_m: [m] error that all images of a person have in common.
         """
-        x, y = pose.locate(self.motion.place_m).tolist()
-        covariance = pose.turned(self.motion.place_m2) + np.eye(2) * shared_m**2
+        x, y = pose.points_to_local(self.motion.place_m).tolist()
+        covariance = pose.covariance_to_local(self.motion.place_m2) + np.eye(2) * shared_m**2
         (xx, xy), (_, yy) = covariance.tolist()
         return FloorPlace(position_m=(x, y), covariance_m2=(xx, xy, yy))
 
@@ -250,7 +251,7 @@ _TORSO: Final = (0.045, 0.32, 0.47)
 _TORSO_BY_HEAT: Final = (0.065, 0.715)
 
 
-def outline(person: Person, frame: Frame, pose: RobotPose) -> Box | None:
+def outline(person: Person, frame: Frame, pose: Pose2) -> Box | None:
     """Give left, top, width, height [px] in the thermal image, which may lie outside.
 
     Depth knows best where head and feet are, heat where the middle is. Whom only one of them sees has the
@@ -271,7 +272,7 @@ def outline(person: Person, frame: Frame, pose: RobotPose) -> Box | None:
     return left + (width - torso) / 2.0, top, torso, tall
 
 
-def with_width(person: Person, frame: Frame, pose: RobotPose, share: float) -> Person:
+def with_width(person: Person, frame: Frame, pose: Pose2, share: float) -> Person:
     """Learn how wide the torso appears, which changes as the person turns; not of who is hidden in part."""
     contour, standing = _contour(person), standing_box(person, THERMAL, frame, pose)
     if contour is None:
@@ -287,14 +288,14 @@ def with_width(person: Person, frame: Frame, pose: RobotPose, share: float) -> P
     return replace(person, wide_m=person.wide_m + share * (wide - person.wide_m))
 
 
-def standing_box(person: Person, camera: str, frame: Frame, pose: RobotPose) -> Box | None:
+def standing_box(person: Person, camera: str, frame: Frame, pose: Pose2) -> Box | None:
     """Project a person, upright at its place, in its own measures.
 
     Returns:
         left, top, width, height [px]; None for who is not before a camera, or one whose image is not flat.
     """
     calibration = frame.calibrations.get(camera)
-    x, y = pose.locate(person.motion.place_m).tolist()
+    x, y = pose.points_to_local(person.motion.place_m).tolist()
     is_flat = isinstance(calibration, PinholeCalibration)
     if calibration is None or not is_flat or x - calibration.position_m[0] < _NEAREST_M:
         return None

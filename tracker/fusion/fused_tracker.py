@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
 from peopleboy.tracker.contour.explanation import ContourExplanation
 from peopleboy.tracker.frame import DEPTH, PANORAMA, THERMAL, Calibration, Frame
@@ -31,7 +32,6 @@ from peopleboy.tracker.fusion.sensors import Depth, Heat
 from peopleboy.tracker.fusion.track_to_track import distance2, is_contradicted, pairs
 from peopleboy.tracker.fusion.visibility import depth_visibility
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
-from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation, RgbdTracker
 from peopleboy.tracker.track import Box, Status, Track
@@ -62,7 +62,7 @@ class ThermalDepthTracker:
     def __init__(self, thermal: ContourTracker, rgbd: RgbdTracker, config: FusionConfig) -> None:
         self._config = config
         self._heat, self._depth = Heat(thermal, config), Depth(rgbd, config)
-        self._pose = RobotPose()
+        self._pose = Pose2()
         self._people: tuple[Person, ...] = ()
         self._time_s = -math.inf
         self._numbers, self._guests = count(1), count(-1, -1)
@@ -94,7 +94,7 @@ class ThermalDepthTracker:
             BadInput: as both trackers say of images that are there.
         """
         if frame.odometry is not None:
-            self._pose = self._pose.moved(frame.odometry)
+            self._pose = self._pose.integrate(frame.odometry.motion)
         dt_s, self._time_s = min(frame.time_s - self._time_s, _LONGEST_STEP_S), frame.time_s
         deep, warm = self._depth.reported(frame, self._pose), self._heat.reported(frame, self._pose)
         people = [one.later(dt_s, self._config) for one in self._people]
@@ -150,7 +150,7 @@ class ThermalDepthTracker:
         is_due = person.depth is not None and self._time_s - person.seen_s <= config.peek_s
         if not is_due or any(one.is_clear for one in person.reported) or self._is_crowded(person, people):
             return person
-        here = self._pose.locate(person.motion.place_m)
+        here = self._pose.points_to_local(person.motion.place_m)
         found = search_near(here, person.span_m, person.tall_m, frame)
         if found is None or (found.warm is not None and found.warm < config.peek_warm):
             return person
@@ -159,9 +159,11 @@ class ThermalDepthTracker:
         return replace(person, motion=motion, is_guided=True, seen_s=self._time_s)
 
     def _is_crowded(self, person: Person, people: Sequence[Person]) -> bool:
-        here, (deep_m, aside_m) = self._pose.locate(person.motion.place_m), _CROWDED_M
+        here, (deep_m, aside_m) = self._pose.points_to_local(person.motion.place_m), _CROWDED_M
         others = (
-            self._pose.locate(one.motion.place_m) for one in people if one is not person and one.is_seen
+            self._pose.points_to_local(one.motion.place_m)
+            for one in people
+            if one is not person and one.is_seen
         )
         return any(abs(x - here[0]) < deep_m and abs(y - here[1]) < aside_m for x, y in others)
 
@@ -211,7 +213,7 @@ class ThermalDepthTracker:
         if person.is_seen or late_s > config.hidden_s:
             return person.is_seen
         found = depth_visibility(
-            self._pose.locate(person.motion.place_m), person.wide_m, person.tall_m, frame
+            self._pose.points_to_local(person.motion.place_m), person.wide_m, person.tall_m, frame
         )
         if found is not None:
             return found.nearer > config.hidden_share

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.frame import PANORAMA, Frame
-from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.track import FloorPlace, Status, Track
 
 GATE: Final = 9.21
@@ -131,14 +131,14 @@ class Departures:
     """The last places of people in either camera, in the room as the robot's odometry has it."""
 
     def __init__(self) -> None:
-        self._pose = RobotPose()
+        self._pose = Pose2()
         self._time_s = 0.0
         self._places: dict[tuple[str, int], tuple[tuple[float, float], float]] = {}
 
     def go_on(self, frame: Frame) -> None:
         """Move with the robot, and forget who has been away for too long."""
         if frame.odometry is not None:
-            self._pose = self._pose.moved(frame.odometry)
+            self._pose = self._pose.integrate(frame.odometry.motion)
         self._time_s = frame.time_s
         self._places = {
             key: known for key, known in self._places.items() if self._time_s - known[1] < FORGET_S
@@ -181,13 +181,13 @@ class Departures:
 
     def _apart(self, seen_m: tuple[float, float], room_m: tuple[float, float], depth_share: float) -> float:
         """Tell how far a place in the robot's frame is from one in the room [m], depth counting for less."""
-        there = self._pose.locate(np.array(room_m))
+        there = self._pose.points_to_local(np.array(room_m))
         distance, known = math.hypot(*seen_m), math.hypot(*there)
         turn = math.remainder(math.atan2(seen_m[1], seen_m[0]) - math.atan2(there[1], there[0]), math.tau)
         return math.hypot(turn * min(distance, known), depth_share * (distance - known))
 
     def _in_room(self, seen_m: tuple[float, float]) -> tuple[float, float]:
-        x, y = self._pose.place(math.hypot(*seen_m), math.atan2(seen_m[1], seen_m[0])).tolist()
+        x, y = self._pose.transform_polar(math.hypot(*seen_m), math.atan2(seen_m[1], seen_m[0])).tolist()
         return x, y
 
 

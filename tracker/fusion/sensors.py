@@ -8,12 +8,12 @@ from typing import Final
 
 import numpy as np
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Floats, Frame, FreshImages
 from peopleboy.tracker.fusion.fused_person import TALL_M, WIDE_M, SensorTrack, to_room_frame
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.fusion.visibility import REACH_M, colours, depth_visibility
-from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.rgbd.hypothesis import Detection, Hypothesis
 from peopleboy.tracker.rgbd.observation_model import Body
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
@@ -40,7 +40,7 @@ class Heat:
         self._config = config
         self._images = FreshImages(THERMAL)
 
-    def reported(self, frame: Frame, pose: RobotPose) -> list[SensorTrack]:
+    def reported(self, frame: Frame, pose: Pose2) -> list[SensorTrack]:
         """Tell of everybody; nobody without a new image."""
         fresh = self._images.of(frame)
         if fresh is None:
@@ -76,7 +76,7 @@ class Depth:
         self._images = FreshImages(DEPTH)
         self.is_lit = False
 
-    def reported(self, frame: Frame, pose: RobotPose) -> list[SensorTrack]:
+    def reported(self, frame: Frame, pose: Pose2) -> list[SensorTrack]:
         """Tell of everybody; nobody without a new image."""
         fresh = self._images.of(frame)
         if fresh is None:
@@ -104,7 +104,7 @@ class Depth:
         return found is not None and found.warm is not None and found.warm < self._config.least_warm
 
 
-def _warm(track: Track, pose: RobotPose) -> SensorTrack:
+def _warm(track: Track, pose: Pose2) -> SensorTrack:
     place, error = to_room_frame(track, pose)
     return SensorTrack(
         id=track.id,
@@ -122,7 +122,7 @@ def _deep(
     person: Hypothesis,
     body: Body | None,
     appearance: Floats | None,
-    pose: RobotPose,
+    pose: Pose2,
     *,
     is_found: bool,
 ) -> SensorTrack:

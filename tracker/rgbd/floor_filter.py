@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from peopleboy.tracker.frame import Floats, Odometry
+from peopleboy.geometry.pose2 import Pose2
+from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.rgbd.observation_model import Body, Glance, RgbdView, look_at
 from peopleboy.tracker.rgbd.rgbd_config import FloorFilterConfig
 
@@ -39,10 +40,10 @@ class FloorFilter:
         """(2,) mean place."""
         return np.asarray(self.state[:, :2].mean(axis=0))
 
-    def carried(self, odometry: Odometry) -> FloorFilter:
+    def carried(self, motion: Pose2) -> FloorFilter:
         """Give the same particles in the robot's frame after it moved."""
         return FloorFilter(
-            np.hstack([carried(self.state[:, :2], odometry), turned(self.state[:, 2:], odometry)])
+            np.hstack([motion.points_to_local(self.state[:, :2]), motion.vectors_to_local(self.state[:, 2:])])
         )
 
     def predicted(self, dt_s: float, config: FloorFilterConfig, rng: np.random.Generator) -> FloorFilter:
@@ -96,17 +97,6 @@ class Update:
     confidence: float
     glance: Glance
     is_held: bool
-
-
-def carried(places_m: Floats, odometry: Odometry) -> Floats:
-    """Give places (N, 2) in the robot's frame after it moved."""
-    return turned(places_m - np.array([odometry.advance_m, odometry.aside_m]), odometry)
-
-
-def turned(vectors: Floats, odometry: Odometry) -> Floats:
-    """Give directions (N, 2) in the robot's frame after it moved."""
-    sin, cos = math.sin(odometry.turn_rad), math.cos(odometry.turn_rad)
-    return np.asarray(vectors @ np.array([[cos, -sin], [sin, cos]]))
 
 
 def _by_looks(similarity: Floats, sharpness: float) -> Floats:

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from peopleboy.tracker.frame import Floats, Odometry
-from peopleboy.tracker.rgbd.floor_filter import FloorFilter, Update, carried, turned
+from peopleboy.tracker.rgbd.floor_filter import FloorFilter, Update
 from peopleboy.tracker.rgbd.hypothesis import Detection, Hypothesis
 from peopleboy.tracker.rgbd.observation_model import Body, RgbdView, box_at, look_at, similarity
 from peopleboy.tracker.rgbd.rgbd_config import HypothesesConfig, RgbdConfig
@@ -55,9 +55,10 @@ class Management:
         filtered, place, covariance = person.filter, person.place_m, person.covariance_m2
         velocity = person.velocity_m_s
         if odometry is not None and self.config.hypotheses.uses_odometry:
-            filtered, place = filtered.carried(odometry), carried(place[None], odometry)[0]
-            covariance = turned(turned(covariance, odometry).T, odometry).T
-            velocity = turned(velocity[None], odometry)[0]
+            motion = odometry.motion
+            filtered, place = filtered.carried(motion), motion.points_to_local(place)
+            covariance = motion.vectors_to_local(motion.vectors_to_local(covariance).T).T
+            velocity = motion.vectors_to_local(velocity)
         place = place + velocity * self.dt_s
         filtered = filtered.predicted(self.dt_s, self.config.filter, self.rng)
         grown = covariance + np.eye(2) * _DRIFT_M2_S * self.dt_s

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.frame import DEPTH, Frame
 from peopleboy.tracker.scene_model.geometry import Geometry, shades_of
 from peopleboy.tracker.scene_model.happenings import Ledger
@@ -36,7 +37,7 @@ from peopleboy.tracker.scene_model.things import (
     pieces_like,
     standing,
 )
-from peopleboy.tracker.scene_model.vista_spaces import Pose, StaticMap, Surface
+from peopleboy.tracker.scene_model.vista_spaces import StaticMap, Surface
 
 # Which colours what is not there any more had.
 
@@ -81,7 +82,7 @@ class SceneModel:
         self._ids = itertools.count(1)
         self._geometry: Geometry | None = None
         self._map = StaticMap(joins=config.joins)
-        self._pose = Pose()
+        self._pose = Pose2()
         self._vista = -1
         self._stopped_s = -math.inf
         self._newest: VistaScene | None = None
@@ -131,7 +132,7 @@ class SceneModel:
         return self._geometry
 
     @property
-    def pose(self) -> Pose:
+    def pose(self) -> Pose2:
         """Where the robot stands, in the frame of the first place."""
         return self._pose
 
@@ -153,7 +154,7 @@ class SceneModel:
         if is_moving and self._stopped_s == -math.inf:
             self._pose = self._added()
         if is_moving or self._stopped_s != -math.inf:  # what wheels tell of a robot that stands is noise
-            self._pose = self._pose.moved(way)
+            self._pose = self._pose.compose(way.motion)
         if is_moving:
             self._stopped_s = math.inf
         elif self._stopped_s == math.inf:
@@ -165,7 +166,7 @@ class SceneModel:
         self._begin(frame.depth(DEPTH).shape)
         return True
 
-    def _added(self) -> Pose:
+    def _added(self) -> Pose2:
         """Put what stands here onto the map."""
         assert self._newest is not None  # there was a frame
         return self._map.add(Surface.of(self._newest.background_m, self.geometry), self._pose)
@@ -258,13 +259,13 @@ class SceneModel:
                 things.ravel()[pixels] = missing.id
 
     def _placed(self, person: SeenPerson) -> SeenPerson:
-        return replace(person, place_m=self._pose.place(person.place_m))
+        return replace(person, place_m=self._pose.transform_point(person.place_m))
 
     def _told(self, one: Happening) -> Happening:
         return replace(one, from_m=self._in_first(one.from_m), to_m=self._in_first(one.to_m))
 
     def _in_first(self, place_m: Place | None) -> Place | None:
-        return None if place_m is None else (*self._pose.place(place_m[:2]), place_m[2])
+        return None if place_m is None else (*self._pose.transform_point(place_m[:2]), place_m[2])
 
     def _object(self, thing: Thing, things: Labels) -> SceneObject:
         is_seen = bool((things == thing.id).any())

@@ -9,7 +9,8 @@ from typing import Final
 import numpy as np
 from scipy.spatial import cKDTree
 
-from peopleboy.tracker.frame import Floats, Odometry
+from peopleboy.geometry.pose2 import Pose2
+from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.scene_model.geometry import Geometry
 from peopleboy.tracker.scene_model.scene import Metres
 
@@ -20,36 +21,6 @@ _CLOSEST_M: Final = 0.08
 _FEWEST: Final = 100
 _EDGE: Final = 0.06  # share of depth by which neighbours on one surface differ at most
 _FLOOR_M: Final = 0.08  # the floor tells nothing of where one stands on it
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Pose:
-    """Where the robot stands in the frame of its first place: [m], and its heading [rad]."""
-
-    x_m: float = 0.0
-    y_m: float = 0.0
-    heading_rad: float = 0.0
-
-    def moved(self, way: Odometry) -> Pose:
-        """Go on by what the odometry says."""
-        return self.after(Pose(x_m=way.advance_m, y_m=way.aside_m, heading_rad=way.turn_rad))
-
-    def after(self, then: Pose) -> Pose:
-        """Give the pose of somebody whose pose in this one's frame is told."""
-        x, y = self.place((then.x_m, then.y_m))
-        return Pose(x_m=x, y_m=y, heading_rad=math.remainder(self.heading_rad + then.heading_rad, math.tau))
-
-    def place(self, place_m: tuple[float, float]) -> tuple[float, float]:
-        """Map a place of the robot's frame."""
-        cosine, sine = math.cos(self.heading_rad), math.sin(self.heading_rad)
-        x, y = place_m
-        return self.x_m + cosine * x - sine * y, self.y_m + sine * x + cosine * y
-
-    def points(self, points_m: Floats) -> Floats:
-        """Map points (N, 3) of the robot's frame."""
-        cosine, sine = math.cos(self.heading_rad), math.sin(self.heading_rad)
-        turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-        return np.asarray(points_m @ turn.T + (self.x_m, self.y_m, 0.0))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,10 +56,10 @@ class Surface:
         _, first = np.unique(cells, axis=0, return_index=True)
         return Surface(self.points_m[first], self.normals[first])
 
-    def seen_from(self, pose: Pose) -> Surface:
+    def seen_from(self, pose: Pose2) -> Surface:
         """Map it from the robot's frame."""
-        turn = Pose(heading_rad=pose.heading_rad)
-        return Surface(pose.points(self.points_m), turn.points(self.normals))
+        turn = Pose2(heading=pose.heading)
+        return Surface(pose.transform_points(self.points_m), turn.transform_points(self.normals))
 
     def joined(self, other: Surface) -> Surface:
         """Take two together."""
@@ -97,7 +68,7 @@ class Surface:
         ).thinned()
 
 
-def registered(surface: Surface, known: Surface, guess: Pose) -> Pose:
+def registered(surface: Surface, known: Surface, guess: Pose2) -> Pose2:
     """Correct the pose from which a surface was seen until it lies on what is known.
 
     Points are drawn to the planes of their nearest neighbours, on the floor plane only: iterative closest
@@ -115,7 +86,7 @@ def registered(surface: Surface, known: Surface, guess: Pose) -> Pose:
     own = surface.points_m[surface.points_m[:, 2] > _FLOOR_M]
     pose, reach = guess, _REACH_M
     for _ in range(_STEPS):
-        moved = pose.points(own)
+        moved = pose.transform_points(own)
         way, index = tree.query(moved, distance_upper_bound=reach)
         found = np.isfinite(way)
         if found.sum() < _FEWEST:
@@ -127,10 +98,10 @@ def registered(surface: Surface, known: Surface, guess: Pose) -> Pose:
     return pose
 
 
-def _stepped(pose: Pose, points: Floats, targets: Floats, normals: Floats) -> tuple[Pose, float]:
+def _stepped(pose: Pose2, points: Floats, targets: Floats, normals: Floats) -> tuple[Pose2, float]:
     """Move by the least squares of distances to planes; directions that nothing tells are left out."""
     apart = ((targets - points) * normals).sum(axis=1)
-    x, y = points[:, 0] - pose.x_m, points[:, 1] - pose.y_m
+    x, y = points[:, 0] - pose.x, points[:, 1] - pose.y
     rows = np.stack([normals[:, 0], normals[:, 1], x * normals[:, 1] - y * normals[:, 0]], axis=1)
     weight = 1.0 / np.maximum(np.abs(apart), 0.02)  # outliers count by their distance, not by its square
     matrix = rows.T @ (rows * weight[:, None])
@@ -138,8 +109,8 @@ def _stepped(pose: Pose, points: Floats, targets: Floats, normals: Floats) -> tu
     known = values > 0.02 * values[-1]
     move = vectors[:, known] @ ((vectors[:, known].T @ (rows.T @ (weight * apart))) / values[known])
     dx, dy, turn = move.tolist()
-    heading = math.remainder(pose.heading_rad + turn, math.tau)
-    return Pose(x_m=pose.x_m + dx, y_m=pose.y_m + dy, heading_rad=heading), float(np.abs(move).max())
+    heading = math.remainder(pose.heading + turn, math.tau)
+    return Pose2(pose.x + dx, pose.y + dy, heading), float(np.abs(move).max())
 
 
 class StaticMap:
@@ -153,7 +124,7 @@ class StaticMap:
         self._joins = joins
         self.surface: Surface | None = None
 
-    def add(self, surface: Surface, guess: Pose) -> Pose:
+    def add(self, surface: Surface, guess: Pose2) -> Pose2:
         """Add what was seen from a pose; give the pose as registration corrects it."""
         if self.surface is None:
             self.surface = surface.seen_from(guess)

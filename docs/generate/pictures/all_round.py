@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from docs.generate.pictures.paper import WIDTH_IN, show
 from peopleboy.behaviours.scripted import Stand
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_walls
 from peopleboy.scenarios.drawing.plan_robot import draw_robot
@@ -22,7 +23,6 @@ from peopleboy.scenarios.drawing.plan_sheet import Labels
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.studies.training.foreground_learning.masked_film import film_people
@@ -210,6 +210,6 @@ def _spots(scenario: Scenario, seed: int, name: str) -> Iterator[tuple[int, tupl
                     yield track.id, _in_room(track.place, tick.truth.robot), THERMAL in track.boxes
 
 
-def _in_room(place: FloorPlace, robot: Planar) -> tuple[float, float]:
+def _in_room(place: FloorPlace, robot: Pose2) -> tuple[float, float]:
     (ahead, left), (c, s) = place.position_m, (math.cos(robot.heading), math.sin(robot.heading))
     return robot.x + c * ahead - s * left, robot.y + s * ahead + c * left

@@ -7,11 +7,11 @@ from dataclasses import asdict
 
 import numpy as np
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.scores.comfort_metrics import score_company
 from peopleboy.scenarios.scores.corridor_metrics import score_way
 from peopleboy.scenarios.scores.following_metrics import FollowingTask
 from peopleboy.scenarios.scores.following_score import TARGET, Spot, score_instants, track_on
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.truth.scenes import Scenes
 from peopleboy.sim.truth.truth import Box
@@ -83,5 +83,5 @@ def track_in(scenes: Scenes, row: int, tracks: Iterable[Track], box: Box | None,
     spot = None
     if box is not None and len(target):
         x, y = target["position_m"][0].tolist()
-        spot = Spot(box, Planar(*world["robot"].tolist()).locate((x, y)))
+        spot = Spot(box, Pose2(*world["robot"].tolist()).to_local((x, y)))
     return track_on(spot, tracks, before)

@@ -52,7 +52,7 @@ def people_on_floor(truth: Truth, view: DepthView) -> Iterator[FloorPerson]:
     for person in truth.people:
         is_counted = person.visible_px > LEAST_PX and person.distance_m <= FARTHEST_M
         surface_m = _surface(person, truth, view) if is_counted else None
-        yield FloorPerson(person.id, truth.robot.locate(person.position_m), surface_m, is_counted, person)
+        yield FloorPerson(person.id, truth.robot.to_local(person.position_m), surface_m, is_counted, person)
 
 
 def _surface(person: PersonTruth, truth: Truth, view: DepthView) -> tuple[float, float] | None:

@@ -9,7 +9,6 @@ from typing import Final
 
 import numpy as np
 
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.tracker.frame import Floats, Odometry
 
@@ -137,5 +136,4 @@ def _predicted(track: LegTrack, odometry: Odometry | None) -> LegTrack:
     """Express a track's place in the robot's new frame."""
     if odometry is None:
         return track
-    moved = Planar(odometry.advance_m, odometry.aside_m, odometry.turn_rad)
-    return replace(track, place_m=moved.locate(track.place_m))
+    return replace(track, place_m=odometry.motion.to_local(track.place_m))

@@ -9,11 +9,11 @@ from typing import TypeVar
 
 import numpy as np
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.scenarios.running.blind_drive import blind_drive
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import Frame
@@ -55,7 +55,7 @@ def play(
         BadInput: the robot needs a tracker to drive.
     """
     calibrations = calibrations_of(scenario.world(seed).robot.cameras)
-    before: Planar | None = None
+    before: Pose2 | None = None
     number = 0
     for world, observation in blind_drive(scenario, seed):
         if camera not in observation.images:

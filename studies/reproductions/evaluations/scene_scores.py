@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.watching.run_frames import IMAGES
 from peopleboy.scenarios.watching.true_events import TrueEvent, WhoIsWho, matching
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.backgrounds import Backgrounds
 from peopleboy.sim.truth.events import ThingLog
@@ -125,7 +125,7 @@ class _Watcher:
 
     def update(self, frame: Frame, masks: TrueMasks | None, truth: Truth) -> None:
         scene = self.scene = self.timed(partial(self._model.update, frame))
-        people = [(one.name, truth.robot.locate(one.position_m)) for one in truth.people]
+        people = [(one.name, truth.robot.to_local(one.position_m)) for one in truth.people]
         self.identities.look([(one.id, one.place_m) for one in scene.persons], people)
         self.happenings += scene.happenings
         if masks is not None:
@@ -134,7 +134,7 @@ class _Watcher:
             self.pixels["things"] += count_pixels((scene.things > 0) & read, masks.things & read)
 
     def plain(
-        self, true: Mapping[str, Metres], lengths: Floats, events: Sequence[TrueEvent], robot: Planar
+        self, true: Mapping[str, Metres], lengths: Floats, events: Sequence[TrueEvent], robot: Pose2
     ) -> dict[str, Any]:
         """Finish, and give errors, pixels, events and time as plain data."""
         self.happenings += self._model.finish()
@@ -222,7 +222,7 @@ def background_errors(found_m: Metres, true_m: Metres, lengths: Floats) -> dict[
 
 
 def event_counts(
-    happenings: Sequence[Happening], events: Sequence[TrueEvent], identities: WhoIsWho, first: Planar
+    happenings: Sequence[Happening], events: Sequence[TrueEvent], identities: WhoIsWho, first: Pose2
 ) -> dict[str, int]:
     """Count right and false events, true events and those that were found, and the people who caused them.
 

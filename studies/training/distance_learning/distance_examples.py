@@ -151,5 +151,5 @@ def _measured(
 
 def _row(figure: MeasuredFigure, scene: ImageFreeTruth) -> Row:
     (person,) = scene.people
-    place = scene.robot.locate(person.position_m)
+    place = scene.robot.to_local(person.position_m)
     return [float(person.id), scene.time_s, *figure.cues, figure.bearing_rad, *place]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.run_folder.output import whole
 from peopleboy.scenarios.running.blind_drive import blind_drive
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import PANORAMA, Odometry
 
@@ -77,7 +76,7 @@ def film_people(scenario: Scenario, seed: int) -> MaskedFilm:
     """
     scenario = scenario.mounting((PANORAMA,))
     seen: dict[str, list[Any]] = {"images": [], "who": [], "time_s": [], "motion": [], "place_m": []}
-    before: Planar | None = None
+    before: Pose2 | None = None
     for world, observation in blind_drive(scenario, seed):
         if PANORAMA in observation.images:
             truth, now = world.truth(PANORAMA), observation.odometry
@@ -90,14 +89,15 @@ def film_people(scenario: Scenario, seed: int) -> MaskedFilm:
     return MaskedFilm(**{name: np.array(values) for name, values in seen.items()})
 
 
-def _motion(before: Planar | None, now: Planar) -> tuple[float, float, float]:
+def _motion(before: Pose2 | None, now: Pose2) -> tuple[float, float, float]:
     if before is None:
         return 0.0, 0.0, 0.0
-    return (*before.locate((now.x, now.y)), math.remainder(now.heading - before.heading, math.tau))
+    motion = now.relative_to(before)
+    return motion.x, motion.y, motion.heading
 
 
 def _places(truth: Truth, people: int) -> Floats:
     places = np.full((people, 2), np.nan)
     for person in truth.people:
-        places[person.id - 1] = truth.robot.locate(person.position_m)
+        places[person.id - 1] = truth.robot.to_local(person.position_m)
     return places

@@ -137,7 +137,7 @@ def _is_person(found: PreDetection, truth: Truth, view: DepthView) -> bool | Non
     at = view.on_floor(np.array([found.x_m]), np.array([found.z_m]))[0]
     answer: bool | None = False
     for person in truth.people:
-        away = math.dist(truth.robot.locate(person.position_m), at)
+        away = math.dist(truth.robot.to_local(person.position_m), at)
         inside = person.inside_fraction
         if away < _NEAR_M and inside > 0.0 and person.visible_fraction / inside > _LEAST_VISIBLE:
             return True if _has_head(person) else None

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.behaviours.command import Command
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
@@ -120,12 +120,12 @@ def make_tick(frame: int, track: Track | None = TRACK, hidden: float = 0.0, mode
     }  # fmt: skip
     observation = Observation(
         time_s=time_s, images=images, sonar_m=np.full(16, 5.0),
-        odometry=Planar(0.0, 0.0, 0.0), wheel_speeds_m_s=(0.0, 0.0),
+        odometry=Pose2(0.0, 0.0, 0.0), wheel_speeds_m_s=(0.0, 0.0),
     )  # fmt: skip
     truth = Truth(
         time_s=time_s, people=people, instance=np.zeros((240, 320), np.uint8),
         body_part=np.zeros((240, 320), np.uint8), depth_m=np.ones((240, 320), np.float32), camera=CAMERA,
-        world_from_camera=np.eye(4), robot=Planar(0.01 * frame, 0.0, 0.1),
+        world_from_camera=np.eye(4), robot=Pose2(0.01 * frame, 0.0, 0.1),
         robot_velocity=(0.2, 0.1), contacts=(), things=(),
         owners=Owners((), np.array([-1], np.int16), np.full((240, 320), -1, np.int32)),
         background_m=lambda: np.ones((240, 320), np.float32),

@@ -19,9 +19,9 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 from scipy.spatial.transform import Rotation
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.export.ros_messages import OdometryNoise, drift
 from peopleboy.scenarios.run_folder.finished_run import open_run
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from tests.helpers.runs.exported import export
 
@@ -45,7 +45,7 @@ HASHES = {
 }
 
 lengths, turns = st.floats(-20.0, 20.0), st.floats(-math.pi, math.pi)
-poses = st.builds(Planar, lengths, lengths, turns)
+poses = st.builds(Pose2, lengths, lengths, turns)
 
 
 @pytest.fixture(scope="module")
@@ -285,7 +285,7 @@ def test_rerun_understands_the_file(bag: Path, tmp_path: Path) -> None:
 
 
 @given(true=poses, odometry=poses)
-def test_the_drift_and_the_odometry_make_the_true_pose(true: Planar, odometry: Planar) -> None:
+def test_the_drift_and_the_odometry_make_the_true_pose(true: Pose2, odometry: Pose2) -> None:
     off = drift(true, odometry)
     cos, sin = math.cos(off.heading), math.sin(off.heading)
     x = off.x + cos * odometry.x - sin * odometry.y
@@ -314,12 +314,12 @@ def drives(advance_m: float, turn_rad: float, count: int) -> np.ndarray:
 
 @pytest.mark.parametrize(("advance_m", "turn_rad"), [(0.03, 0.0), (0.03, 0.02), (0.0, 0.05), (-0.02, -0.01)])
 def test_the_covariance_is_that_of_many_drives(advance_m: float, turn_rad: float) -> None:
-    noise, pose = OdometryNoise(NOISE_M), Planar(0.0, 0.0, 0.0)
+    noise, pose = OdometryNoise(NOISE_M), Pose2(0.0, 0.0, 0.0)
     assert not noise.carry(pose).any()
     for _ in range(60):
         middle = pose.heading + turn_rad / 2.0
         heading = math.remainder(pose.heading + turn_rad, math.tau)
-        pose = Planar(pose.x + advance_m * math.cos(middle), pose.y + advance_m * math.sin(middle), heading)
+        pose = Pose2(pose.x + advance_m * math.cos(middle), pose.y + advance_m * math.sin(middle), heading)
         covariance = noise.carry(pose)
     true = np.cov(drives(advance_m, turn_rad, 20_000).T)
     scale = np.sqrt(np.outer(np.diag(true), np.diag(true))) + 1e-9
@@ -328,9 +328,9 @@ def test_the_covariance_is_that_of_many_drives(advance_m: float, turn_rad: float
 
 def test_who_stands_stays_as_sure() -> None:
     noise = OdometryNoise(0.002)
-    noise.carry(Planar(0.0, 0.0, 0.0))
-    driven = noise.carry(Planar(1.0, 0.0, 0.0))
+    noise.carry(Pose2(0.0, 0.0, 0.0))
+    driven = noise.carry(Pose2(1.0, 0.0, 0.0))
     # Both wheels have miscounted on 1 m.
     assert driven[0, 0] == pytest.approx(0.002**2 / 2.0)
     assert driven[2, 2] == pytest.approx(2.0 * 0.002**2 / WHEEL_DISTANCE_M**2)
-    assert np.array_equal(noise.carry(Planar(1.0, 0.0, 0.0)), driven)
+    assert np.array_equal(noise.carry(Pose2(1.0, 0.0, 0.0)), driven)

@@ -13,6 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.cli import cli
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.watching.bodies import TOLD_S, Bodies
@@ -20,7 +21,6 @@ from peopleboy.scenarios.watching.tell import sentence
 from peopleboy.scenarios.watching.thing_names import thing_names
 from peopleboy.scenarios.watching.true_events import TrueEvent, WhoIsWho, matching
 from peopleboy.scenarios.watching.watch_run import true_events
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.tracker.scene_model.scene import Change, Happening
 
 SCENARIO = """
@@ -129,7 +129,7 @@ def test_sentences_have_names_where_they_are_known() -> None:
 
 
 def test_a_happening_is_of_the_event_that_was_there_then() -> None:
-    first = Planar(0.8, 0.0, 0.0)
+    first = Pose2(0.8, 0.0, 0.0)
     event = TrueEvent(thing="box", by="anna", from_s=3.5, to_s=3.5, from_m=(3.6, 0.0))
     later = TrueEvent(thing="box", by="", from_s=13.5, to_s=13.5, from_m=(3.6, 0.0))
     aside = TrueEvent(thing="bag", by="", from_s=3.5, to_s=3.5, from_m=(3.6, 1.0))
@@ -137,7 +137,7 @@ def test_a_happening_is_of_the_event_that_was_there_then() -> None:
 
 
 def test_a_true_name_goes_to_what_matches_it_alone_and_only_once() -> None:
-    first = Planar(0.8, 0.0, 0.0)
+    first = Pose2(0.8, 0.0, 0.0)
     teddy = TrueEvent(thing="teddy", by="anna", from_s=5.0, to_s=7.4, from_m=(4.6, -0.8), to_m=(4.5, 0.3))
     fern = TrueEvent(thing="fern", by="", from_s=12.0, to_s=12.0, to_m=(6.0, 0.4))
     moved = Happening(

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.sim.geometry.planar import Planar
 from peopleboy.sim.physics.kinematic import Kinematic
 from peopleboy.sim.robot.peoplebot import PeopleBot
 from peopleboy.sim.robot.robot_body import NAME, URDF
@@ -28,7 +28,7 @@ sys.modules["pybullet"] = sys.modules["pybullet_data"] = None
 """
 
 
-def drive(physics: Kinematic, robot: PeopleBot, command: tuple[float, float], seconds: float) -> list[Planar]:
+def drive(physics: Kinematic, robot: PeopleBot, command: tuple[float, float], seconds: float) -> list[Pose2]:
     robot.command(*command)
     poses = []
     for _ in range(round(seconds * 240)):
@@ -94,7 +94,7 @@ def test_people_push_it_and_what_is_low_or_hidden_does_not() -> None:
         pushed = -0.30 - (0.1 - 1.5 + step / 240.0 + 0.22)
         assert robot.pose().x == pytest.approx(max(0.0, -pushed), abs=2e-3)
         assert physics.touching(NAME) == ({"ben"} if pushed < -1e-9 else set())
-    assert robot.odometry == Planar(0.0, 0.0, 0.0)
+    assert robot.odometry == Pose2(0.0, 0.0, 0.0)
 
 
 def test_what_hits_it_aside_turns_it_as_a_free_body_about_its_centre_of_mass() -> None:

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.geometry.planar import Planar
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.robot.peoplebot import PeopleBot, limit_command
 from peopleboy.sim.robot.robot_body import NAME, URDF, WHEEL_DISTANCE_M, WHEEL_RADIUS_M, wheel_speeds
@@ -178,7 +178,7 @@ def test_it_weighs_what_the_real_one_does() -> None:
 def test_odometry_follows_an_arc_as_its_wheels_turn() -> None:
     linear, angular = 0.4, 0.5
     with on_a_floor(at_m=(2.0, -1.0), heading_rad=1.0) as (bullet, robot):
-        assert robot.odometry == Planar(2.0, -1.0, 1.0)
+        assert robot.odometry == Pose2(2.0, -1.0, 1.0)
         drive(bullet, robot, (linear, angular), 1.5)
         start = robot.odometry
         drive(bullet, robot, (linear, angular), 2.0)

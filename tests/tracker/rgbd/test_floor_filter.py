@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.tracker.frame import Odometry
-from peopleboy.tracker.rgbd.floor_filter import FloorFilter, carried, turned
+from peopleboy.geometry.pose2 import Pose2
+from peopleboy.tracker.rgbd.floor_filter import FloorFilter
 from peopleboy.tracker.rgbd.observation_model import Body, RgbdView, looks_in
 from peopleboy.tracker.rgbd.rgbd_config import FloorFilterConfig
 from tests.helpers.depth_scene import HEIGHT, WIDTH, Block, depth_of, make_view
@@ -39,13 +39,13 @@ def body_in(view: RgbdView) -> Body:
 def test_a_place_that_stands_still_is_carried_as_the_robot_moves(
     x: float, y: float, advance: float, aside: float, turn: float
 ) -> None:
-    after = carried(np.array([[x, y]]), Odometry(advance_m=advance, aside_m=aside, turn_rad=turn))[0]
+    after = Pose2(advance, aside, turn).points_to_local(np.array([x, y]))
     back = complex(*after) * complex(math.cos(turn), math.sin(turn)) + complex(advance, aside)
     assert (back.real, back.imag) == pytest.approx((x, y), abs=1e-9)
 
 
 def test_what_is_ahead_is_on_the_right_after_a_turn_to_the_left() -> None:
-    x, y = turned(np.array([[1.0, 0.0]]), Odometry(turn_rad=0.1))[0]
+    x, y = Pose2(heading=0.1).vectors_to_local(np.array([1.0, 0.0]))
     assert x > 0.9
     assert y < 0.0
 

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.frame import Calibration, Odometry
 from peopleboy.tracker.panoramic.foreground.floor_rows import FloorRows, floor_rows
 from peopleboy.tracker.panoramic.foreground.memory import compare, first_memory, learn, move_along
 from peopleboy.tracker.panoramic.foreground.network_file import SHIPPED, ForegroundModel
 from peopleboy.tracker.panoramic.panorama_view import view_of
-from peopleboy.tracker.panoramic.robot_pose import RobotPose
 
 Linear = NDArray[np.float32]
 
@@ -45,7 +45,7 @@ class Foreground:
         self._calibration: Calibration | None = None
         self._rows: FloorRows | None = None
         self._memory: Linear | None = None
-        self._moved = RobotPose()  # since the memory was brought along
+        self._moved = Pose2()  # since the memory was brought along
         self._time_s = 0.0
 
     def update(
@@ -84,14 +84,13 @@ class Foreground:
     def _brought_along(self, image: NDArray[np.uint8], odometry: Odometry | None, floor: FloorRows) -> Linear:
         """Bring the background to where the robot is now, as soon as it makes a difference."""
         if self._memory is None or odometry is None:
-            self._moved = RobotPose()
+            self._moved = Pose2()
             return first_memory(image)
-        self._moved = moved = self._moved.moved(odometry)
+        self._moved = moved = self._moved.integrate(odometry.motion)
         if math.hypot(moved.x, moved.y) < _LEAST_WAY_M and abs(moved.heading) < _LEAST_TURN_RAD:
             return self._memory
-        self._moved = RobotPose()
-        way = Odometry(advance_m=moved.x, aside_m=moved.y, turn_rad=moved.heading)
-        return move_along(self._memory, way, floor)
+        self._moved = Pose2()
+        return move_along(self._memory, Odometry.from_motion(moved), floor)
 
     def _floor(self, calibration: Calibration, image: NDArray[np.uint8]) -> FloorRows:
         """Tell how the floor lies; a camera that the network does not know is refused."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.frame import PANORAMA, Calibration, Frame
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.panorama_view import choose_view
@@ -30,7 +31,6 @@ from peopleboy.tracker.panoramic.paper.position_filter import (
     MotionNoise,
     PositionFilter,
 )
-from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
 # What the panoramic tracker believes beyond its track.
@@ -120,7 +120,7 @@ class PanoramicPaperTracker:
         self.config = PanoramicConfig() if config is None else config
         self._models = tuple(models)
         self._model = self._models[0]
-        self._pose = RobotPose()
+        self._pose = Pose2()
         self._empty: list[NDArray[np.uint8]] = []
         self._background: Background | None = None
         self._person: _Person | None = None
@@ -151,7 +151,7 @@ class PanoramicPaperTracker:
             BadInput: an image that is none, or of another camera than the networks were trained on.
         """
         if frame.odometry is not None:
-            self._pose = self._pose.moved(frame.odometry)
+            self._pose = self._pose.integrate(frame.odometry.motion)
         if PANORAMA in frame.images:
             image = frame.rgb(PANORAMA)
             self._choose(image.shape[:2], frame.calibrations.get(PANORAMA))
@@ -192,7 +192,7 @@ class PanoramicPaperTracker:
     def _meet(self, figure: MeasuredFigure, time_s: float) -> float:
         """Let the filter know where the person is seen, and tell how far away [m]."""
         distance_m = float(self._model.network.distance(np.array([figure.cues]))[0])
-        place = self._pose.place(distance_m, figure.bearing_rad)
+        place = self._pose.transform_polar(distance_m, figure.bearing_rad)
         before = self._person
         if before is None or time_s - before.seen_s > self.config.forget_s:
             self._newest_id += 1
@@ -207,8 +207,8 @@ class PanoramicPaperTracker:
 
     def _track(self, person: _Person, time_s: float) -> Track:
         believed = self._filter.predict(person.estimate, person.age_steps(time_s))
-        x, y = self._pose.locate(believed.position_m).tolist()
-        (xx, xy), (_, yy) = self._pose.turned(believed.covariance_m2).tolist()
+        x, y = self._pose.points_to_local(believed.position_m).tolist()
+        (xx, xy), (_, yy) = self._pose.covariance_to_local(believed.covariance_m2).tolist()
         return Track(
             id=person.id,
             boxes={PANORAMA: person.box} if person.seen_s == time_s else {},

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.panoramic.people.figure_patch import Map
 from peopleboy.tracker.panoramic.people.floor_motion import Floats, Motion
 from peopleboy.tracker.panoramic.people.panorama_patches import Scene
 from peopleboy.tracker.panoramic.people.panoramic_config import SightingConfig
 from peopleboy.tracker.panoramic.people.place_model import PlaceModel
-from peopleboy.tracker.panoramic.robot_pose import RobotPose
 
 NEAREST_M = 0.5
 _AROUND = np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)], np.float64)
@@ -48,7 +48,7 @@ class Onlooker:
     """
 
     model: PlaceModel
-    pose: RobotPose
+    pose: Pose2
     config: SightingConfig
 
     def expected(self, motion: Motion, scene: Scene) -> Sighting | None:
@@ -74,7 +74,7 @@ class Onlooker:
 
     def polar(self, place_m: Floats) -> tuple[float, float]:
         """Give bearing [rad] and distance [m] of a place (2,) of the room."""
-        x, y = self.pose.locate(place_m).tolist()
+        x, y = self.pose.points_to_local(place_m).tolist()
         return math.atan2(y, x), max(math.hypot(x, y), NEAREST_M)
 
     def _best(self, scene: Scene, polar: Floats) -> Sighting | None:
@@ -91,7 +91,7 @@ class Onlooker:
             evidence=float(reported.evidence[best]),
             bearing_rad=bearing,
             distance_m=distance,
-            place_m=self.pose.place(distance, bearing),
+            place_m=self.pose.transform_polar(distance, bearing),
             error_m2=(axes * deviation**2) @ axes.T,
         )
 

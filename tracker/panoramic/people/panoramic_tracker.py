@@ -6,9 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.frame import PANORAMA, Calibration, Frame, Odometry
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.foreground.foreground import Foreground
@@ -20,7 +19,6 @@ from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_observation import Onlooker, PeopleExplanation, Sighting
 from peopleboy.tracker.panoramic.people.panoramic_tracks import Life, PanoramicPerson, Register
 from peopleboy.tracker.panoramic.people.place_model import PlaceModel
-from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from peopleboy.tracker.track import FloorPlace, Status, Track
 
 LONGEST_STEP_S = 2.0
@@ -43,9 +41,9 @@ class PanoramicTracker:
         self._model, self._view = model, view
         self._foreground = Foreground()
         self._register = Register(self.config.identity)
-        self._pose = RobotPose()
+        self._pose = Pose2()
         self._camera: PanoramaCalibration | None = None
-        self._seen_from: RobotPose | None = None
+        self._seen_from: Pose2 | None = None
         self._time_s = -math.inf
         self._persons: tuple[PanoramicPerson, ...] = ()
         self._scene: Scene | None = None
@@ -77,7 +75,7 @@ class PanoramicTracker:
             BadInput: an image that is none, or of another camera than the model was trained on.
         """
         if frame.odometry is not None:
-            self._pose = self._pose.moved(frame.odometry)
+            self._pose = self._pose.integrate(frame.odometry.motion)
         if PANORAMA in frame.images:
             self._look(frame)
         return tuple(self._track(person, frame) for person in self._persons if person.id)
@@ -85,7 +83,9 @@ class PanoramicTracker:
     def _look(self, frame: Frame) -> None:
         """Take in a new panorama."""
         image, calibration = frame.rgb(PANORAMA), self._checked(frame.calibrations)
-        moved = None if self._seen_from is None else _between(self._seen_from, self._pose)
+        moved = (
+            None if self._seen_from is None else Odometry.from_motion(self._pose.relative_to(self._seen_from))
+        )
         foreground = self._foreground.update(image, frame.time_s, moved, calibration)
         life = Life(self.config, frame.time_s, min(frame.time_s - self._time_s, LONGEST_STEP_S))
         self._seen_from, self._time_s = self._pose, frame.time_s
@@ -183,8 +183,8 @@ class PanoramicTracker:
     def _track(self, person: PanoramicPerson, frame: Frame) -> Track:
         later_s = frame.time_s - self._time_s
         motion = person.motion if later_s <= 0 else person.motion.later(later_s, self.config.restlessness)
-        x, y = self._pose.locate(motion.place_m).tolist()
-        (xx, xy), (_, yy) = self._pose.turned(motion.place_m2 + person.lasting_m2).tolist()
+        x, y = self._pose.points_to_local(motion.place_m).tolist()
+        (xx, xy), (_, yy) = self._pose.covariance_to_local(motion.place_m2 + person.lasting_m2).tolist()
         calibration = frame.calibrations.get(PANORAMA)
         boxes = {}
         if isinstance(calibration, PanoramaCalibration):
@@ -222,9 +222,3 @@ def _way(person: PanoramicPerson, seen: Sighting) -> float:
 
 def _apart(one: PanoramicPerson, other: PanoramicPerson) -> float:
     return math.dist(one.motion.place_m, other.motion.place_m)
-
-
-def _between(before: RobotPose, now: RobotPose) -> Odometry:
-    """Tell how the robot moved from one pose to another."""
-    x, y = before.locate(np.array([now.x, now.y])).tolist()
-    return Odometry(advance_m=x, aside_m=y, turn_rad=now.heading - before.heading)

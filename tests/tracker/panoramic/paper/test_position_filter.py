@@ -1,18 +1,11 @@
-import math
-
 import numpy as np
-import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.panoramic.paper.position_filter import (
     PRINTED,
     MotionNoise,
     PositionFilter,
     estimate_noise,
 )
-from peopleboy.tracker.panoramic.robot_pose import RobotPose
 
 Q, R = PRINTED.step_m2, PRINTED.measurement_m2
 STILL = PositionFilter(PRINTED, uses_velocity=False)
@@ -105,28 +98,6 @@ def test_with_velocity_an_even_walk_has_steps_without_noise():
     even = np.arange(50)[:, None] * np.array([0.3, -0.2])
     noise = estimate_noise([(even, even)], uses_velocity=True)
     np.testing.assert_allclose(noise.step_m2, np.zeros((2, 2)), atol=1e-15)
-
-
-@given(st.floats(-5, 5), st.floats(-5, 5), st.floats(-4, 4), st.floats(0.1, 9), st.floats(-math.pi, math.pi))
-def test_what_is_placed_in_the_room_is_found_again_from_the_robot(x, y, heading, distance, bearing):
-    pose = RobotPose(x, y, heading)
-    place = pose.place(distance, bearing)
-    assert place == pytest.approx(
-        [x + distance * math.cos(heading + bearing), y + distance * math.sin(heading + bearing)]
-    )
-    assert pose.locate(place) == pytest.approx([distance * math.cos(bearing), distance * math.sin(bearing)])
-
-
-def test_a_robot_that_drives_round_a_square_is_where_it_was():
-    pose = RobotPose()
-    for _ in range(4):
-        pose = pose.moved(Odometry(advance_m=1.5, aside_m=0.2, turn_rad=math.pi / 2))
-    assert (pose.x, pose.y) == pytest.approx((0.0, 0.0))
-
-
-def test_a_covariance_turns_with_the_robot():
-    turned = RobotPose(heading=math.pi / 2).turned(np.diag([1.0, 4.0]))
-    np.testing.assert_allclose(turned, np.diag([4.0, 1.0]), atol=1e-12)
 
 
 def test_the_noise_of_the_paper_is_symmetric_and_positive():

@@ -5,14 +5,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.tracker.frame import Odometry
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.panoramic.people.floor_motion import Motion
 from peopleboy.tracker.panoramic.people.panoramic_config import SightingConfig
 from peopleboy.tracker.panoramic.people.panoramic_observation import Onlooker
-from peopleboy.tracker.panoramic.robot_pose import RobotPose
 from tests.helpers.images.cardboard import Cardboard, CardboardModel, scene_of
 
-POSE = RobotPose().moved(Odometry(advance_m=2.0, aside_m=-1.0, turn_rad=0.7))
+POSE = Pose2().integrate(Pose2(2.0, -1.0, 0.7))
 BEARINGS, DISTANCES = st.floats(-math.pi, math.pi), st.floats(1.5, 5.0)
 
 
@@ -21,7 +20,7 @@ def onlooker(**config):
 
 
 def motion_at(distance, bearing, deviation=0.2):
-    return Motion.begin(POSE.place(distance, bearing), deviation**2 * np.eye(2))
+    return Motion.begin(POSE.transform_polar(distance, bearing), deviation**2 * np.eye(2))
 
 
 @settings(max_examples=30)
@@ -30,9 +29,9 @@ def test_who_is_expected_nearby_is_seen_where_it_stands(bearing, distance, along
     expected = motion_at(distance + along, bearing + across / distance)
     seen = onlooker().expected(expected, scene_of([Cardboard(distance, bearing)]))
     assert seen is not None
-    assert np.linalg.norm(seen.place_m - POSE.place(distance, bearing)) < 0.15
+    assert np.linalg.norm(seen.place_m - POSE.transform_polar(distance, bearing)) < 0.15
     # All ways of telling the place say the same.
-    np.testing.assert_allclose(seen.place_m, POSE.place(seen.distance_m, seen.bearing_rad))
+    np.testing.assert_allclose(seen.place_m, POSE.transform_polar(seen.distance_m, seen.bearing_rad))
     away = seen.place_m - (POSE.x, POSE.y)
     along, across = away / np.linalg.norm(away), np.array([-away[1], away[0]]) / np.linalg.norm(away)
     assert along @ seen.error_m2 @ across == pytest.approx(0.0, abs=1e-6)
@@ -44,7 +43,7 @@ def test_who_is_expected_nearby_is_seen_where_it_stands(bearing, distance, along
 def test_bearing_and_distance_lead_back_to_the_place(x, y):
     bearing, distance = onlooker().polar(np.array([x, y]))
     if distance > 0.5:
-        np.testing.assert_allclose(POSE.place(distance, bearing), [x, y], atol=1e-9)
+        np.testing.assert_allclose(POSE.transform_polar(distance, bearing), [x, y], atol=1e-9)
     assert distance >= 0.5
 
 

@@ -1,0 +1,1 @@
+"""Geometry that every room may import: planar poses."""
