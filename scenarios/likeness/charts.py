@@ -15,7 +15,7 @@ from peopleboy.scenarios.likeness.clips import Grey
 from peopleboy.scenarios.likeness.compare import Comparison
 from peopleboy.scenarios.likeness.measures import CONTRAST_EDGES, GRADIENT_EDGES, GREY_EDGES, Looks
 from peopleboy.scenarios.likeness.patches import SIDE
-from peopleboy.scenarios.report.charts.svg import LINE, SERIES, inline, lettered, new_figure
+from peopleboy.scenarios.report.charts.svg import LINE, SERIES, inline, new_figure, svg_style
 
 _WIDTH_PT, _HEIGHT_PT = 300.0, 165.0
 _COLUMNS: Final = 6
@@ -38,7 +38,7 @@ def draw_charts(comparison: Comparison) -> list[tuple[str, Markup]]:
     return [(title, _chart(comparison, title, across, draw)) for title, across, draw in charts]
 
 
-@lettered
+@svg_style
 def _chart(comparison: Comparison, title: str, across: str, draw: _Draw) -> Markup:
     figure = new_figure(_WIDTH_PT, _HEIGHT_PT)
     figure.set_layout_engine("constrained")

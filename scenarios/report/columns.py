@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.report.findings.summary import RunFindings, look_into
-from peopleboy.scenarios.report.findings.verdict import headline, headline_of_many
+from peopleboy.scenarios.report.findings.highlights import headline
+from peopleboy.scenarios.report.findings.run_findings import RunFindings, analyse_run
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_run, runs_in
 from peopleboy.scenarios.scores.by_tracker import check_same_scenes
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
@@ -51,14 +51,14 @@ class Column:
 
     @property
     def headline(self) -> str:
-        """What came out, in a sentence."""
-        return headline(self.found) if self.is_single else headline_of_many(self.runs)
+        """What was found, in a sentence."""
+        return headline(self.runs)
 
     def by_badness(self) -> list[tuple[RunFindings, Scores]]:
         """Its runs with their scores: most numbers on somebody else first, then most lost identities."""
         pairs = zip(self.runs, self.scores, strict=True)
         return sorted(
-            pairs, key=lambda pair: (-len(pair[0].passings), -len(pair[0].lost), pair[1].mot.identity.idf1)
+            pairs, key=lambda pair: (-len(pair[0].transfers), -len(pair[0].lost), pair[1].mot.identity.idf1)
         )
 
 
@@ -126,7 +126,7 @@ def _refuse_repeats(folders: Sequence[Path]) -> None:
 
 
 def _column(label: str, runs: Sequence[FinishedRun]) -> Column:
-    found = tuple(look_into(run) for run in runs)
+    found = tuple(analyse_run(run) for run in runs)
     scored = evaluate_runs([run.folder for run in runs])
     return Column(
         label=label,

@@ -3,24 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import jinja2
+from markupsafe import Markup
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.palette import TRACK_COLOURS
 from peopleboy.scenarios.report import tables
-from peopleboy.scenarios.report.attention_strip import attention_strip
 from peopleboy.scenarios.report.charts.error_curves import draw_error_curves
+from peopleboy.scenarios.report.charts.paths import draw_paths
 from peopleboy.scenarios.report.charts.stills import Origin
-from peopleboy.scenarios.report.charts.thing_timelines import draw_things
-from peopleboy.scenarios.report.charts.timelines import swatch, timelines
-from peopleboy.scenarios.report.charts.ways import draw_ways
+from peopleboy.scenarios.report.charts.timelines import PersonTimeline, draw_things, swatch, timelines
 from peopleboy.scenarios.report.columns import Column, lacking, read_columns
+from peopleboy.scenarios.report.findings.run_findings import RunFindings
 from peopleboy.scenarios.report.findings.sentences import listed
 from peopleboy.scenarios.report.page_file import check_place, write_page
-from peopleboy.scenarios.report.pictures import PicturedMoment, contact_sheet, pictured_moments
+from peopleboy.scenarios.report.pictures import (
+    PagePicture,
+    PicturedMoment,
+    attention_strip,
+    contact_sheet,
+    pictured_moments,
+)
+from peopleboy.scenarios.report.tables import PageTable
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import describe_images
 from peopleboy.scenarios.scores.reference_boxes import Yardstick
@@ -33,6 +41,81 @@ _DRIVES = {
     "corridor": "How well the corridor was followed",
     "comfort": "How comfortable people were with the robot",
 }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RunSection:
+    """What a page shows of one run by itself."""
+
+    label: str
+    found: RunFindings
+    losses: PageTable
+    occlusions: PageTable
+    plan: Markup | None  # None if the place cannot be built again
+    attention: Sequence[PagePicture]
+    things: Markup
+    moves: PageTable
+    modes: PageTable
+    tiles: Sequence[PagePicture]  # of its contact sheet
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ReportPage:
+    """Everything that the template of a page shows.
+
+    Attributes:
+        columns: what stands side by side.
+        singles: of columns of one run.
+        crowds: columns of many runs, each with the table of its runs, and whether that lacks some.
+        lacking: what the page cannot show, and why, a line each.
+        moments: the worst ones, with pictures.
+        timelines: of each run, or of runs of one scene together, under their titles.
+        first_repeated: number of the first track whose colour repeats that of another; 0 for none.
+        lengths: how many identities were kept, by how long people were hidden.
+        drives: figures of how the robot drove, by title.
+        curves: drawn errors, by title.
+        settings: name and value of what is needed to do it again, by column's label.
+    """
+
+    title: str
+    columns: Sequence[Column]
+    singles: Sequence[RunSection]
+    crowds: Sequence[tuple[Column, PageTable, bool]]
+    lacking: Sequence[str]
+    moments: Sequence[PicturedMoment]
+    timelines: Sequence[tuple[str, Sequence[PersonTimeline]]]
+    first_repeated: int
+    lengths: PageTable
+    figures: PageTable
+    drives: Mapping[str, PageTable]
+    curves: Sequence[tuple[str, Markup]]
+    settings: Sequence[tuple[str, Sequence[tuple[str, str]]]]
+    all_figures: PageTable
+
+    @property
+    def description(self) -> str:
+        """What happens in the scenario of a page about one run."""
+        return str(_said(self.columns[0].found.run).get("description", "")) if self.is_of_one_run else ""
+
+    @property
+    def is_of_one_run(self) -> bool:
+        """Whether there is one run only."""
+        return len(self.columns) == len(self.singles) == 1
+
+    @property
+    def is_thermal(self) -> bool:
+        """Whether all pictures are thermal."""
+        return all(found.camera == THERMAL for column in self.columns for found in column.runs)
+
+    @property
+    def has_moves(self) -> bool:
+        """Whether anything was moved."""
+        return any(section.moves.rows for section in self.singles)
+
+    @property
+    def has_modes(self) -> bool:
+        """Whether a robot did more than one thing."""
+        return any(len(section.modes.rows) > 1 for section in self.singles)
 
 
 def write_report(paths: Sequence[Path], out: Path) -> list[str]:
@@ -52,12 +135,52 @@ def write_report(paths: Sequence[Path], out: Path) -> list[str]:
     columns = read_columns(paths)
     moments = pictured_moments(columns)
     lines = [*lacking(columns), *_notes(columns), *_unknown(columns), *_without_images(moments)]
-    write_page(render(columns, moments, lines), out)
+    write_page(_render(make_page(columns, moments, lines)), out)
     return lines
 
 
-def render(columns: Sequence[Column], moments: Sequence[PicturedMoment], lines: Sequence[str]) -> str:
-    """Write the page as HTML; `lines` say what it lacks."""
+def make_page(
+    columns: Sequence[Column], moments: Sequence[PicturedMoment], lines: Sequence[str]
+) -> ReportPage:
+    """Gather what the page shows; `lines` say what it lacks."""
+    singles = [column for column in columns if column.is_single]
+    crowds = [column for column in columns if not column.is_single]
+    return ReportPage(
+        title=_title(columns),
+        columns=columns,
+        singles=[_section(column) for column in singles],
+        crowds=[(c, tables.runs_of(c), len(c.runs) > tables.LONGEST) for c in crowds],
+        lacking=lines,
+        moments=moments,
+        timelines=timelines(columns),
+        first_repeated=_first_repeated(singles),
+        lengths=tables.identities_kept(columns),
+        figures=tables.plain_figures(columns),
+        drives={title: tables.drive_figures(columns, name) for name, title in _DRIVES.items()},
+        curves=draw_error_curves(columns),
+        settings=[(column.label, _settings(column)) for column in columns],
+        all_figures=tables.all_figures(columns),
+    )
+
+
+def _section(column: Column) -> RunSection:
+    found = column.found
+    return RunSection(
+        label=column.label,
+        found=found,
+        losses=tables.losses(found),
+        occlusions=tables.occlusions(column),
+        plan=draw_paths(found, column.label),
+        attention=attention_strip(found),
+        things=draw_things(found, column.label),
+        moves=tables.moves(found),
+        modes=tables.modes(found),
+        tiles=contact_sheet(found.run),
+    )
+
+
+def _render(page: ReportPage) -> str:
+    """Render a page as HTML."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(HERE),
         autoescape=True,
@@ -65,31 +188,7 @@ def render(columns: Sequence[Column], moments: Sequence[PicturedMoment], lines: 
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    singles = [column for column in columns if column.is_single]
-    return environment.get_template("page.html.jinja").render(
-        columns=columns,
-        singles=singles,
-        crowds=[column for column in columns if not column.is_single],
-        title=_title(columns),
-        description=_said(columns[0].found.run).get("description", "") if len(singles) == 1 else "",
-        lacking=lines,
-        moments=moments,
-        is_thermal=all(found.camera == THERMAL for column in columns for found in column.runs),
-        timelines=timelines(columns),
-        swatch=swatch,
-        repeated=_first_repeated(singles),
-        tables=tables,
-        lengths=tables.identities_kept(columns),
-        drives={title: tables.drive_figures(columns, name) for name, title in _DRIVES.items()},
-        curves=draw_error_curves(columns),
-        plans=[(column.label, draw_ways(column.found, column.label)) for column in singles],
-        attended=[(column.label, attention_strip(column.found)) for column in singles],
-        things=[(column, draw_things(column.found, column.label)) for column in singles],
-        has_moves=any(tables.moves(column.found).rows for column in singles),
-        has_modes=any(len(tables.modes(column.found).rows) > 1 for column in singles),
-        sheets=[(column.label, contact_sheet(column.found.run)) for column in singles],
-        settings=[(column.label, _settings(column)) for column in columns],
-    )
+    return environment.get_template("page.html.jinja").render(page=page, swatch=swatch)
 
 
 def _notes(columns: Sequence[Column]) -> list[str]:
@@ -142,9 +241,9 @@ def _settings(column: Column) -> list[tuple[str, str]]:
         ("seed" if column.is_single else "seeds", seeds),
         ("tracker", about.tracker),
         ("tracks", "" if adopted is None else f"{adopted.tracks}, made elsewhere"),
-        ("boxes", "" if found.yardstick == Yardstick() else f"held against {found.yardstick}"),
+        ("boxes", "" if found.yardstick == Yardstick() else f"scored against {found.yardstick}"),
         ("robot", about.behaviour or (str(behaviour) if played else "")),
-        ("eyes of the robot", "" if adopted is None else adopted.driven_by),
+        ("robot driven by", "" if adopted is None else adopted.driven_by),
         ("images", _images(run)),
         ("faults", _faults(played.get("faults", []))),
         ("renderer", about.renderer),

@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final, NamedTuple
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.contact_sheet import read_tiles
 from peopleboy.scenarios.drawing.overlay import encode_jpeg
-from peopleboy.scenarios.report.charts.stills import DrawnFrame, Origin, show_frames
+from peopleboy.scenarios.drawing.palette import track_colour
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.report.charts.stills import DrawnFrame, Origin, images_of, show_frames
 from peopleboy.scenarios.report.columns import Column, are_same_scene
+from peopleboy.scenarios.report.findings.highlights import BadMoment, worst_moments
+from peopleboy.scenarios.report.findings.run_findings import RunFindings
 from peopleboy.scenarios.report.findings.sentences import seconds
-from peopleboy.scenarios.report.findings.summary import RunFindings
-from peopleboy.scenarios.report.findings.worst_moments import BadMoment, worst_moments
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
-from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.attention.attend import Focus
+from peopleboy.tracker.attention.people.attentive_config import AttentiveConfig
+from peopleboy.tracker.attention.people.attentive_explanation import Attended
+from peopleboy.tracker.attention.people.views import LOOKED_AT, View, box_in
+from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.track import Box, Status
 
 _JPEG_QUALITY, _TILE_QUALITY = 80, 72
 _MOMENTS = 6  # of one run; of two side by side, each has half as many
@@ -106,3 +114,92 @@ def _pictured(moment: BadMoment, whose: str, stills: _Stills, is_beside: bool) -
 def page_jpeg(image: NDArray[np.uint8], quality: int) -> str:
     """Give an image as an address for a page."""
     return f"data:image/jpeg;base64,{base64.b64encode(encode_jpeg(image, quality)).decode()}"
+
+
+# A strip of a page: where attention would look when its person was learned, lost, away, and found again.
+
+_ATTENTIVE: Final = "attentive"  # how the names of such trackers begin
+_QUALITY: Final = 80
+_THICK: Final = 2
+
+
+class _Learned(NamedTuple):
+    frame: int
+    number: int
+    camera: str
+    box: Box
+
+
+def attention_strip(found: RunFindings) -> list[PagePicture]:
+    """Draw the key moments of the person on whom attention is: each image beside the score of every place.
+
+    There are none for other trackers, for people who were never seen well, and where no images can be had.
+    """
+    if not found.run.about.tracker.startswith(_ATTENTIVE):
+        return []
+    try:
+        learned = _learned(found)
+    except BadInput:
+        return []
+    if learned is None:
+        return []
+    moments = {learned.frame: "learned", **_absence(found, learned)}
+    images, _ = images_of(found.run, list(moments), learned.camera)
+    if learned.frame not in images:
+        return []
+    return list(_pictures(found, learned, moments, images))
+
+
+def _learned(found: RunFindings) -> _Learned | None:
+    """Find the person who was seen well first, and the first image in which it was known."""
+    calibrations = calibrations_of(found.run.robot.cameras)
+    camera = next((name for name in LOOKED_AT if name in calibrations), None)
+    seen: dict[int, int] = {}
+    for number, tracks in sorted(found.files.tracks_by_frame().items()):
+        frame = Frame(images={}, calibrations=calibrations, time_s=found.run.time_s(number))
+        for track in tracks:
+            box = box_in(camera, track, frame) if camera and track.status is Status.TRACKED else None
+            if camera is not None and box is not None:
+                seen[track.id] = seen.get(track.id, 0) + 1
+                if seen[track.id] >= AttentiveConfig().learned_images:
+                    return _Learned(number, track.id, camera, box)
+    return None
+
+
+def _absence(found: RunFindings, learned: _Learned) -> dict[int, str]:
+    """Name the frames of the person's longest absence: its start, its middle, and its end."""
+    who = f"track {learned.number}"
+    lines = [line for line in found.run.events if line.frame > learned.frame]
+    ends = [one.frame for one in lines if one.kind == "re-identified" and who == (one.other or one.who)]
+    lost = [one.frame for one in lines if one.kind == "lost" and one.who == who]
+    away = [(next((end for end in ends if end > start), found.run.frames), start) for start in lost]
+    if not away:
+        return {found.run.frames: "at the end"}
+    end, start = max(away, key=lambda one: one[0] - one[1])
+    return {start: "lost", (start + end) // 2: "away", end: "found again" if end in ends else "at the end"}
+
+
+def _pictures(
+    found: RunFindings, learned: _Learned, moments: Mapping[int, str], images: Mapping[int, NDArray[np.uint8]]
+) -> Iterator[PagePicture]:
+    start = Attended.learned(learned.number, View(learned.camera, images[learned.frame], learned.box))
+    for frame, what in moments.items():
+        if frame in images:
+            focus = Attended(start.number, start.camera, start.model, images[frame]).focus()
+            caption = f"{seconds(found.run.time_s(frame))}, {what}: at most {focus.score:.2f}"
+            picture = page_jpeg(_drawn(images[frame], focus, track_colour(learned.number)), _QUALITY)
+            yield PagePicture(picture, f"image, and score of every place, {caption}", caption)
+
+
+def _drawn(image: NDArray[np.uint8], focus: Focus, colour: Sequence[int]) -> NDArray[np.uint8]:
+    """Lay an image (H, W, 3) and its scores beside each other, with a cross and a box at the focus."""
+    height, width = image.shape[:2]
+    grey = np.rint(255.0 * np.sqrt(np.clip(focus.scores, 0.0, 1.0))).astype(np.uint8)
+    scores = cv2.applyColorMap(cv2.resize(grey, (width, height)), cv2.COLORMAP_INFERNO)[..., ::-1]
+    both = [np.ascontiguousarray(one) for one in (image, scores)]
+    left, top, across, down = (round(edge) for edge in focus.box)
+    place = round(focus.place[0]), round(focus.place[1])
+    for one in both:
+        cv2.rectangle(one, (left, top), (left + across, top + down), tuple(colour), _THICK)
+        cv2.drawMarker(one, place, tuple(colour), cv2.MARKER_CROSS, 4 * _THICK * _THICK, _THICK)
+    return np.concatenate(both, axis=1)

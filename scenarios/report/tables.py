@@ -1,4 +1,4 @@
-"""The tables of a page, with words for readers who do not know the names of figures."""
+"""Build the tables of a page, with words for readers who do not know the names of figures."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.loop.run_events import describe_move
-from peopleboy.scenarios.report.charts.thing_timelines import THING
+from peopleboy.scenarios.report.charts.timeline_rows import THING
 from peopleboy.scenarios.report.columns import Column
+from peopleboy.scenarios.report.findings.highlights import headline
+from peopleboy.scenarios.report.findings.run_findings import RunFindings
 from peopleboy.scenarios.report.findings.sentences import seconds, spoken
-from peopleboy.scenarios.report.findings.summary import RunFindings
-from peopleboy.scenarios.report.findings.verdict import headline
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.scores.bootstrap import bootstrap
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
@@ -29,16 +29,16 @@ from peopleboy.tracker.evaluation.table import FIGURES, FLOOR, Figure
 LONGEST = 40  # runs that are listed one by one
 _FEWEST_PAIRS = 3  # runs of the same scenario and seed, for an interval of their differences
 
-# Name of the figure, what to call it, and what it says to somebody who reads it for the first time.
+# Name of the figure, what to call it, and what it says to a first-time reader.
 PLAIN: Final = (
-    ("CR", "people found", "Of all moments in which somebody was to be found: in how many a box lay there."),
+    ("CR", "people found", "Of all moments in which a person was to be found: in how many a box lay there."),
     ("CP", "boxes on people", "Of all boxes: how many lie on a person. The rest are false alarms."),
     ("AA", "fit of the boxes", "How well boxes and people cover each other; 100 would be the very same box."),
-    ("IDF1", "who is who", "How constantly one person has one number. Lost or swapped identities lower it."),
-    ("HOTA", "all in one", "Finding people and telling them apart in one, as public benchmarks have it."),
+    ("IDF1", "identity", "How constantly one person has one number. Lost or swapped identities lower it."),
+    ("HOTA", "overall", "Detection and association in one figure, as in public benchmarks."),
     ("MOTA", "few mistakes", "100 less all misses, false alarms and switches; it may fall below 0."),
     ("IDSW", "switches", "How often the number on a person became another, even if only for a moment."),
-    ("false_tracks", "tracks on nobody", "Track numbers that never lay on a person at all."),
+    ("false_tracks", "false tracks", "Track numbers that never lay on a person at all."),
 )  # fmt: skip
 _SCORES: Final = {"following": FollowingScore, "corridor": CorridorScore, "comfort": ComfortScore}
 
@@ -52,7 +52,7 @@ class Head(NamedTuple):
 
 
 class Bad(NamedTuple):
-    """A cell that tells of something bad."""
+    """A cell that shows something bad."""
 
     text: str
 
@@ -65,7 +65,7 @@ class PageTable(NamedTuple):
 
 
 def losses(found: RunFindings) -> PageTable:
-    """Every time that a track ceased to be shown, and why."""
+    """List every time that a track disappeared, and why."""
     heads = (
         Head("time", "n"),
         Head("number", "n", "number"),
@@ -76,8 +76,8 @@ def losses(found: RunFindings) -> PageTable:
     )
     rows = [
         (
-            *(seconds(loss.time_s), str(loss.track), spoken(loss.owner) or "nobody", loss.why),
-            *(loss.believed or "not told", Bad(loss.afterwards) if loss.is_bad else loss.afterwards),
+            *(seconds(loss.time_s), str(loss.track), spoken(loss.owner) or "no person", loss.why),
+            *(loss.believed or "not known", Bad(loss.afterwards) if loss.is_bad else loss.afterwards),
         )
         for loss in found.losses
     ]
@@ -85,21 +85,21 @@ def losses(found: RunFindings) -> PageTable:
 
 
 def runs_of(column: Column) -> PageTable:
-    """The runs of a column, one by one, the worst first."""
-    names = ("found", "who is who")
-    heads = (Head("run", "row"), Head("found (CR)", "n", names[0]), Head("who is who (IDF1)", "n", names[1]))
+    """List the runs of a column one by one, the worst first."""
+    names = ("found", "identity")
+    heads = (Head("run", "row"), Head("found (CR)", "n", names[0]), Head("identity (IDF1)", "n", names[1]))
     rows = [
         (
             *(found.run.title, number(scores.thesis.cr, "%"), number(scores.mot.identity.idf1, "%")),
-            Bad(headline(found)) if found.faults else headline(found),
+            Bad(headline([found])) if found.faults else headline([found]),
         )
         for found, scores in column.by_badness()[:LONGEST]
     ]
-    return PageTable((*heads, Head("what came out")), rows)
+    return PageTable((*heads, Head("findings")), rows)
 
 
 def occlusions(column: Column) -> PageTable:
-    """Each time that somebody was wholly hidden and came back in the first run."""
+    """List each time that a person was wholly hidden and came back in the first run."""
     names = {person.id: spoken(person.name) for person in column.found.people}
     heads = ("from", "wholly hidden for", "number before", "after", "found again after")
     rows = []
@@ -111,11 +111,11 @@ def occlusions(column: Column) -> PageTable:
         rows.append(
             (names[one.person], start, seconds(one.duration_s), before, again, number(one.found_after_s, "s"))
         )
-    return PageTable((Head("who", "row"), *(Head(name, "n", name) for name in heads)), rows)
+    return PageTable((Head("person", "row"), *(Head(name, "n", name) for name in heads)), rows)
 
 
 def identities_kept(columns: Sequence[Column]) -> PageTable:
-    """By how long people were wholly hidden: how many kept their identity, in each column."""
+    """Count how many people kept their identity in each column, by how long they were wholly hidden."""
     tables = [by_length([one for of_run in c.occlusions for one in of_run]) for c in columns]
     rows = []
     for index, (low, high) in enumerate(pairwise(LENGTHS_S)):
@@ -127,21 +127,21 @@ def identities_kept(columns: Sequence[Column]) -> PageTable:
 
 
 def modes(found: RunFindings) -> PageTable:
-    """What the robot did, and why."""
+    """List what the robot did, and why."""
     lines = [line for line in found.run.events if line.kind == "mode"]
     rows = tuple((seconds(line.time_s), line.other, line.why) for line in lines)
     return PageTable((Head("time", "n"), Head("mode", "row"), Head("why")), rows)
 
 
 def moves(found: RunFindings) -> PageTable:
-    """What became of the things that were moved, and by whom."""
+    """List what happened to the things that were moved, and who moved them."""
     lines = [line for line in found.run.events if line.kind.startswith(THING)]
     rows = [
         (
             seconds(line.time_s if line.move is None else line.move.from_s),
             spoken(line.who),
             line.kind.removeprefix(THING) if line.move is None else f"moved {describe_move(line.move)}",
-            spoken(line.other) or "nobody",
+            spoken(line.other) or "no person",
             _from_to(line.move),
         )
         for line in lines
@@ -165,21 +165,21 @@ def _from_to(move: Move | None) -> str:
 
 
 def plain_figures(columns: Sequence[Column]) -> PageTable:
-    """The few figures that say most, under plain names."""
+    """Show the few figures that say most, under plain names."""
     by_name = {figure.name: figure for figure in FIGURES}
     chosen = [(f"{plain} ({name})", meaning, by_name[name]) for name, plain, meaning in PLAIN]
     return _figures(columns, [(name, meaning, f.unit, _values(columns, f)) for name, meaning, f in chosen])
 
 
 def all_figures(columns: Sequence[Column]) -> PageTable:
-    """Every figure that some run tells of, with its usual name."""
+    """Show every figure that some run has, with its usual name."""
     every = [scores for column in columns for scores in column.scores]
     told = [f for f in FIGURES if f.group != FLOOR or any(map(f.is_told_by, every))]
     return _figures(columns, [(f.name, f.meaning, f.unit, _values(columns, f)) for f in told])
 
 
 def drive_figures(columns: Sequence[Column], group: str) -> PageTable:
-    """How the robot drove, if any run says: `following`, `corridor` or `comfort`."""
+    """Show how the robot drove, if any run says: `following`, `corridor` or `comfort`."""
     rows = [[_rows(found.run, group) for found in column.runs] for column in columns]
     first = next((of_run for column in rows for of_run in column if of_run), [])
 

@@ -21,7 +21,7 @@ from peopleboy.scenarios.drawing.overlay import box_parts
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibration_of
-from peopleboy.scenarios.report.findings.summary import look_into
+from peopleboy.scenarios.report.findings.run_findings import analyse_run
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
 from peopleboy.scenarios.scores.reference_boxes import Yardstick
@@ -168,7 +168,7 @@ def test_who_is_near_counts_all_round_and_our_own_boxes_there_are_whole_ones(tra
     assert asked.by == Yardstick("panorama", BoxKind.TORSO)
     metrics = json.loads((tracked / "metrics.json").read_text(encoding="utf-8"))
     assert metrics["cameras"]["panorama"] == to_json(in_panorama.scores)
-    assert look_into(open_run(tracked)).due == 1
+    assert analyse_run(open_run(tracked)).due == 1
 
 
 @pytest.mark.slow

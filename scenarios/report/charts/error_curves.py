@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from markupsafe import Markup
 
-from peopleboy.scenarios.report.charts.svg import LINE, SERIES, inline, lettered, new_figure, says
+from peopleboy.scenarios.report.charts.svg import LINE, SERIES, inline, new_figure, set_tooltip, svg_style
 from peopleboy.scenarios.report.columns import Column
-from peopleboy.scenarios.report.findings.spans import Floats
-from peopleboy.scenarios.report.findings.summary import RunFindings
+from peopleboy.scenarios.report.findings.histories import Floats
+from peopleboy.scenarios.report.findings.run_findings import RunFindings
 from peopleboy.tracker.evaluation.box_matching import counts
 
 VISIBLE = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
@@ -100,7 +100,7 @@ def draw_error_curves(columns: Sequence[Column]) -> list[tuple[str, Markup]]:
     return charts
 
 
-@lettered
+@svg_style
 def _draw(
     title: str,
     curves: dict[str, list[CurvePoint]],
@@ -119,7 +119,7 @@ def _draw(
         words = [f"at {p.x:.2g}: {_value(p, unit)} ({p.boxes} boxes)" for p in points]
         for p, said in zip(points, words, strict=True):
             (dot,) = axes.plot(p.x, p.mean, "o", ms=5.5, mfc=colour, mec="#ffffff", zorder=3, clip_on=False)
-            says(dot, f"{name} {said}")
+            set_tooltip(dot, f"{name} {said}")
         told.append(f"{name}: {'; '.join(words)}")
     axes.set(xlim=(edges[0], edges[-1]), xticks=ticks, xlabel=label)
     axes.set_ylim(0.0, top)

@@ -29,7 +29,7 @@ from peopleboy.scenarios.drawing.overlay import (
     draw_truth,
     enlarge,
 )
-from peopleboy.scenarios.report.findings.summary import RunFindings
+from peopleboy.scenarios.report.findings.run_findings import RunFindings
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file
 from peopleboy.scenarios.run_folder.tables import Row, read_explanation

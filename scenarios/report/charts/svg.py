@@ -22,7 +22,7 @@ _SAYS: Final = "says "
 _NOTHING: Final = dict.fromkeys(("Creator", "Date", "Format", "Type"))
 
 # A $ in a name begins no formula.
-lettered = matplotlib.rc_context(
+svg_style = matplotlib.rc_context(
     {
         "text.parse_math": False,
         "font.family": "sans-serif",
@@ -46,7 +46,7 @@ def new_figure(width_pt: float, height_pt: float) -> Figure:
     return figure
 
 
-def says(artist: Artist, words: str) -> None:
+def set_tooltip(artist: Artist, words: str) -> None:
     """Let an artist say something when it is pointed at."""
     artist.set_gid(_SAYS + words)
 

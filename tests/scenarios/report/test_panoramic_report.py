@@ -8,9 +8,9 @@ import pytest
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.report.charts.error_curves import curve, distance_edges, samples
 from peopleboy.scenarios.report.charts.stills import Origin, show_frames
-from peopleboy.scenarios.report.findings.causes import plight
-from peopleboy.scenarios.report.findings.summary import RunFindings, look_into
-from peopleboy.scenarios.report.findings.verdict import headline
+from peopleboy.scenarios.report.findings.causes import find_cause
+from peopleboy.scenarios.report.findings.highlights import headline
+from peopleboy.scenarios.report.findings.run_findings import RunFindings, analyse_run
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.running.run import RunOptions, run
 
@@ -55,14 +55,14 @@ def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(folder)
         run(load_scenario(folder / "round.yaml"), options, lambda *_: None)
-        yield look_into(open_run(folder / "run"))
+        yield analyse_run(open_run(folder / "run"))
 
 
 @pytest.mark.slow
 def test_people_count_within_the_limits_of_panoramas(found: RunFindings) -> None:
     assert found.camera == "panorama"
-    assert "1 more never came within 1.1 to 7 m in sight" in headline(found)
-    assert plight(found, found.called("ben"), 0, 0) == "was beyond 7 m"
+    assert "1 more never came within 1.1 to 7 m in sight" in headline([found])
+    assert str(find_cause(found, found.called("ben"), 0, 0)) == "was beyond 7 m"
     edges = distance_edges([found])
     assert edges == (1.1, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0)
     assert [(point.x, point.boxes) for point in curve([samples(found)], "distance", "found", edges)] == [
@@ -73,7 +73,7 @@ def test_people_count_within_the_limits_of_panoramas(found: RunFindings) -> None
 def test_between_two_images_people_are_as_the_former_showed_them(found: RunFindings) -> None:
     anna = found.called("anna")
     assert anna.is_due.all()  # and not in one frame of three, so that each image were a moment of its own
-    assert len(set(anna.hold.tolist())) == 1
+    assert len(set(anna.state.tolist())) == 1
     assert found.shown[1].all()
 
 

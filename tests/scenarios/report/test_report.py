@@ -20,22 +20,14 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.schema.robot import FaultSpec
 from peopleboy.scenarios.report.charts.error_curves import curve, distance_edges, samples
 from peopleboy.scenarios.report.charts.stills import Origin, show_frames
-from peopleboy.scenarios.report.charts.timelines import (
-    ASIDE,
-    hidden_words,
-    rgb,
-    track_edges,
-    track_row,
-    truth_row,
-)
+from peopleboy.scenarios.report.charts.timeline_rows import ASIDE, hidden_words, track_row, truth_row
+from peopleboy.scenarios.report.charts.timelines import rgb, track_edges
 from peopleboy.scenarios.report.columns import are_same_scene, lacking, read_columns
-from peopleboy.scenarios.report.findings.changes import Turn
-from peopleboy.scenarios.report.findings.endings import Ending
-from peopleboy.scenarios.report.findings.spans import between, settle, spans
-from peopleboy.scenarios.report.findings.story import Hold, PersonView
-from peopleboy.scenarios.report.findings.summary import RunFindings, look_into
-from peopleboy.scenarios.report.findings.verdict import headline, headline_of_many
-from peopleboy.scenarios.report.findings.worst_moments import worst_moments
+from peopleboy.scenarios.report.findings.causes import Outcome
+from peopleboy.scenarios.report.findings.highlights import headline, worst_moments
+from peopleboy.scenarios.report.findings.histories import TrackingState, Visibility, between, settle, spans
+from peopleboy.scenarios.report.findings.identity_changes import ChangeKind
+from peopleboy.scenarios.report.findings.run_findings import RunFindings, analyse_run
 from peopleboy.scenarios.report.page import write_report
 from peopleboy.scenarios.report.tables import drive_figures, plain_figures
 from peopleboy.scenarios.run_folder.finished_run import open_run
@@ -59,7 +51,7 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 
 
 def found_in(folder: Path) -> RunFindings:
-    return look_into(open_run(folder))
+    return analyse_run(open_run(folder))
 
 
 def plain(words: str) -> str:
@@ -68,7 +60,7 @@ def plain(words: str) -> str:
 
 def endings(found: RunFindings) -> list[list[str]]:
     """Who was tracked to the end, hidden until then, and lost."""
-    return [found.who_ended(ending) for ending in (Ending.TRACKED, Ending.HIDDEN, Ending.LOST)]
+    return [found.people_with(ending) for ending in (Outcome.TRACKED, Outcome.HIDDEN, Outcome.LOST)]
 
 
 @given(CODES)
@@ -98,7 +90,7 @@ def test_hysteresis_goes_in_above_one_threshold_and_out_below_the_other() -> Non
 def test_when_nothing_goes_wrong_nothing_is_found(folders: dict[str, Path]) -> None:
     found = found_in(folders["steady"])
     assert endings(found) == [["Anna", "Ben"], [], []]
-    assert (found.changes, found.losses, found.strays) == ([], [], [])
+    assert (found.changes, found.losses, found.false_tracks) == ([], [], [])
 
 
 def test_swapped_numbers_are_two_changes_that_name_each_other(folders: dict[str, Path]) -> None:
@@ -108,7 +100,7 @@ def test_swapped_numbers_are_two_changes_that_name_each_other(folders: dict[str,
         ("ben", 2, 1, "anna"),
     ]
     assert {change.first_frame for change in changes} == {46}
-    assert {change.why for change in changes} == {"was in plain sight"}
+    assert {str(change.cause) for change in changes} == {"was in plain sight"}
 
 
 def test_a_lost_number_tells_who_hid_the_person_and_what_came_then(folders: dict[str, Path]) -> None:
@@ -118,14 +110,16 @@ def test_a_lost_number_tells_who_hid_the_person_and_what_came_then(folders: dict
     assert (change.person, change.old, change.new, change.last_frame, change.first_frame) == (
         "ben", 2, 3, 39, 61,
     )  # fmt: skip
-    assert change.why == "was wholly hidden by Anna"
+    assert str(change.cause) == "was wholly hidden by Anna"
     lost = {loss.track: loss for loss in found.losses}
     assert (lost[2].frame, lost[2].owner, lost[2].is_bad) == (40, "ben", True)
-    assert lost[2].why.startswith(f"{change.why}; ")
+    assert lost[2].why.startswith(f"{change.cause}; ")
     assert "0.90" in lost[2].why
     assert "number 3" in lost[2].afterwards
     assert lost[4].owner == ""
-    assert [(stray.track, stray.first_frame, stray.last_frame) for stray in found.strays] == [(4, 70, 79)]
+    assert [(stray.track, stray.first_frame, stray.last_frame) for stray in found.false_tracks] == [
+        (4, 70, 79)
+    ]
 
 
 def test_a_new_number_for_good_is_a_lost_identity_after_an_absence_too(tmp_path: Path) -> None:
@@ -136,17 +130,17 @@ def test_a_new_number_for_good_is_a_lost_identity_after_an_absence_too(tmp_path:
     (loss,) = found.losses
     assert loss.why.startswith("left the image")
     assert loss.is_bad
-    assert "identity lost once, at 4.7" in plain(headline(found))
+    assert "identity lost once, at 4.7" in plain(headline([found]))
 
 
 def test_who_is_known_again_within_a_second_is_not_lost(tmp_path: Path) -> None:
     found = found_in(toy.write_run(tmp_path / "run", toy.known_late, toy.behind_from_35_to_70))
-    assert (found.lost, found.passings) == ([], [])
-    (change,) = found.known_again
-    assert (change.old, change.new, change.known_after_s) == (5, 2, pytest.approx(7 / 15))
+    assert (found.lost, found.transfers) == ([], [])
+    (change,) = found.reidentified
+    assert (change.old, change.new, change.reidentified_after_s) == (5, 2, pytest.approx(7 / 15))
     assert [(loss.track, loss.is_bad) for loss in found.losses] == [(2, False)]  # 5 went on as 2
-    assert plain(headline(found)).endswith(
-        "no identity lost; Ben was known again as number 2 after 0.5 s as number 5."
+    assert plain(headline([found])).endswith(
+        "no identity lost; Ben was re-identified as number 2 after 0.5 s as number 5."
     )
     lost = found_in(toy.write_run(tmp_path / "lost", toy.away_and_back, toy.behind_from_35_to_70))
     assert found.faults < lost.faults
@@ -154,27 +148,32 @@ def test_who_is_known_again_within_a_second_is_not_lost(tmp_path: Path) -> None:
 
 def test_a_number_that_goes_to_somebody_else_comes_first(tmp_path: Path) -> None:
     found = found_in(toy.write_run(tmp_path / "run", toy.passed_on))
-    (one,) = found.passings
-    assert (one.number, one.from_person, one.to_person, one.first_frame) == (1, "anna", "ben", 46)
-    assert plain(headline(found)).startswith("Number 1 went from Anna to Ben at 3.0 s, when Anna was ")
-    assert "no identity lost" not in headline(found)
+    (one,) = found.transfers
+    assert (one.number, one.giver, one.receiver, one.first_frame) == (1, "anna", "ben", 46)
+    assert plain(headline([found])).startswith("Number 1 passed from Anna to Ben at 3.0 s, when Anna was ")
+    assert "no identity lost" not in headline([found])
     (loss,) = found.losses
     assert plain(loss.afterwards).startswith("shown again after 0.4 s, on Ben; Anna was ")
     assert loss.is_bad
-    assert "a number went to somebody else once, in 1 run" in headline_of_many([found])
-    assert max(worst_moments(found, 3)).title == "Number 1 goes from Anna to Ben"
+    assert "a number passed to another person twice, in 2 runs" in headline([found, found])
+    assert max(worst_moments(found, 3)).title == "Number 1 passes from Anna to Ben"
     assert "which was Anna's" in track_row(found, found.called("ben")).words
 
 
 def test_a_number_that_is_back_at_once_went_to_nobody(tmp_path: Path) -> None:
     found = found_in(toy.write_run(tmp_path / "run", toy.swapped_for_a_moment))
-    assert found.passings == []
-    assert [change.turn for change in found.changes] == [Turn.TAKEN, Turn.TAKEN, Turn.BACK, Turn.BACK]
+    assert found.transfers == []
+    assert [change.turn for change in found.changes] == [
+        ChangeKind.TAKEN,
+        ChangeKind.TAKEN,
+        ChangeKind.BACK,
+        ChangeKind.BACK,
+    ]
 
 
 def test_a_track_that_is_shown_again_on_nobody_is_said_to_be(tmp_path: Path) -> None:
     (loss,) = found_in(toy.write_run(tmp_path / "run", toy.again_on_nobody)).losses
-    assert plain(loss.afterwards) == "shown again after 0.7 s, on nobody; Ben was not found again"
+    assert plain(loss.afterwards) == "shown again after 0.7 s, on no person; Ben was not found again"
     assert loss.is_bad
 
 
@@ -202,7 +201,7 @@ def test_a_reason_is_true_of_its_moment_and_what_was_just_before_is_said_to_be(t
 def test_losses_that_are_listed_and_left_out_are_those_of_the_log(tmp_path: Path) -> None:
     found = found_in(toy.write_run(tmp_path / "run", toy.flickering))
     assert [(loss.track, loss.frame) for loss in found.losses] == [(2, 50)]
-    assert (found.fleeting.breaks, found.fleeting.ends) == (1, 1)
+    assert (found.short_losses.breaks, found.short_losses.ends) == (1, 1)
     assert sum(line.kind == "lost" for line in found.run.events) == 3
 
 
@@ -219,7 +218,7 @@ def test_no_loss_of_the_log_is_counted_twice_or_not_at_all(
     found = RunFindings(run=steady.run, files=replace(steady.files, tracks=TrackBoxes(**columns)))
     lost = sum(before and frame not in frames for frame, before in enumerate(np.isin(range(91), frames), 1))
     ends_with_run = int(found.run.frames in frames)
-    assert len(found.losses) + found.fleeting.breaks + found.fleeting.ends == lost - ends_with_run
+    assert len(found.losses) + found.short_losses.breaks + found.short_losses.ends == lost - ends_with_run
 
 
 def test_a_loss_gives_the_tracker_s_own_reason_and_names_on_whom_the_other_track_lay(tmp_path: Path) -> None:
@@ -234,7 +233,7 @@ def test_a_loss_gives_the_tracker_s_own_reason_and_names_on_whom_the_other_track
 def test_who_is_hidden_until_the_end_is_neither_tracked_to_the_end_nor_lost(tmp_path: Path) -> None:
     found = found_in(toy.write_run(tmp_path / "run", toy.until_75, toy.hidden_from_75))
     assert endings(found) == [["Anna"], ["Ben"], []]
-    assert "1 tracked to the end, 1 hidden until the end" in headline_of_many([found])
+    assert "of 4 people 2 tracked to the end, 2 hidden until the end" in headline([found, found])
     (loss,) = found.losses
     assert (loss.owner, loss.is_bad) == ("ben", False)
 
@@ -254,16 +253,16 @@ def test_numbers_of_one_colour_have_different_edges() -> None:
     assert len({(rgb(number), track_edges(number)) for number in range(1, 55)}) == 54
 
 
-def test_a_story_tells_what_could_be_seen_and_what_the_tracker_had(folders: dict[str, Path]) -> None:
+def test_a_history_tells_what_could_be_seen_and_what_the_tracker_had(folders: dict[str, Path]) -> None:
     found = found_in(folders["renumbered"])
     ben = found.called("ben")
-    assert [(PersonView(s.value), s.start, s.end) for s in spans(ben.view)] == [
-        (PersonView.SEEN, 0, 39),
-        (PersonView.WHOLLY, 39, 59),
-        (PersonView.SEEN, 59, 90),
+    assert [(Visibility(s.value), s.start, s.end) for s in spans(ben.view)] == [
+        (Visibility.SEEN, 0, 39),
+        (Visibility.WHOLLY, 39, 59),
+        (Visibility.SEEN, 59, 90),
     ]
-    assert [Hold(span.value) for span in spans(ben.hold)] == [
-        Hold.ON, Hold.NOTHING_DUE, Hold.MISSED, Hold.ON
+    assert [TrackingState(span.value) for span in spans(ben.state)] == [
+        TrackingState.ON, TrackingState.NOT_DUE, TrackingState.MISSED, TrackingState.ON
     ]  # fmt: skip
     assert ben.hider_in(39, 59) == "anna"
     assert [(start, end, look.kind, look.text) for start, end, look in truth_row(found, ben).bars] == [
@@ -290,9 +289,9 @@ def test_the_bars_of_a_row_lie_end_to_end_where_there_is_something(
         here = slice(round(start * 15), round(end * 15))
         assert (kinds[here] == "nothing").all()
         kinds[here], asides[here] = look.kind, ASIDE in look.words
-    is_there = view != PersonView.AWAY
+    is_there = view != Visibility.AWAY
     assert np.array_equal(kinds != "nothing", is_there)
-    assert np.array_equal(kinds == "wholly", view == PersonView.WHOLLY)
+    assert np.array_equal(kinds == "wholly", view == Visibility.WHOLLY)
     assert np.array_equal(asides, is_there & ~is_counted)
 
 
@@ -346,7 +345,7 @@ def test_a_folder_of_runs_is_one_column_with_mean_and_spread(folders: dict[str, 
     (column,) = read_columns([folders["steady"].parent])
     assert len(column.runs) == 3
     assert column.headline.startswith(
-        "3 runs: a number went to somebody else twice, in 1 run; of 6 people 6 tracked to the end; "
+        "3 runs: a number passed to another person twice, in 1 run; of 6 people 6 tracked to the end; "
     )
     row = next(row for row in plain_figures([column]).rows if "(CR)" in row[0])
     values = [scores.thesis.cr for scores in column.scores]

@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 from peopleboy.scenarios.loop.run_events import LogLine
-from peopleboy.scenarios.report.attention_strip import attention_strip
-from peopleboy.scenarios.report.charts.thing_timelines import draw_things, thing_rows
+from peopleboy.scenarios.report.charts.timeline_rows import thing_rows
+from peopleboy.scenarios.report.charts.timelines import draw_things
+from peopleboy.scenarios.report.pictures import attention_strip
 from peopleboy.sim.cameras.camera_config import ColourConfig
 from peopleboy.sim.truth.events import Move
 from peopleboy.tracker.frame import COLOUR
@@ -44,7 +45,7 @@ def test_a_thing_stands_until_somebody_has_it_and_again_afterwards() -> None:
     ]
     (row,) = thing_rows(found(events))
     assert [(start, end, look.text) for start, end, look in row.bars] == [
-        (0.0, 3.0, ""), (3.0, 4.5, "Anna"), (4.5, 8.0, ""), (8.0, 9.0, "nobody"), (9.0, 20.0, ""),
+        (0.0, 3.0, ""), (3.0, 4.5, "Anna"), (4.5, 8.0, ""), (8.0, 9.0, "no person"), (9.0, 20.0, ""),
     ]  # fmt: skip
     assert row.bars[1][2].words == "moved 1.00 m by Anna"
 

@@ -11,8 +11,8 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from peopleboy.scenarios.report.findings.summary import look_into
-from peopleboy.scenarios.report.findings.verdict import headline
+from peopleboy.scenarios.report.findings.highlights import headline
+from peopleboy.scenarios.report.findings.run_findings import analyse_run
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.scores.following_score import whose_tracks
 from peopleboy.tracker.footage.box_kinds import BoxKind
@@ -66,7 +66,7 @@ def figures(capsys: pytest.CaptureFixture[str], *arguments: object) -> dict[str,
 
 
 def told_in_report(run: Path) -> str:
-    return headline(look_into(open_run(run)))
+    return headline([analyse_run(open_run(run))])
 
 
 @pytest.mark.slow
@@ -200,7 +200,7 @@ def test_who_gives_boxes_in_another_image_alone_is_scored_there_and_told_so(
     assert run_cli("report", run, "--out", seen.parent / "colour.html") == 0
     assert "images of colour" in capsys.readouterr().err
     page = (seen.parent / "colour.html").read_text(encoding="utf-8")
-    assert "held against torsos in colour images" in page
+    assert "scored against torsos in colour images" in page
 
 
 def test_a_tracker_of_whole_people_is_seen_to_follow_the_right_one() -> None:

@@ -6,13 +6,14 @@ from collections import Counter
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
+from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.report.findings.spans import Flags, Floats, Ints, between, settle
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun, cameras_of
 from peopleboy.scenarios.run_folder.floor_places import as_squares, is_on_floor_alone
 from peopleboy.scenarios.run_folder.run_files import RunFiles, read_table
@@ -39,7 +40,63 @@ from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.frame import THERMAL
 
-STEADY_S = 0.3  # a number that lies on a person for less is fleeting
+# Runs of equal values in what is known frame by frame.
+
+Ints = NDArray[np.int64]
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Frames from `start` up to but not including `end`, counted from 0, that have one value."""
+
+    value: int
+    start: int
+    end: int
+
+    @property
+    def length(self) -> int:
+        """Number of frames."""
+        return self.end - self.start
+
+
+def spans(values: Ints | Flags) -> list[Span]:
+    """Cut a column (F,) into its longest runs of one value, in order."""
+    if len(values) == 0:
+        return []
+    edges = [0, *(np.flatnonzero(np.diff(values.astype(np.int64))) + 1).tolist(), len(values)]
+    return [Span(int(values[a]), a, b) for a, b in pairwise(edges)]
+
+
+def settle(values: Ints, shortest: int) -> Ints:
+    """Bridge the breaks in a column (F,) that are shorter than `shortest`, then forget runs that are: 0.
+
+    Every run of a value other than 0 in the result has at least `shortest` frames.
+    """
+    settled = values.copy()
+    for value in np.unique(values[values != 0]):
+        at = np.flatnonzero(values == value)
+        for before, after in pairwise(at.tolist()):
+            if after - before <= shortest:
+                settled[before:after] = value
+    for span in spans(settled):
+        if span.length < shortest:
+            settled[span.start : span.end] = 0
+    return settled
+
+
+def between(values: Floats, starts: float, ends: float) -> Flags:
+    """Tell (F,) where a column has risen above `starts` and not yet fallen below `ends`; NaN ends it."""
+    inside = np.zeros(len(values), np.bool_)
+    is_in = False
+    for k, value in enumerate(values.tolist()):
+        is_in = value >= ends if is_in else value > starts
+        inside[k] = is_in
+    return inside
+
+
+STEADY_S = 0.3  # a number that lies on a person for less is short_losses
 _BOX = ("left_px", "top_px", "width_px", "height_px")
 _PEOPLE = (
     *("frame", "id", "name", "x_m", "y_m", "distance_m", "is_counted", *_BOX, "whole_px"),
@@ -48,7 +105,7 @@ _PEOPLE = (
 _ROBOT = ("frame", "x_m", "y_m", "heading_rad", "mode")
 
 
-class PersonView(IntEnum):
+class Visibility(IntEnum):
     """What there is to be seen of a person."""
 
     AWAY = 0
@@ -57,17 +114,17 @@ class PersonView(IntEnum):
     WHOLLY = 3
 
 
-class Hold(IntEnum):
+class TrackingState(IntEnum):
     """What the tracker has of a person."""
 
-    NOTHING_DUE = 0  # not there, wholly hidden, too near or too far
+    NOT_DUE = 0  # not there, wholly hidden, too near or too far
     ON = 1
     ADRIFT = 2  # the person's number lives on, but its box lies elsewhere
     MISSED = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Story:
+class PersonHistory:
     """One person in one run; all columns have F rows, one a frame."""
 
     id: int
@@ -78,12 +135,12 @@ class Story:
     occluded: Floats  # share hidden of what lies inside the image; NaN outside it
     hider: tuple[str, ...]  # who or what hides most of the person; empty for nobody
     is_counted: Flags  # neither too near nor too far away
-    view: Ints  # `PersonView`, with the thresholds of the event log
+    view: Ints  # `Visibility`, with the thresholds of the event log
     matched: Ints  # number of the track whose box lies on the person (IoU above 0.5), or 0
-    track: Ints  # the same without fleeting ones and short breaks
+    track: Ints  # the same without short_losses ones and short breaks
     iou: Floats  # of that box; NaN without one
     offset_px: Floats  # of its middle from the truth's; NaN as above
-    hold: Ints  # `Hold`
+    state: Ints  # `TrackingState`
 
     @property
     def is_due(self) -> Flags:
@@ -97,8 +154,8 @@ class Story:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class RunStory:
-    """A run, its tables as far as they are needed, and everybody's story in it."""
+class RunHistory:
+    """A run, its tables as far as they are needed, and everybody's history in it."""
 
     run: FinishedRun
     files: RunFiles
@@ -182,15 +239,15 @@ class RunStory:
         return boxes_held(self.run.folder, self.yardstick)
 
     @cached_property
-    def people(self) -> tuple[Story, ...]:
-        """The story of everybody, in the scenario's order."""
-        lying = _lying(*self.boxes)
+    def people(self) -> tuple[PersonHistory, ...]:
+        """The history of everybody, in the scenario's order."""
+        lying = _match_boxes(*self.boxes)
         if self.is_on_floor:
             lying.offset[:] = np.nan  # it is none of pixels
-        return tuple(_tell(self, who, lying) for who in np.unique(self.seen["id"]).tolist())
+        return tuple(_person_history(self, who, lying) for who in np.unique(self.seen["id"]).tolist())
 
-    def called(self, name: str) -> Story:
-        """The story of somebody."""
+    def called(self, name: str) -> PersonHistory:
+        """The history of somebody."""
         return next(person for person in self.people if person.name == name)
 
 
@@ -203,7 +260,7 @@ def read_files(run: FinishedRun) -> RunFiles:
     return run.files(_PEOPLE, _ROBOT)
 
 
-def _lying(truth: TrueBoxes, tracks: TrackBoxes) -> Any:
+def _match_boxes(truth: TrueBoxes, tracks: TrackBoxes) -> Any:
     """Which track lies on whom: records frame (from 0), person, number, iou, offset [px]."""
     pairs = pair_up(truth, tracks)
     chosen = associate(pairs)
@@ -217,13 +274,13 @@ def _lying(truth: TrueBoxes, tracks: TrackBoxes) -> Any:
     )
 
 
-def _tell(story: RunStory, person: int, lying: Any) -> Story:
-    frames, people = story.run.frames, story.seen
+def _person_history(history: RunHistory, person: int, lying: Any) -> PersonHistory:
+    frames, people = history.run.frames, history.seen
     rows = people.filter(np.asarray(people["id"].to_numpy() == person))
     at = rows["frame"].to_numpy() - 1
     mine = lying[lying.person == person]
 
-    newest = story.newest
+    newest = history.newest
 
     def spread(values: object, at: Ints = at) -> Floats:
         """Spread values over all frames (F,), each as in the camera's newest image; NaN elsewhere."""
@@ -238,8 +295,8 @@ def _tell(story: RunStory, person: int, lying: Any) -> Story:
     hider = dict(zip(at.tolist(), rows["occluder"].to_pylist(), strict=True))
     view = _view(occluded, ~(inside < LEAVES_INSIDE) & np.isfinite(inside))
     matched = np.nan_to_num(spread(mine.number, mine.frame)).astype(np.int64)
-    track = settle(matched, story.steady)
-    return Story(
+    track = settle(matched, history.steady)
+    return PersonHistory(
         id=person,
         name=rows["name"][0].as_py(),
         position_m=np.stack([spread(rows[key].to_numpy()) for key in ("x_m", "y_m")], axis=1),
@@ -253,30 +310,30 @@ def _tell(story: RunStory, person: int, lying: Any) -> Story:
         track=track,
         iou=spread(mine.iou, mine.frame),
         offset_px=spread(mine.offset, mine.frame),
-        hold=_hold(track, _is_due(is_counted, view), story.shown),
+        state=_state(track, _is_due(is_counted, view), history.shown),
     )
 
 
 def _is_due(is_counted: Flags, view: Ints) -> Flags:
-    return np.asarray(is_counted & np.isin(view, (PersonView.SEEN, PersonView.PARTLY)))
+    return np.asarray(is_counted & np.isin(view, (Visibility.SEEN, Visibility.PARTLY)))
 
 
 def _view(occluded: Floats, is_inside: Flags) -> Ints:
     hidden = np.where(is_inside, occluded, np.nan)
-    view = np.where(is_inside, PersonView.SEEN, PersonView.AWAY)
-    view[between(hidden, OCCLUSION_STARTS, OCCLUSION_ENDS)] = PersonView.PARTLY
-    view[between(hidden, TOTAL_STARTS, TOTAL_ENDS)] = PersonView.WHOLLY
+    view = np.where(is_inside, Visibility.SEEN, Visibility.AWAY)
+    view[between(hidden, OCCLUSION_STARTS, OCCLUSION_ENDS)] = Visibility.PARTLY
+    view[between(hidden, TOTAL_STARTS, TOTAL_ENDS)] = Visibility.WHOLLY
     return np.asarray(view, np.int64)
 
 
-def _hold(track: Ints, is_due: Flags, shown: dict[int, Flags]) -> Ints:
+def _state(track: Ints, is_due: Flags, shown: dict[int, Flags]) -> Ints:
     """What the tracker has: a person's number is the last that lay on the person."""
-    hold = np.zeros(len(track), np.int64)
+    state = np.zeros(len(track), np.int64)
     last = 0
     for k, number in enumerate(track.tolist()):
         last = number or last
         if number:
-            hold[k] = Hold.ON
+            state[k] = TrackingState.ON
         elif is_due[k]:
-            hold[k] = Hold.ADRIFT if last and shown[last][k] else Hold.MISSED
-    return hold
+            state[k] = TrackingState.ADRIFT if last and shown[last][k] else TrackingState.MISSED
+    return state

@@ -5,39 +5,39 @@ from __future__ import annotations
 from functools import cached_property
 
 from peopleboy.scenarios.loop.run_events import LogLine
-from peopleboy.scenarios.report.findings.changes import (
-    Change,
-    Passing,
-    Turn,
+from peopleboy.scenarios.report.findings.causes import Outcome, outcome_of
+from peopleboy.scenarios.report.findings.histories import RunHistory, read_files
+from peopleboy.scenarios.report.findings.identity_changes import (
+    ChangeKind,
+    IdentityChange,
+    Transfer,
     find_changes,
-    find_passings,
-)
-from peopleboy.scenarios.report.findings.endings import Ending, how_it_ended
-from peopleboy.scenarios.report.findings.losses import (
-    Fleeting,
-    Loss,
-    Stray,
-    count_fleeting,
-    find_losses,
-    find_strays,
+    find_transfers,
 )
 from peopleboy.scenarios.report.findings.sentences import spoken
-from peopleboy.scenarios.report.findings.story import RunStory, read_files
+from peopleboy.scenarios.report.findings.track_losses import (
+    FalseTrack,
+    Loss,
+    ShortLosses,
+    count_short_losses,
+    find_false_tracks,
+    find_losses,
+)
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 
 
-class RunFindings(RunStory):
+class RunFindings(RunHistory):
     """A run, and what is found out about it."""
 
     @cached_property
-    def changes(self) -> list[Change]:
+    def changes(self) -> list[IdentityChange]:
         """Changes of people's numbers, in time."""
         return find_changes(self)
 
     @cached_property
-    def passings(self) -> list[Passing]:
+    def transfers(self) -> list[Transfer]:
         """Numbers that went to somebody else, in time."""
-        return find_passings(self)
+        return find_transfers(self)
 
     @cached_property
     def losses(self) -> list[Loss]:
@@ -45,38 +45,38 @@ class RunFindings(RunStory):
         return find_losses(self)
 
     @cached_property
-    def fleeting(self) -> Fleeting:
+    def short_losses(self) -> ShortLosses:
         """Losses that are not told one by one."""
-        return count_fleeting(self)
+        return count_short_losses(self)
 
     @cached_property
-    def strays(self) -> list[Stray]:
+    def false_tracks(self) -> list[FalseTrack]:
         """Tracks on nobody, the longest first."""
-        return find_strays(self)
+        return find_false_tracks(self)
 
     @property
     def due(self) -> int:
         """How many people were to be tracked at some time."""
         return sum(bool(person.is_due.any()) for person in self.people)
 
-    def who_ended(self, *endings: Ending) -> list[str]:
+    def people_with(self, *endings: Outcome) -> list[str]:
         """Name those with whom it ended in one of these ways."""
-        return [spoken(person.name) for person in self.people if how_it_ended(self, person) in endings]
+        return [spoken(person.name) for person in self.people if outcome_of(self, person) in endings]
 
     @property
-    def lost(self) -> list[Change]:
+    def lost(self) -> list[IdentityChange]:
         """Changes of people's numbers to fresh ones for good."""
-        return [change for change in self.changes if change.turn is Turn.LOST]
+        return [change for change in self.changes if change.turn is ChangeKind.LOST]
 
     @property
-    def known_again(self) -> list[Change]:
+    def reidentified(self) -> list[IdentityChange]:
         """Changes of people's numbers back to their own."""
-        return [change for change in self.changes if change.turn is Turn.BACK]
+        return [change for change in self.changes if change.turn is ChangeKind.BACK]
 
     @property
     def faults(self) -> int:
         """How many identities went wrong."""
-        return len(self.passings) + len(self.lost)
+        return len(self.transfers) + len(self.lost)
 
     @property
     def contacts(self) -> list[LogLine]:
@@ -84,7 +84,7 @@ class RunFindings(RunStory):
         return [line for line in self.run.events if line.kind == "contact starts"]
 
 
-def look_into(run: FinishedRun) -> RunFindings:
+def analyse_run(run: FinishedRun) -> RunFindings:
     """Find out what became of everybody in a run.
 
     Raises:

@@ -9,12 +9,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from peopleboy.scenarios.loop.track_events import KNOWN
-from peopleboy.scenarios.report.findings.causes import BEFORE_S, plight
-from peopleboy.scenarios.report.findings.changes import is_return
-from peopleboy.scenarios.report.findings.endings import Ending, how_it_ended, steadily_due
-from peopleboy.scenarios.report.findings.sentences import seconds, spoken
-from peopleboy.scenarios.report.findings.spans import Flags, Ints, settle, spans
-from peopleboy.scenarios.report.findings.story import STEADY_S, RunStory, Story
+from peopleboy.scenarios.report.findings.causes import BEFORE_S, Outcome, find_cause, outcome_of, steady_due
+from peopleboy.scenarios.report.findings.histories import (
+    STEADY_S,
+    Flags,
+    Ints,
+    PersonHistory,
+    RunHistory,
+    settle,
+    spans,
+)
+from peopleboy.scenarios.report.findings.identity_changes import is_return
+from peopleboy.scenarios.report.findings.sentences import AFTERWARDS, Cause, seconds, spoken
 
 _DECAY_S = 1.5  # over which the confidence is looked back at
 _DECAYED = 0.15  # a fall by this much is worth telling
@@ -35,7 +41,7 @@ class Loss:
 
 
 @dataclass(frozen=True, slots=True)
-class Fleeting:
+class ShortLosses:
     """Losses that are not told one by one."""
 
     breaks: int  # after which the same number was shown again within `STEADY_S`
@@ -55,7 +61,7 @@ class Fleeting:
 
 
 @dataclass(frozen=True, slots=True)
-class Stray:
+class FalseTrack:
     """A track that never lay on anybody; frames from 1, the last included."""
 
     track: int
@@ -63,145 +69,153 @@ class Stray:
     last_frame: int
 
 
-def find_losses(story: RunStory) -> list[Loss]:
+def find_losses(history: RunHistory) -> list[Loss]:
     """Find every time that a track ceased to be shown before the end, in time.
 
-    Fleeting ones are left out, and so are tracks that went on under a number known from before.
+    ShortLosses ones are left out, and so are tracks that went on under a number known from before.
     """
     losses = [
-        _loss(story, number, end, steady)
-        for number, steady in _steady_tracks(story).items()
-        for end in _ends(story, number, steady > 0)
+        _loss(history, number, end, steady)
+        for number, steady in _steady_tracks(history).items()
+        for end in _ends(history, number, steady > 0)
     ]
     return sorted(losses, key=lambda loss: (loss.frame, loss.track))
 
 
-def count_fleeting(story: RunStory) -> Fleeting:
+def count_short_losses(history: RunHistory) -> ShortLosses:
     """Count the losses that `find_losses` leaves out, but for tracks that went on under another number."""
     breaks = ends = 0
-    for number, steady in _steady_tracks(story).items():
-        for end in _ends(story, number, story.shown[number]):
+    for number, steady in _steady_tracks(history).items():
+        for end in _ends(history, number, history.shown[number]):
             breaks += int(steady[end - 1] > 0 and steady[end] > 0)
             ends += int(steady[end - 1] == 0)
-    return Fleeting(breaks, ends)
+    return ShortLosses(breaks, ends)
 
 
-def _ends(story: RunStory, number: int, shown: Flags) -> Iterator[int]:
+def _ends(history: RunHistory, number: int, shown: Flags) -> Iterator[int]:
     """Yield the indices at which a track is shown no more, though nobody goes on as somebody known again."""
     known = {
         line.frame - 1
-        for line in story.run.events
+        for line in history.run.events
         if line.kind == KNOWN and line.other and line.who == f"track {number}"
     }
     for span in spans(shown):
-        if span.value and span.end < story.run.frames and span.end not in known:
+        if span.value and span.end < history.run.frames and span.end not in known:
             yield span.end
 
 
-def find_strays(story: RunStory) -> list[Stray]:
+def find_false_tracks(history: RunHistory) -> list[FalseTrack]:
     """Find the tracks that never lay on anybody, the longest first."""
-    owned = {int(number) for person in story.people for number in np.unique(person.matched)}
-    frames = {number: (np.flatnonzero(shown) + 1).tolist() for number, shown in story.shown.items()}
-    strays = [Stray(number, at[0], at[-1]) for number, at in frames.items() if number not in owned]
-    return sorted(strays, key=lambda stray: stray.first_frame - stray.last_frame)
+    owned = {int(number) for person in history.people for number in np.unique(person.matched)}
+    frames = {number: (np.flatnonzero(shown) + 1).tolist() for number, shown in history.shown.items()}
+    false_tracks = [FalseTrack(number, at[0], at[-1]) for number, at in frames.items() if number not in owned]
+    return sorted(false_tracks, key=lambda stray: stray.first_frame - stray.last_frame)
 
 
-def _steady_tracks(story: RunStory) -> dict[int, Ints]:
+def _steady_tracks(history: RunHistory) -> dict[int, Ints]:
     """For each confirmed track 1 where it is shown, but for short breaks and glimpses, else 0: (F,)."""
-    return {n: settle(shown.astype(np.int64), story.steady) for n, shown in story.shown.items()}
+    return {n: settle(shown.astype(np.int64), history.steady) for n, shown in history.shown.items()}
 
 
-def _loss(story: RunStory, number: int, end: int, steady: Ints) -> Loss:
+def _loss(history: RunHistory, number: int, end: int, steady: Ints) -> Loss:
     """Explain the loss of a track at index `end`, the first without it."""
-    owner = _owner(story.people, number, end)
+    owner = _owner(history.people, number, end)
     again = np.flatnonzero(steady[end:])
-    why, afterwards, is_bad = "there was nobody", "it never came back", False
+    cause, afterwards, is_bad = Cause("no person"), _say("never"), False
     if owner is not None:
-        why = plight(story, owner, end - 1, min(end + 1, story.run.frames - 1))
-        afterwards, is_bad = _afterwards(story, owner, number, end)
+        cause = find_cause(history, owner, end - 1, min(end + 1, history.run.frames - 1))
+        afterwards, is_bad = _afterwards(history, owner, number, end)
     if len(again):
-        shown, is_same = _shown_again(story, number, owner, (end, end + int(again[0])))
+        shown, is_same = _shown_again(history, number, owner, (end, end + int(again[0])))
         afterwards, is_bad = (shown, False) if is_same else (f"{shown}; {afterwards}", is_bad)
     return Loss(
         track=number,
         frame=end + 1,
-        time_s=story.run.time_s(end + 1),
+        time_s=history.run.time_s(end + 1),
         owner="" if owner is None else owner.name,
-        why=f"{why}{_during_faults(story, end)}; {_confidence(story, number, end)}",
-        believed=_belief(story, number, end, owner),
+        why=f"{cause}{_during_faults(history, end)}; {_confidence(history, number, end)}",
+        believed=_belief(history, number, end, owner),
         afterwards=afterwards,
         is_bad=is_bad,
     )
 
 
-def _shown_again(story: RunStory, number: int, owner: Story | None, gap: tuple[int, int]) -> tuple[str, bool]:
+def _shown_again(
+    history: RunHistory, number: int, owner: PersonHistory | None, gap: tuple[int, int]
+) -> tuple[str, bool]:
     """Say on whom a track lay that was shown again after a gap, and whether that is whom it was on before."""
     end, again = gap
-    shown = f"shown again after {seconds((again - end) / story.run.rate_hz)}"
-    break_at = np.flatnonzero(~story.shown[number][again:])
-    until = again + int(break_at[0]) if len(break_at) else story.run.frames
+    gap_s = (again - end) / history.run.rate_hz
+    break_at = np.flatnonzero(~history.shown[number][again:])
+    until = again + int(break_at[0]) if len(break_at) else history.run.frames
     steadily, at_all = (
         _first_on(
-            [(p, numbers[again:until] == number) for p, numbers in zip(story.people, column, strict=True)]
+            [(p, numbers[again:until] == number) for p, numbers in zip(history.people, column, strict=True)]
         )
-        for column in ([p.track for p in story.people], [p.matched for p in story.people])
+        for column in ([p.track for p in history.people], [p.matched for p in history.people])
     )
     first, person = steadily or at_all or (0, None)
     if person is None:
-        return f"{shown}, on nobody", owner is None
-    late = f", on nobody for {seconds(first / story.run.rate_hz)}" if first > story.steady else ""
-    same = person is owner
-    return f"{shown}{late}, {'same number' if same else f'on {spoken(person.name)}'}", same or owner is None
+        return _say("again", gap=seconds(gap_s), late="", where="on no person"), owner is None
+    late = f", on no person for {seconds(first / history.run.rate_hz)}" if first > history.steady else ""
+    is_same = person is owner
+    where = "same number" if is_same else f"on {spoken(person.name)}"
+    return _say("again", gap=seconds(gap_s), late=late, where=where), is_same or owner is None
 
 
-def _first_on(lies: Sequence[tuple[Story, Flags]]) -> tuple[int, Story] | None:
+def _first_on(lies: Sequence[tuple[PersonHistory, Flags]]) -> tuple[int, PersonHistory] | None:
     """Give when and on whom a track lay first, of flags (N,) for each person; None if it lay on nobody."""
     first = [(int(at[0]), person) for person, flags in lies if len(at := np.flatnonzero(flags))]
     return min(first, key=lambda one: one[0], default=None)
 
 
-def _afterwards(story: RunStory, person: Story, number: int, end: int) -> tuple[str, bool]:
+def _afterwards(history: RunHistory, person: PersonHistory, number: int, end: int) -> tuple[str, bool]:
     """Say what became of a person whose track was lost, and whether that is bad."""
     later = [span for span in spans(person.track[end:]) if span.value]
-    name, rate = spoken(person.name), story.run.rate_hz
+    name, rate = spoken(person.name), history.run.rate_hz
     if later and later[0].value != number:
-        when = f"after {seconds(later[0].start / rate)}" if later[0].start else "at once"
-        away = ", having been out of the image" if is_return(story, person, end, end + later[0].start) else ""
-        return f"{name} was found {when} as number {later[0].value}{away}", True
-    ended = how_it_ended(story, person)
-    if ended is Ending.HIDDEN:
-        return f"{name} was hidden until the end", False
-    if not (steadily_due(story, person) >= end).any():
-        return f"{name} did not come back into view", False
-    if ended is Ending.TRACKED:
-        return f"the run ended {seconds((story.run.frames - end) / rate)} later", False
-    return f"{name} was not found again", True
+        gap, new = later[0].start, later[0].value
+        when = f"after {seconds(gap / rate)}" if gap else "at once"
+        absence = ", having been out of the image" if is_return(history, person, end, end + gap) else ""
+        return _say("renumbered", person=name, when=when, number=new, absence=absence), True
+    outcome = outcome_of(history, person)
+    if outcome is Outcome.HIDDEN:
+        return _say("hidden", person=name), False
+    if not (steady_due(history, person) >= end).any():
+        return _say("away", person=name), False
+    if outcome is Outcome.TRACKED:
+        return _say("ended", rest=seconds((history.run.frames - end) / rate)), False
+    return _say("lost", person=name), True
 
 
-def _belief(story: RunStory, number: int, end: int, own: Story | None) -> str:
+def _say(kind: str, **values: object) -> str:
+    return AFTERWARDS[kind].format(**values)
+
+
+def _belief(history: RunHistory, number: int, end: int, own: PersonHistory | None) -> str:
     """Give the tracker's own reason, and say on whom the tracks lay that it names."""
-    about, since = ("lost", f"track {number}"), end + 1 - story.every
-    events = (line for line in story.run.events if since < line.frame <= end + 1)
+    about, since = ("lost", f"track {number}"), end + 1 - history.every
+    events = (line for line in history.run.events if since < line.frame <= end + 1)
     why = next((line.why for line in events if (line.kind, line.who) == about), "")
     return re.sub(
-        r"track (\d+)", lambda found: f"number {found[1]}{_whose(story, int(found[1]), end, own)}", why
+        r"track (\d+)", lambda found: f"number {found[1]}{_whose(history, int(found[1]), end, own)}", why
     )
 
 
-def _whose(story: RunStory, number: int, end: int, own: Story | None) -> str:
+def _whose(history: RunHistory, number: int, end: int, own: PersonHistory | None) -> str:
     """Say on whom a track lay before an index, in brackets; nothing for nobody."""
-    owner = _owner(story.people, number, end)
+    owner = _owner(history.people, number, end)
     if owner is None:
         return ""
-    recent = owner.track[max(end - round(BEFORE_S * story.run.rate_hz), 0) : end]
+    recent = owner.track[max(end - round(BEFORE_S * history.run.rate_hz), 0) : end]
     last = "" if number in recent else "last "
     return f" ({last}on {spoken(owner.name)}{' too' if owner is own else ''})"
 
 
-def _during_faults(story: RunStory, end: int) -> str:
+def _during_faults(history: RunHistory, end: int) -> str:
     """Name the faults that there were at index `end`; nothing if there were none."""
     there: dict[str, None] = {}
-    for line in story.run.events:
+    for line in history.run.events:
         if line.frame > end + 1:
             break
         if line.kind == "fault starts":
@@ -211,12 +225,12 @@ def _during_faults(story: RunStory, end: int) -> str:
     return f", during the fault {' and '.join(there)}" if there else ""
 
 
-def _confidence(story: RunStory, number: int, end: int) -> str:
+def _confidence(history: RunHistory, number: int, end: int) -> str:
     """Say how the confidence went until index `end`."""
-    beliefs = story.files.beliefs
+    beliefs = history.files.beliefs
     rows = beliefs.filter(np.asarray(beliefs["id"].to_numpy() == number))
     frame, value = rows["frame"].to_numpy() - 1, rows["confidence"].to_numpy()
-    recent = value[(frame < end) & (frame >= end - round(_DECAY_S * story.run.rate_hz))]
+    recent = value[(frame < end) & (frame >= end - round(_DECAY_S * history.run.rate_hz))]
     if len(recent) == 0 or not np.isfinite(recent).all():
         return "its confidence is not known"
     highest, last = float(recent.max()), float(recent[-1])
@@ -225,7 +239,7 @@ def _confidence(story: RunStory, number: int, end: int) -> str:
     return f"its confidence fell from {highest:.2f} to {last:.2f}"
 
 
-def _owner(people: Sequence[Story], number: int, end: int) -> Story | None:
+def _owner(people: Sequence[PersonHistory], number: int, end: int) -> PersonHistory | None:
     """On whom a track lay last before an index."""
     last = {person.id: np.flatnonzero(person.track[:end] == number) for person in people}
     found = [person for person in people if len(last[person.id])]

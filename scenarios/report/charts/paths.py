@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_things, draw_walls
 from peopleboy.scenarios.drawing.plan_sheet import PAPER, Labels, lay_out, sections
-from peopleboy.scenarios.report.charts.svg import inline, lettered, new_figure
+from peopleboy.scenarios.report.charts.svg import inline, new_figure, svg_style
+from peopleboy.scenarios.report.findings.histories import Floats
+from peopleboy.scenarios.report.findings.run_findings import RunFindings
 from peopleboy.scenarios.report.findings.sentences import spoken
-from peopleboy.scenarios.report.findings.spans import Floats
-from peopleboy.scenarios.report.findings.summary import RunFindings
 
 _WIDTH_IN = 4.3  # such that its letters are as large as the page's on a phone
 # Told apart with any colour vision.
@@ -21,8 +21,8 @@ _ROBOT = "#c0392b"
 _MARK_EVERY_S = 5.0
 
 
-@lettered
-def draw_ways(found: RunFindings, label: str) -> Markup | None:
+@svg_style
+def draw_paths(found: RunFindings, label: str) -> Markup | None:
     """Draw the plan; None if the place cannot be built again."""
     try:
         place = found.run.scenario.place
@@ -32,9 +32,9 @@ def draw_ways(found: RunFindings, label: str) -> Markup | None:
     figure.set_facecolor(PAPER)
     for axes in lay_out(figure, sections(place.bounds), _WIDTH_IN, head_in=0.05, foot_in=0.3):
         _draw_section(axes, found)
-    names = ", ".join(spoken(person.name) for person in found.people) or "nobody"
-    words = f"Plan of the place from above, with the ways of the robot and of {names}"
-    return inline(figure, f"ways {label}", words)
+    names = ", ".join(spoken(person.name) for person in found.people) or "no person"
+    words = f"Plan of the place from above, with the paths of the robot and of {names}"
+    return inline(figure, f"paths {label}", words)
 
 
 def _draw_section(axes: Axes, found: RunFindings) -> None:
@@ -43,19 +43,19 @@ def _draw_section(axes: Axes, found: RunFindings) -> None:
     draw_walls(axes, labels, scenario.place)
     draw_things(axes, labels, scenario.place)
     robot = np.stack([found.files.robot[key].to_numpy() for key in ("x_m", "y_m")], axis=1)
-    _draw_way(axes, labels, robot, robot, _ROBOT, "robot", rate_hz)
+    _draw_path(axes, labels, robot, robot, _ROBOT, "robot", rate_hz)
     for number, person in enumerate(found.people):
         colour, way = _COLOURS[number % len(_COLOURS)], person.position_m
         axes.plot(*way.T, color=colour, lw=0.8, alpha=0.8, ls=(0, (1, 2)), zorder=6)
         tracked = np.where((person.track > 0)[:, None], way, np.nan)
-        _draw_way(axes, labels, way, tracked, colour, spoken(person.name), rate_hz)
+        _draw_path(axes, labels, way, tracked, colour, spoken(person.name), rate_hz)
     for change in found.changes:
         x, y = found.called(change.person).position_m[change.first_frame - 1]
         axes.plot(x, y, "X", ms=8, mfc="#d55e00", mec="white", mew=0.8, zorder=9)
         labels.write(x, y, f"{change.old} to {change.new}", size=7, color="#a04400", weight="bold")
 
 
-def _draw_way(
+def _draw_path(
     axes: Axes, labels: Labels, way: Floats, thick: Floats, colour: str, name: str, rate_hz: float
 ) -> None:
     """Draw where somebody went: a disc and the name at the start, small marks every five seconds."""
