@@ -23,7 +23,7 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.contour.contour_config import TrackerConfig
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
-from peopleboy.tracker.contour.variants import PAPER, PEOPLEBOY, THESIS, THESIS_OCCLUSION
+from peopleboy.tracker.contour.variants import CONTOUR, PAPER, THESIS, THESIS_OCCLUSION
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import Frame
@@ -162,14 +162,14 @@ def variants() -> Iterator[tuple[str, TrackerConfig]]:
     yield "paper, literal", PAPER
     yield "thesis, literal, with colour and occlusions", THESIS_OCCLUSION
     yield "thesis, literal, thermal alone", THESIS
-    settings = list(differing(THESIS, PEOPLEBOY))
+    settings = list(differing(THESIS, CONTOUR))
     own = {step: [name for name in settings if step_of(name) == step] for step in STEPS}
     config = THESIS
     for step, names in own.items():
-        config = adopt(config, PEOPLEBOY, names)
+        config = adopt(config, CONTOUR, names)
         yield f"+ {step}", config
     for step, names in own.items():
-        yield f"without: {step}", adopt(PEOPLEBOY, THESIS, names)
+        yield f"without: {step}", adopt(CONTOUR, THESIS, names)
 
 
 def record(scenario: str, seed: int) -> Recorded:

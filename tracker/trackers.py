@@ -73,8 +73,8 @@ Factory = Callable[[np.random.Generator], Tracker]
 """Makes a tracker that draws all that is random from the generator."""
 
 
-DETECTION_TRACKER: Final = "anywhere"
-CONTOUR_TRACKER: Final = "peopleboy"
+DETECTION_TRACKER: Final = "detection"
+CONTOUR_TRACKER: Final = "contour"
 DEFAULT_TRACKER: Final = DETECTION_TRACKER
 BY_CONTRAST: Final = frozenset({DETECTION_TRACKER})
 """Those to which only the contrast of a thermal image matters, not how many degC a grey stands for."""

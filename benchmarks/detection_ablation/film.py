@@ -48,7 +48,7 @@ class Film:
             BadInput: a picture cannot be used.
         """
         views = open_views(
-            TrackOptions(footage=clip.folder, out=Path(), tracker="anywhere", rate_hz=CLIPS_HZ)
+            TrackOptions(footage=clip.folder, out=Path(), tracker="detection", rate_hz=CLIPS_HZ)
         )
         return cls(tuple(islice(views, clip.frames)), clip.given.truth, boxes_whole=True)
 

@@ -26,7 +26,7 @@ from peopleboy.scenarios.running.engine.workers import Workers, chosen_workers
 
 _QUICK = "crossing_2,crossing_3,same_uniform,pass_behind_pillar,hidden_0_5s,hidden_2s,hidden_5s,crowd_8"
 _USUAL = (
-    "anywhere,peopleboy,thesis,hog_colour+bytetrack,hog_thermal+bytetrack,hog_thermal+sort,"
+    "detection,contour,thesis,hog_colour+bytetrack,hog_thermal+bytetrack,hog_thermal+sort,"
     "blobs+bytetrack,blobs+sort,oracle+bytetrack"
 )
 

@@ -22,7 +22,7 @@ from peopleboy.tracker.contour.explanation import DETECTOR_KEY
 from peopleboy.tracker.contour.measurement.likelihood import ContourModel, covered_by, seen_shares
 from peopleboy.tracker.contour.particle_filter import FrameView, view_frame, weigh
 from peopleboy.tracker.contour.particles import mean_state, predict, resample
-from peopleboy.tracker.contour.variants import PEOPLEBOY
+from peopleboy.tracker.contour.variants import CONTOUR
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
@@ -131,16 +131,16 @@ def _parts_ms(film: Sequence[Frame]) -> dict[str, float]:
 
 def _view_of(frame: Frame) -> FrameView:
     model = _model_of(*frame.grey(THERMAL).shape)
-    return view_frame(frame, STEP_S, model, PEOPLEBOY)
+    return view_frame(frame, STEP_S, model, CONTOUR)
 
 
 @cache
 def _model_of(height_px: int, width_px: int) -> ContourModel:
-    return ContourModel.build((height_px, width_px), PEOPLEBOY.contour)
+    return ContourModel.build((height_px, width_px), CONTOUR.contour)
 
 
 def _person_works(tracker: ContourTracker, number: int, view: FrameView) -> dict[str, Callable[[], object]]:
-    config, rng = PEOPLEBOY, stream(0, "tracker")
+    config, rng = CONTOUR, stream(0, "tracker")
     clouds = tracker.explanation.particles
     cloud, state = clouds[number], clouds[number].state
     estimate = mean_state(cloud)

@@ -10,7 +10,7 @@ import numpy as np
 
 from peopleboy.tracker.contour.measurement.likelihood import ContourModel
 from peopleboy.tracker.contour.particle_filter import begin, step, view_frame
-from peopleboy.tracker.contour.variants import PEOPLEBOY
+from peopleboy.tracker.contour.variants import CONTOUR
 from peopleboy.tracker.frame import THERMAL, Frame, Odometry
 
 SHAPE = (240, 320)
@@ -23,7 +23,7 @@ class FilterStep:
     """
 
     def __init__(self, count: int) -> None:
-        self._config = replace(PEOPLEBOY, person=replace(PEOPLEBOY.person, count=count))
+        self._config = replace(CONTOUR, person=replace(CONTOUR.person, count=count))
         self._rng = np.random.default_rng(0)
         frame = Frame(images={THERMAL: _drawn_person()}, time_s=0.0, odometry=Odometry(turn_rad=0.01))
         model = ContourModel.build(SHAPE, self._config.contour)

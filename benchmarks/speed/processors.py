@@ -27,7 +27,7 @@ from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import make_tracker
 
-TRACKERS = ("peopleboy", "learned", "thesis", "colour", "thermal", "paper")
+TRACKERS = ("contour", "learned", "thesis", "colour", "thermal", "paper")
 # numpy refuses names that it does not know, and those that it was built for.
 OLD = {
     "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL",

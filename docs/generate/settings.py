@@ -11,12 +11,12 @@ from typing import Any
 from docs.generate.markdown import table
 from peopleboy.tracker.contour import contour_config as source
 from peopleboy.tracker.contour.contour_config import FilterConfig, LimitsConfig, TrackerConfig
-from peopleboy.tracker.contour.variants import PAPER, PEOPLEBOY, THESIS_OCCLUSION
+from peopleboy.tracker.contour.variants import CONTOUR, PAPER, THESIS_OCCLUSION
 
 COLUMNS: Mapping[str, TrackerConfig] = {
     "thesis": THESIS_OCCLUSION,
     "paper": PAPER,
-    "peopleboy": PEOPLEBOY,
+    "contour": CONTOUR,
 }
 
 

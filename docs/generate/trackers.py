@@ -8,12 +8,12 @@ from docs.generate.markdown import table
 from peopleboy.tracker.trackers import TRACKERS
 
 ABOUT: Mapping[str, tuple[str, str]] = {
-    "anywhere": (
+    "detection": (
         "the default: any camera, any room, recorded video",
         "A detector that has seen nothing but rendered random worlds proposes people, and a Kalman filter in "
         "metres follows each. No temperature matters, only contrast; colours tell who came back.",
     ),
-    "peopleboy": (
+    "contour": (
         "thesis, chapters 4 to 7, and beyond",
         "Particles, contour, colour and thermal looks. People who overlap are sorted by depth, those in "
         "front are explained away, hidden people walk on. It knows how the robot moved.",
@@ -42,7 +42,7 @@ ABOUT: Mapping[str, tuple[str, str]] = {
     ),
     "handover": (
         "thesis, section 8.2",
-        "`peopleboy` for what is warm ahead and `panoramic` for all round it, which point people out to each "
+        "`contour` for what is warm ahead and `panoramic` for all round it, which point people out to each "
         "other: a person keeps one number from the thermal image through the panorama and back.",
     ),
     "rgbd": (
@@ -56,12 +56,12 @@ ABOUT: Mapping[str, tuple[str, str]] = {
     ),
     "fused": (
         "both theses, and beyond",
-        "`peopleboy` and `rgbd` at once, and `panoramic` where that camera is mounted: thermal says warm, "
+        "`contour` and `rgbd` at once, and `panoramic` where that camera is mounted: thermal says warm, "
         "depth says where, colour says who. It goes on with the cameras that are left, and in the dark.",
     ),
     "attentive": (
         "the situation-awareness thesis, chapter 5, and beyond",
-        "`peopleboy`, which learns what everybody looks like, and gives who comes back the old number, "
+        "`contour`, which learns what everybody looks like, and gives who comes back the old number, "
         "however long the person was away; whoever is not known stays a stranger. A robot that follows "
         "searches on until it sees its person again.",
     ),

@@ -13,7 +13,7 @@ import click
 from click.shell_completion import CompletionItem
 
 TRACKER_NAMES = (
-    "anywhere", "peopleboy", "learned", "thesis", "colour", "thermal", "paper", "panoramic-paper",
+    "detection", "contour", "learned", "thesis", "colour", "thermal", "paper", "panoramic-paper",
     "panoramic", "handover", "rgbd", "rgbd-printed", "fused", "attentive", "attentive-printed",
     "attentive-fused",
 )  # fmt: skip

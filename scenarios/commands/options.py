@@ -23,7 +23,7 @@ complete_trackers = complete_names((*TRACKER_NAMES, "truth"))
 tracker_option = click.option(
     "--tracker",
     shell_complete=complete_trackers,
-    help=f"One of {TRACKERS}.  [default: the scenario's, or anywhere]",
+    help=f"One of {TRACKERS}.  [default: the scenario's, or detection]",
 )
 behaviour_option = click.option(
     "--behaviour",

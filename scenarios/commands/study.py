@@ -36,7 +36,7 @@ def datasets(suites: Sequence[str], films: Path) -> None:
 
 
 @click.command("train-occlusion")
-@click.option("--tracker", default="peopleboy", show_default=True, help="Whom to teach: peopleboy or thesis.")
+@click.option("--tracker", default="contour", show_default=True, help="Whom to teach: contour or thesis.")
 @click.option(
     "--seeds",
     type=WholeNumber(min=1),

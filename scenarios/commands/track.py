@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from peopleboy.scenarios.footage.track_footage import Tracked
 
 _TRACKERS = (
-    "anywhere, peopleboy, learned, thesis, colour, thermal or paper; rgbd or rgbd-printed with --depth; "
+    "detection, contour, learned, thesis, colour, thermal or paper; rgbd or rgbd-printed with --depth; "
     "or module:Class, your own"
 )
 
@@ -57,7 +57,7 @@ _TRACKERS = (
     type=click.Path(path_type=Path),
     help="CSV file of how it moved: advance_m, aside_m, turn_deg for each picture.  [default: it stands]",
 )
-@click.option("--tracker", help=f"One of {_TRACKERS}.  [default: anywhere; rgbd with --depth]")
+@click.option("--tracker", help=f"One of {_TRACKERS}.  [default: detection; rgbd with --depth]")
 @click.option(
     "--truth",
     type=click.Path(path_type=Path),

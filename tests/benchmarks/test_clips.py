@@ -102,16 +102,16 @@ def test_clips_are_printed_as_one_table_and_kept(tmp_path: Path, monkeypatch: py
     assert told.exit_code == 0, told.output
     rows = [line for line in told.stdout.splitlines() if line.startswith("| ")]
     assert [row.split(" | ")[:3] for row in rows[2:]] == [
-        ["| camel_21", "6", "anywhere"],
+        ["| camel_21", "6", "detection"],
         ["| camel_21", "6", "HOG x 2 + ByteTrack"],
-        ["| airfield", "6", "anywhere"],
+        ["| airfield", "6", "detection"],
         ["| airfield", "6", "HOG x 2 + ByteTrack"],
     ]
     assert "values chosen by: camel_21\n" in told.stdout
     assert "only reported: airfield\n" in told.stdout
     kept = json.loads(OUT.read_text(encoding="utf-8"))
-    assert kept["camel_21"]["anywhere"]["runs"] == 2
-    assert kept["airfield"]["anywhere"]["HOTA"] is None
+    assert kept["camel_21"]["detection"]["runs"] == 2
+    assert kept["airfield"]["detection"]["HOTA"] is None
 
 
 def test_a_clip_or_tracker_that_there_is_not_is_refused(tmp_path: Path) -> None:

@@ -122,8 +122,8 @@ def test_settings_are_read_with_the_comments_above_and_beside_them() -> None:
 
 def test_the_settings_page_has_the_values_of_the_trackers() -> None:
     text = page("settings.md")
-    assert COLUMNS["peopleboy"].life.death_frames != contour_config.LifeConfig().death_frames
-    assert f"| **{COLUMNS['peopleboy'].life.death_frames}** |" in text
+    assert COLUMNS["contour"].life.death_frames != contour_config.LifeConfig().death_frames
+    assert f"| **{COLUMNS['contour'].life.death_frames}** |" in text
 
 
 def test_every_part_is_asked_for_by_one_page() -> None:

@@ -250,7 +250,7 @@ class DepthConfig:
     # By whose feet are lower ("foot"), by looks as well ("appearance"), by a boosted classifier ("learned");
     # None: nobody is in front of anybody.
     order: str | None = None
-    table: str = "peopleboy"  # who the boosted classifier was taught for: its table of that name is taken
+    table: str = "contour"  # who the boosted classifier was taught for: its table of that name is taken
     remembers_feet: bool = False  # the classifier takes feet as last seen whole, and not the contour's end
     removes_front: bool = False  # points of the contour on people in front are left out of the evidence
     growth: float = 1.0  # by which the people in front are enlarged for that

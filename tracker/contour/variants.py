@@ -120,7 +120,7 @@ _PEOPLEBOY_COLOUR = ColourConfig(
 
 _LIMITS = LimitsConfig(ratio_wh=(0.22, 0.62), ratio_dw=(-0.5, 0.5), y=(0.1, 0.8), h=(0.03, 0.5))
 
-PEOPLEBOY = TrackerConfig(
+CONTOUR = TrackerConfig(
     contour=ContourConfig(
         points=5,
         reach_px=0.0,
@@ -200,11 +200,11 @@ PEOPLEBOY = TrackerConfig(
 )
 """What works best by contours."""
 
-PEOPLEBOY_LEARNED = replace(PEOPLEBOY, depth=replace(PEOPLEBOY.depth, order="learned"))
+PEOPLEBOY_LEARNED = replace(CONTOUR, depth=replace(CONTOUR.depth, order="learned"))
 """The same with a learned order in depth."""
 
 VARIANTS: Final[Mapping[str, TrackerConfig]] = {
-    "peopleboy": PEOPLEBOY,
+    "contour": CONTOUR,
     "learned": PEOPLEBOY_LEARNED,
     "thesis": THESIS_OCCLUSION,
     "thermal": THESIS,

@@ -96,7 +96,7 @@ def all_round() -> Figure:
 def handed_over() -> Figure:
     """Where a person who walks round the robot is tracked, under which number, by two trackers."""
     figure = Figure((WIDTH_IN, 5.4), layout="constrained")
-    for axes, name in zip(figure.subplots(1, 2, sharey=True), ("handover", "peopleboy"), strict=True):
+    for axes, name in zip(figure.subplots(1, 2, sharey=True), ("handover", "contour"), strict=True):
         _way_round(axes, name)
     return figure
 

@@ -14,7 +14,7 @@ from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.tracker.contour.measurement.likelihood import COVERED, ContourModel, covered_by, pixels_under
 from peopleboy.tracker.contour.measurement.section_evidence import outline
-from peopleboy.tracker.contour.variants import PEOPLEBOY
+from peopleboy.tracker.contour.variants import CONTOUR
 from peopleboy.tracker.track import Status, Track
 
 NEAR, FAR = 1, 2  # tracks of nina and olaf
@@ -34,10 +34,10 @@ def explained_away() -> Figure:
     """What the filter of the person behind is compared with, once the one in front is taken out."""
     *_, (_, tick) = ticks(*CROSSING, frames=PARTLY)
     tracks = {track.id: track for track in tick.tracks}
-    model = ContourModel.build(tick.observation.images["thermal"].shape, PEOPLEBOY.contour)
+    model = ContourModel.build(tick.observation.images["thermal"].shape, CONTOUR.contour)
     image = model.prepare(tick.observation.images["thermal"])
     front = [state_of(tick, NEAR)]
-    marked = covered_by(image, front, PEOPLEBOY.depth.growth)
+    marked = covered_by(image, front, CONTOUR.depth.growth)
     figure, axes = panels(("two people, two tracks", "what the filter of the one behind is shown"), 5.0)
     show(axes[0], image)
     for track in tracks.values():

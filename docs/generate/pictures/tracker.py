@@ -19,7 +19,7 @@ from peopleboy.tracker.contour.measurement.contour import Probes
 from peopleboy.tracker.contour.measurement.likelihood import ContourModel
 from peopleboy.tracker.contour.measurement.section_evidence import outline
 from peopleboy.tracker.contour.particles import Particles
-from peopleboy.tracker.contour.variants import PEOPLEBOY
+from peopleboy.tracker.contour.variants import CONTOUR
 
 SHOWN = (1, 3, 4, 24)
 FRAME = 45
@@ -42,7 +42,7 @@ def contour() -> Figure:
     good = state_of(tick, track.id)
     shifted = good + np.array([-1.2 * good[2], *np.zeros(8)])
     figure, axes = panels(("a sample on the person", "one beside the person"), 5.0)
-    model = ContourModel.build(tick.observation.images["thermal"].shape, PEOPLEBOY.contour)
+    model = ContourModel.build(tick.observation.images["thermal"].shape, CONTOUR.contour)
     image = model.prepare(tick.observation.images["thermal"])
     for panel, state in zip(axes, (good, shifted), strict=True):
         show(panel, image)

@@ -352,7 +352,7 @@ class RobotSpec(Strict):
         default=None,
         pattern="^[a-z][a-z0-9_-]*$",
         description="whose eyes the robot sees people with, by a name that `--tracker` takes, and which that "
-        "option overrules; left out, `anywhere`",
+        "option overrules; left out, `detection`",
     )
     cameras: dict[CameraName, SerializeAsAny[Annotated[_ByKind, WrapValidator(_by_kind)]]] = Field(
         default={},

@@ -32,8 +32,8 @@ SETS: Final[Mapping[str, tuple[str, ...]]] = {"A": ("follow_passers_by",), "B": 
 many."""
 
 COMPARED: Final = (PRINTED_NAME, MATCHING, DEFAULT)
-TRACKERS: Final = ("peopleboy", "attentive-printed", "attentive")
-FOLLOWERS: Final = ("attentive", "peopleboy")
+TRACKERS: Final = ("contour", "attentive-printed", "attentive")
+FOLLOWERS: Final = ("attentive", "contour")
 ABSENCES: Final = ("absence_10s", "absence_60s")
 FOLLOWED: Final = "follow_absence"
 _IN_TIME_S: Final = 1.0

@@ -51,7 +51,7 @@ def _per_suite(number: str, suites: tuple[str, ...], literal: str, *, beside_one
 
 
 def _by_all_rules(group: str, suites: tuple[str, ...], literal: str) -> Iterator[TrackerTrial]:
-    for who, base in ((LITERAL, literal), (OURS, "peopleboy")):
+    for who, base in ((LITERAL, literal), (OURS, "contour")):
         for strictly, rule in RULES.items():
             yield TrackerTrial(Line(group, who + strictly), Setting(base), suites, rule)
 
@@ -71,7 +71,7 @@ def _sweep(
             Line(name, who), Setting(base, tuple((p, value) for p in paths)), suites, "ignore", name in quick
         )
         for name, value in values.items()
-        for who, base in ((LITERAL, literal), (OURS, "peopleboy"))
+        for who, base in ((LITERAL, literal), (OURS, "contour"))
     )
     return Tracking(number, metrics, tuple(trials), "lines", (metrics[-1],))
 
@@ -183,7 +183,7 @@ def _chapters(number: str, groups: Iterable[str]) -> Tracking:
 
 
 def _ours(step: str) -> str:
-    return "peopleboy" if step == "occlusion" else f"peopleboy-{step}"
+    return "contour" if step == "occlusion" else f"contour-{step}"
 
 
 _SURE = (("life.birth_confidence", 0.0), ("search.clear_confidence", -0.15), ("search.small_confidence", 0.1))
@@ -201,7 +201,7 @@ def _frontier() -> Tracking:
             is_quick=value >= values[2],
         )
         for value in values
-        for who, base in ((f"{OURS}, thermal", "peopleboy-thermal"), (OURS, "peopleboy"))
+        for who, base in ((f"{OURS}, thermal", "contour-thermal"), (OURS, "contour"))
     )
     return Tracking("section-7.5", THESIS, tuple(trials), "lines", ("AA",))
 
@@ -222,7 +222,7 @@ def _colours(
         for name, changes in kinds.items()
         for who, thermal, colour in (
             (LITERAL, "thesis-thermal", "thesis-colour"),
-            (OURS, "peopleboy-thermal", "peopleboy-moments"),
+            (OURS, "contour-thermal", "contour-moments"),
         )
     )
     return Tracking(number, THESIS, tuple(trials), "bars", ("CA", "AA"))
@@ -282,7 +282,7 @@ _ALL: tuple[Experiment, ...] = (
     _SWEEPS[2],
     _per_suite("figure-5.4", SEVERAL, "thesis-thermal", beside_one=True),
     *_SWEEPS[3:6],
-    Delay(SINGLE, {LITERAL: Setting("thesis-single"), OURS: Setting("peopleboy")}),
+    Delay(SINGLE, {LITERAL: Setting("thesis-single"), OURS: Setting("contour")}),
     TIMINGS[2],
     _chapters("figure-6.4", list(_STEPS)[:2]),
     _colours("figure-6.5", _REPRESENTATIONS, ("histogram",)),
@@ -296,7 +296,7 @@ _ALL: tuple[Experiment, ...] = (
     BestClassifiers(),
     _chapters("figure-7.3", _STEPS),
     _frontier(),
-    Causes(OURS, Setting("peopleboy"), {"several persons": SEVERAL, ONE: SINGLE}),
+    Causes(OURS, Setting("contour"), {"several persons": SEVERAL, ONE: SINGLE}),
     *_SWEEPS[6:],
     Depiction("paper-figure-4"),
     _paper_figure_5(),

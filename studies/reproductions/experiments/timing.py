@@ -93,16 +93,16 @@ def _by_tracker(
 
 
 _MEASURES: dict[str, dict[str, Measure]] = {
-    "table-4.1": _by_tracker(time_steps, "thesis-single", "peopleboy"),
-    "section-4.4": _by_tracker(time_counts, "thesis-single", "peopleboy")
+    "table-4.1": _by_tracker(time_steps, "thesis-single", "contour"),
+    "section-4.4": _by_tracker(time_counts, "thesis-single", "contour")
     | {"literal, paper": lambda steps: time_counts(Setting("paper-single"), steps)},
     "table-5.1": {
         "literal": lambda steps: time_people(Setting("thesis-thermal"), steps),
-        "default, thermal only": lambda steps: time_people(Setting("peopleboy-thermal"), steps),
-        "default": lambda steps: time_people(Setting("peopleboy"), steps),
+        "default, thermal only": lambda steps: time_people(Setting("contour-thermal"), steps),
+        "default": lambda steps: time_people(Setting("contour"), steps),
     },
     "table-6.1": {"PeopleBoy": time_integrals},
-    "table-6.2": _by_tracker(time_colours, "thesis-single", "peopleboy"),
+    "table-6.2": _by_tracker(time_colours, "thesis-single", "contour"),
     "situation-attention-times": {
         "printed": lambda steps: time_attention(PRINTED, steps),
         "default": lambda steps: time_attention(AttentionConfig(), steps),

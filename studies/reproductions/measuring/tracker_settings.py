@@ -17,13 +17,13 @@ from peopleboy.tracker.contour.contour_config import (
     TrackerConfig,
 )
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
-from peopleboy.tracker.contour.variants import PAPER, PEOPLEBOY, THESIS, THESIS_COLOUR, THESIS_OCCLUSION
+from peopleboy.tracker.contour.variants import CONTOUR, PAPER, THESIS, THESIS_COLOUR, THESIS_OCCLUSION
 
 Value = float | int | str | bool | tuple[float, ...] | None
 Changes = tuple[tuple[str, Value], ...]
 
 _ONE_PERSON = InteractionConfig(max_persons=1)
-_OPEN = replace(PEOPLEBOY, depth=DepthConfig(), height=HeightConfig(), occlusion=StayBehindConfig())
+_OPEN = replace(CONTOUR, depth=DepthConfig(), height=HeightConfig(), occlusion=StayBehindConfig())
 
 BASES: Mapping[str, TrackerConfig] = {
     "thesis-single": replace(THESIS, interaction=_ONE_PERSON),
@@ -32,11 +32,11 @@ BASES: Mapping[str, TrackerConfig] = {
     "thesis-colour": THESIS_COLOUR,
     "thesis-occlusion": THESIS_OCCLUSION,
     "paper-several": PAPER,
-    "peopleboy": PEOPLEBOY,
-    "peopleboy-thermal": replace(_OPEN, colour=None, appearance=None),
-    "peopleboy-colour": _OPEN,
+    "contour": CONTOUR,
+    "contour-thermal": replace(_OPEN, colour=None, appearance=None),
+    "contour-colour": _OPEN,
     # The default's contour with the thesis's colour model, whose descriptions can be exchanged.
-    "peopleboy-moments": replace(_OPEN, colour=THESIS_COLOUR.colour, appearance=None),
+    "contour-moments": replace(_OPEN, colour=THESIS_COLOUR.colour, appearance=None),
 }
 """Every tracker that the sources report on, and the default with as much as each of them."""
 

@@ -24,9 +24,9 @@ from peopleboy.studies.training.occlusion_learning.train_occlusion import (
 )
 from peopleboy.tracker.contour.contour_config import TrackerConfig
 from peopleboy.tracker.contour.occlusion.learned_table import TABLES
-from peopleboy.tracker.contour.variants import PEOPLEBOY, THESIS_OCCLUSION
+from peopleboy.tracker.contour.variants import CONTOUR, THESIS_OCCLUSION
 
-PUPILS: dict[str, TrackerConfig] = {"peopleboy": PEOPLEBOY, "thesis": THESIS_OCCLUSION}
+PUPILS: dict[str, TrackerConfig] = {"contour": CONTOUR, "thesis": THESIS_OCCLUSION}
 """The trackers that put people in order, by name."""
 
 

@@ -21,7 +21,7 @@ from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.truth.truth import Owners, PersonTruth, Truth
 from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanation, Ellipse
 from peopleboy.tracker.contour.particles import Particles
-from peopleboy.tracker.contour.variants import PEOPLEBOY
+from peopleboy.tracker.contour.variants import CONTOUR
 from peopleboy.tracker.track import Status, Track
 
 CAMERA = Pinhole()
@@ -98,7 +98,7 @@ def explain(tracks: Sequence[Track] = (TRACK,), cloud: Particles | None = None) 
     """What the contour tracker says of such tracks; every filter has the same cloud."""
     clouds = {} if cloud is None else {DETECTOR_KEY: cloud, **{track.id: cloud for track in tracks}}
     return ContourExplanation(
-        config=PEOPLEBOY,
+        config=CONTOUR,
         ellipses={track.id: ELLIPSE for track in tracks},
         spread_px2={track.id: 10.0 for track in tracks},
         particles=clouds,

@@ -132,7 +132,7 @@ def write_run(
     known = {
         "scenario": "toy",
         "seed": 0,
-        "tracker": "anywhere",
+        "tracker": "detection",
         "renderer": "raycast",
         "rate_hz": 15,
     } | about

@@ -58,7 +58,7 @@ def test_its_figures_are_those_of_the_episode_and_it_is_looked_into_as_any_run(
     robot = pq.read_table(tmp_path / "saved" / "robot.parquet")
     assert robot.num_rows == STEPS + 1
     about = json.loads((tmp_path / "saved" / "run.json").read_text(encoding="utf-8"))
-    assert (about["seed"], about["tracker"]) == (3, "anywhere" if observation == "tracks" else "truth")
+    assert (about["seed"], about["tracker"]) == (3, "detection" if observation == "tracks" else "truth")
     assert run_cli("evaluate", tmp_path / "saved") == 0
     assert run_cli("export", tmp_path / "saved", "--format", "coco", "--out", tmp_path / "coco") == 0
 

@@ -82,8 +82,8 @@ def test_trackeval_reads_the_folder_and_gives_our_own_scores(
 ) -> None:
     data = dataset(folder, capsys)
     assert (data.seq_list, data.seq_lengths) == (["tiny-3"], {"tiny-3": 60})
-    assert sorted(data.tracker_list) == ["anywhere", "thesis"]
-    for tracker, run, found in (("anywhere", crossing, 20), ("thesis", thesis, 1)):
+    assert sorted(data.tracker_list) == ["detection", "thesis"]
+    for tracker, run, found in (("detection", crossing, 20), ("thesis", thesis, 1)):
         ours = own(evaluate_files(run / "truth" / "gt.txt", run / "tracks.txt", 60))
         assert score(data, tracker) == pytest.approx(ours, abs=1e-9)
         assert ours["TP"] > found
@@ -114,7 +114,7 @@ def test_the_truth_has_boxes_round_whole_people_if_asked_and_folders_may_share_a
     for told in capsys.readouterr().err.splitlines()[-2:]:
         assert_names(told, "note: boxes of", "round torsos", "--boxes torso")
     data = dataset(out, capsys)
-    for tracker, run in (("anywhere", crossing), ("thesis", thesis)):
+    for tracker, run in (("detection", crossing), ("thesis", thesis)):
         assert run_cli("evaluate", run, "--boxes", "whole", "--json") == 0
         (figures,) = json.loads(capsys.readouterr().out)["trackers"].values()
         mot = figures["all_frames"]["mot"]
@@ -140,7 +140,7 @@ def test_the_sequence_says_its_length_and_holds_the_images(folder: Path, crossin
 def test_the_package_trackers_reads_the_folder_too(folder: Path, crossing: Path) -> None:
     found = evaluate_mot_sequences(
         folder / "gt" / "mot_challenge" / "peopleboy-all",
-        folder / "trackers" / "mot_challenge" / "peopleboy-all" / "anywhere" / "data",
+        folder / "trackers" / "mot_challenge" / "peopleboy-all" / "detection" / "data",
         seqmap=folder / "gt" / "mot_challenge" / "seqmaps" / "peopleboy-all.txt",
         metrics=["CLEAR", "HOTA", "Identity"],
     ).sequences["tiny-3"]
@@ -168,7 +168,7 @@ def test_trackers_that_have_not_seen_the_same_sequences_are_refused(
     thesis: Path, following: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     told = refusal(capsys, "export", thesis, following, "--format", "mot", "--out", tmp_path / "mot")
-    assert_names(told, "tiny-3", "tracker anywhere")
+    assert_names(told, "tiny-3", "tracker detection")
 
 
 def test_a_sequence_is_exported_without_its_frames_too(thesis: Path, folder: Path, tmp_path: Path) -> None:

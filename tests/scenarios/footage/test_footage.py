@@ -78,7 +78,7 @@ def test_people_are_boxed_as_the_truth_boxes_them(tmp_path, kind):
     text = "\n".join(",".join(map(str, one)) for one in boxes)
     (clip / "groundtruth_rect.txt").write_text(text + "\n", encoding="utf-8")
     out, other = tmp_path / "out", tmp_path / "other"
-    options = TrackOptions(footage=clip, out=out, start="truth", tracker="peopleboy")
+    options = TrackOptions(footage=clip, out=out, start="truth", tracker="contour")
     tracked = quietly(options)
     assert json.loads((out / "run.json").read_text())["boxes"] == tracked.boxes == kind
     ratio = {BoxKind.TORSO: TORSO_PER_HEIGHT, BoxKind.WHOLE: WHOLE_PER_HEIGHT}[kind]
@@ -217,7 +217,7 @@ def test_a_truncated_video_is_tracked_as_far_as_it_goes_and_says_so(tmp_path):
         (("--scale", "0.01,-273.15"), ("16-bit",)),
         (("--start", "1,2,3"), ("X,Y,W,H",)),
         (("--start", "truth"), ("clip", "truth")),
-        (("--tracker", "best"), ("'best'", "peopleboy")),
+        (("--tracker", "best"), ("'best'", "contour")),
         (("--tracker", "mine:Mine", "--boxes", "whole"), ("--boxes whole", "leave it out")),
     ],
 )

@@ -55,10 +55,10 @@ def test_the_heights_told_are_those_that_the_tracker_looks_for(tmp_path, name):
 def test_who_told_no_temperatures_to_the_tracker_that_knows_them_is_told_how(tmp_path):
     clip = write_empty(tmp_path / "clip")
     options = ("--out", tmp_path / "out", "--overwrite")
-    for tracker, is_told in (("peopleboy", True), ("anywhere", False)):
+    for tracker, is_told in (("contour", True), ("detection", False)):
         last = call(clip, *options, "--tracker", tracker).stdout.splitlines()[-1]
         assert ("--temperature-range" in last) == is_told
-    told = call(clip, *options, "--tracker", "peopleboy", "--temperature-range", 20, 40).stdout
+    told = call(clip, *options, "--tracker", "contour", "--temperature-range", 20, 40).stdout
     assert "--temperature-range" not in told
 
 

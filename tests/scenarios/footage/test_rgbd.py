@@ -189,7 +189,7 @@ def test_a_scale_that_cannot_be_is_refused(tmp_path: Path, scale: str) -> None:
 @pytest.mark.parametrize(
     ("arguments", "named"),
     [
-        (("--tracker", "peopleboy"), ("peopleboy", "'thermal'", "--depth")),
+        (("--tracker", "contour"), ("contour", "'thermal'", "--depth")),
         (("--tracker", "handover"), ("handover", "'thermal'")),
         (("--black-hot",), ("--depth", "--black-hot")),
         (("--scale", "centikelvin"), ("--depth", "--scale")),

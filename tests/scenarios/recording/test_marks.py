@@ -103,7 +103,7 @@ def test_places_tell_in_whose_newest_images_a_person_is() -> None:
     assert labels == ["1 · thermal", "1 · thermal+rear", "1 · rear", "1 · thermal", "1"]
 
 
-PEOPLEBOY = VARIANTS["peopleboy"]
+CONTOUR = VARIANTS["contour"]
 BEHIND = replace(made.with_box((200.0, 60.0, 30.0, 120.0)), id=2, occluder=1, status=Status.PARTLY_OCCLUDED)
 
 
@@ -129,7 +129,7 @@ def test_there_is_no_arrow_from_an_occluder_who_is_no_longer_there() -> None:
 
 
 def test_sections_go_from_red_to_blue_with_the_evidence() -> None:
-    threshold = PEOPLEBOY.likelihood.threshold
+    threshold = CONTOUR.likelihood.threshold
     shades = [
         section_marks([made.TRACK], evidence(factor * threshold), made.explain()).colour.astype(int)
         for factor in (-1.0, 0.5, 1.0, 1.5, 3.0)

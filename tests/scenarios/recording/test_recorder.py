@@ -150,7 +150,7 @@ def test_a_closed_recording_holds_each_layer_in_one_piece(recording: Recording) 
 def test_every_section_of_a_contour_has_its_points_and_its_colour(recording: Recording) -> None:
     strips = recording.column(f"{THERMAL}/tracks/contours", "LineStrips2D:strips")
     colours = recording.column(f"{THERMAL}/tracks/contours", "LineStrips2D:colors")
-    lines = section_lines(made.ELLIPSE, VARIANTS["peopleboy"].contour)
+    lines = section_lines(made.ELLIPSE, VARIANTS["contour"].contour)
     for frame, (drawn, colour) in enumerate(zip(strips, colours, strict=True), start=1):
         expected = lines if 5 <= frame < 70 else lines[:0]
         assert len(drawn) == len(colour) == len(expected)  # type: ignore[arg-type]
@@ -240,7 +240,7 @@ def test_a_minute_with_four_people_fits_into_eleven_megabytes(tmp_path: Path) ->
     scenario = load_scenario("crossing_4")
     config = scenario.world(0)
     with World(config) as world:
-        tracker = make_tracker("peopleboy", stream(0, "tracker"))
+        tracker = make_tracker("contour", stream(0, "tracker"))
         loop = closed_loop(world, tracker, scenario.make_behaviour(), 75)
         ticks = [replace(tick, truths=dict(tick.truths)) for tick in loop]
     assert np.mean([len(tick.tracks) for tick in ticks[15:]]) > 3.0

@@ -320,7 +320,7 @@ def test_curves_average_over_runs(folders: dict[str, Path]) -> None:
 
 def test_columns_are_named_by_what_tells_them_apart(folders: dict[str, Path]) -> None:
     by_tracker = read_columns([folders["steady"], folders["swapped"]])
-    assert [column.label for column in by_tracker] == ["anywhere", "thesis"]
+    assert [column.label for column in by_tracker] == ["detection", "thesis"]
     assert are_same_scene(by_tracker)
     by_scene = read_columns([folders["steady"], folders["renumbered"]])
     assert [column.label for column in by_scene] == ["toy, seed 0", "toy, seed 1"]
@@ -366,7 +366,7 @@ def test_two_sweeps_give_the_difference_of_their_pairs_with_an_interval(tmp_path
 def test_more_than_four_runs_are_taken_together_by_tracker(folders: dict[str, Path], tmp_path: Path) -> None:
     again = [shutil.copytree(folders[name], tmp_path / name) for name in ("steady", "swapped")]
     columns = read_columns([*folders.values(), *again])
-    assert {column.label: len(column.runs) for column in columns} == {"anywhere": 3, "thesis": 2}
+    assert {column.label: len(column.runs) for column in columns} == {"detection": 3, "thesis": 2}
 
 
 def test_what_cannot_be_rendered_again_is_drawn_as_boxes(folders: dict[str, Path]) -> None:

@@ -95,7 +95,7 @@ def test_attention_is_shown_when_its_person_is_learned_lost_away_and_found(tmp_p
     assert scores[2] < 0.5 * min(scores[0], scores[3])
 
 
-@pytest.mark.parametrize(("tracker", "has_images"), [("peopleboy", True), ("attentive", False)])
+@pytest.mark.parametrize(("tracker", "has_images"), [("contour", True), ("attentive", False)])
 def test_other_trackers_and_runs_without_images_have_no_attention_to_show(
     tmp_path: Path, tracker: str, has_images: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:

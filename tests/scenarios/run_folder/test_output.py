@@ -129,7 +129,7 @@ OTHERS = {
     "show": lambda path: draw_plan(load_scenario("pass_behind"), 0, path),
     "reproduce": lambda path: open_store(path / "units.jsonl"),
     "train-occlusion": lambda path: give_lesson(
-        path, "peopleboy", 1, Workers(), triplets=False, again=False, ship=False
+        path, "contour", 1, Workers(), triplets=False, again=False, ship=False
     ),
     "train-distance": lambda path: give_distance_lesson(
         path, "pass_behind", 1, Workers(), lessons=Lessons(), ships=False

@@ -5,7 +5,7 @@ from tests.helpers.runs import synthetic_ticks as made
 
 def test_contours_are_read_back_as_they_were_written() -> None:
     tick = made.make_tick(10)
-    again = read_explanation("peopleboy", track_rows(tick))
+    again = read_explanation("contour", track_rows(tick))
     assert again is not None
     assert (again.config, again.ellipses, again.spread_px2) == (
         tick.explanation.config, tick.explanation.ellipses, tick.explanation.spread_px2
@@ -16,7 +16,7 @@ def test_a_tracker_that_explains_nothing_leaves_its_columns_without_values() -> 
     assert set(COLUMNS) < set(TRACKS.names)
     row = dict(explained(None, 1))
     assert row == dict.fromkeys(COLUMNS)
-    assert read_explanation("peopleboy", [{"id": 1, **row}]) is None
+    assert read_explanation("contour", [{"id": 1, **row}]) is None
 
 
 def test_contours_of_a_tracker_that_is_not_ours_are_not_made_up() -> None:

@@ -39,10 +39,10 @@ def test_the_interval_of_many_normal_values_is_that_of_the_standard_error():
 
 def test_a_controller_is_a_behaviour_and_the_eyes_it_sees_by():
     assert parse_controller("follow_person@truth") == Controller("follow_person", "truth")
-    assert str(parse_controller("patrol@anywhere")) == "patrol"
+    assert str(parse_controller("patrol@detection")) == "patrol"
     with refused("'dance'", "follow_person"):
         parse_controller("dance")
-    with refused("'sonar'", "peopleboy"):
+    with refused("'sonar'", "contour"):
         parse_controller("stand@sonar")
 
 

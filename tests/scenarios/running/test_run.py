@@ -236,7 +236,7 @@ def test_no_command_prints_the_commands(capsys: pytest.CaptureFixture[str]) -> N
 def test_another_tracker_has_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     path = write_scene(tmp_path / "tiny.yaml", duration_s=0.2)
-    for tracker in ("anywhere", "paper"):
+    for tracker in ("detection", "paper"):
         assert run_cli("run", path, "--tracker", tracker, "--no-rrd") == 0
     assert {folder.name for folder in (tmp_path / "runs").iterdir()} == {"tiny-0", "tiny-0-paper"}
 
@@ -246,7 +246,7 @@ def test_another_tracker_has_a_folder_of_its_own(tmp_path: Path, monkeypatch: py
     [
         (("run", "no_such_scene"), "peopleboy list"),
         (("run", "missing.yaml"), "missing.yaml"),
-        (("run", "empty_room", "--tracker", "best"), "peopleboy"),
+        (("run", "empty_room", "--tracker", "best"), "contour"),
         (("run", "empty_room", "--renderer", "opengl"), "raycast"),
         (("run", "empty_room", "--seed", "-1"), "seed"),
         (("run", "empty_room", "--sed", "1"), "--sed"),

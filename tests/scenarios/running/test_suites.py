@@ -76,7 +76,7 @@ def test_a_suite_skips_complete_runs_and_redoes_those_that_were_cut_off(tmp_path
     assert (first / "tracks.txt").stat().st_mtime_ns == made[0]
     assert (second / "tracks.txt").stat().st_mtime_ns > made[1]
     assert json.loads((second / "run.json").read_text())["status"] == "complete"
-    with refused(first, "'anywhere'"):
+    with refused(first, "'detection'"):
         run_suite("tiny", RunOptions(seed=0, out=tmp_path, tracker="thesis"), Workers())
 
 

@@ -84,13 +84,13 @@ def test_runs_of_one_tracker_are_pooled_and_those_of_two_stand_side_by_side(
 ) -> None:
     capsys.readouterr()
     assert run_cli("evaluate", folder / "one", folder / "two") == 0
-    assert "people, 2 runs of anywhere" in capsys.readouterr().out
+    assert "people, 2 runs of detection" in capsys.readouterr().out
     assert run_cli("evaluate", folder / "one", folder / "two", folder / "true") == 0
     told = capsys.readouterr().out
     for part in (
-        "anywhere, 2 runs",
+        "detection, 2 runs",
         "truth, 1 run",
-        "truth - anywhere, 1 pair",
+        "truth - detection, 1 pair",
         "one pair has no interval",
     ):
         assert part in told
@@ -110,22 +110,22 @@ def document(capsys: pytest.CaptureFixture[str], *arguments: object) -> Any:
 
 def test_figures_as_json_are_those_of_metrics_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     told = document(capsys, "evaluate", folder / "two", folder / "true")
-    for name, tracker in (("two", "anywhere"), ("true", "truth")):
+    for name, tracker in (("two", "detection"), ("true", "truth")):
         metrics = json.loads((folder / name / "metrics.json").read_text(encoding="utf-8"))
         (run,) = told["trackers"][tracker]["runs"]
         assert (run["run"], run["scene"], run["seed"]) == (str(folder / name), "tiny", 1)
         assert run["figures"]["thesis"] == metrics["thesis"]
         assert told["trackers"][tracker]["all_frames"]["mot"] == metrics["mot"]
     (apart,) = told["differences"]
-    assert (apart["tracker"], apart["from"], apart["pairs"]) == ("truth", "anywhere", 1)
+    assert (apart["tracker"], apart["from"], apart["pairs"]) == ("truth", "detection", 1)
     theirs, ours = (
-        told["trackers"][tracker]["all_frames"]["thesis"]["CR"] for tracker in ("truth", "anywhere")
+        told["trackers"][tracker]["all_frames"]["thesis"]["CR"] for tracker in ("truth", "detection")
     )
     mean, low, high = apart["figures"]["CR"]
     assert (mean, low, high) == (pytest.approx(theirs - ours), None, None)
     files = ("--truth", folder / "two" / "truth" / "gt.txt", "--tracks", folder / "two" / "tracks.txt")
     (alone,) = document(capsys, "evaluate", *files)["trackers"].values()
-    assert alone["all_frames"]["thesis"] == told["trackers"]["anywhere"]["all_frames"]["thesis"]
+    assert alone["all_frames"]["thesis"] == told["trackers"]["detection"]["all_frames"]["thesis"]
 
 
 @pytest.mark.thorough

@@ -79,7 +79,7 @@ def test_who_comes_anew_has_yet_to_be_found() -> None:
 
 @pytest.mark.slow
 def test_usual_and_strict_figures_are_those_of_the_other_parts(tmp_path: Path) -> None:
-    setting, plan = Setting("peopleboy"), Plan(cache=tmp_path, suites={"dataset1": (PLAY,)}, repeats=1)
+    setting, plan = Setting("contour"), Plan(cache=tmp_path, suites={"dataset1": (PLAY,)}, repeats=1)
     experiment = Causes("default", setting, {"one person": ("dataset1",)})
     done: dict[str, dict[str, object]] = {}
     while wanted := experiment.wants(plan, done):

@@ -106,7 +106,7 @@ def test_frames_are_counted_from_the_start_to_the_first_that_is_claimed(films: P
 def test_means_are_over_all_starts_and_the_blind_find_nobody(films: Path) -> None:
     late, blind = (
         LateSetting("late", films=films),
-        Setting("peopleboy", (("life.birth_frames", 99), ("search.clear_frames", 99))),
+        Setting("contour", (("life.birth_frames", 99), ("search.clear_frames", 99))),
     )
     plan = Plan(cache=films, suites={"dataset1": (PLAY,)}, repeats=2)
     experiment = Delay(("dataset1",), {"late": late, "blind": blind})

@@ -242,9 +242,9 @@ def test_every_setting_of_every_experiment_makes_a_tracker() -> None:
 
 
 def test_a_change_reaches_its_place_and_nothing_else() -> None:
-    config = Setting("peopleboy", (("person.count", 300),)).config()
+    config = Setting("contour", (("person.count", 300),)).config()
     assert config.person.count == 300
-    assert changed(config, "person.count", BASES["peopleboy"].person.count) == BASES["peopleboy"]
+    assert changed(config, "person.count", BASES["contour"].person.count) == BASES["contour"]
 
 
 def test_a_setting_that_does_not_exist_is_refused() -> None:
@@ -418,7 +418,7 @@ def test_what_is_chosen_becomes_a_page_and_is_done_once(
 
 def test_a_unit_gives_the_same_result_again_and_its_sums_come_back(tmp_path: Path) -> None:
     play = SuiteRun(load_scenario("crossing_pair").lasting(1.0), 0)
-    unit = TrackUnit(play, tmp_path, Setting("peopleboy"), 1)
+    unit = TrackUnit(play, tmp_path, Setting("contour"), 1)
     one = unit.run()
     assert one == unit.run()
     restored_paper = restored(PaperMetrics, one["ignore"]["paper"])

@@ -173,7 +173,7 @@ def test_the_registered_ones_know_people_again_and_want_colours(name):
     tracker = make_tracker(name, np.random.default_rng(0))
     assert knows_again(tracker)
     assert {THERMAL, COLOUR} <= set(tracker.cameras)
-    assert not knows_again(make_tracker("peopleboy", np.random.default_rng(0)))
+    assert not knows_again(make_tracker("contour", np.random.default_rng(0)))
 
 
 def test_settings_out_of_range_are_refused():

@@ -16,12 +16,12 @@ from peopleboy.tracker.contour.measurement.likelihood import (
     probability,
     seen_shares,
 )
-from peopleboy.tracker.contour.variants import PEOPLEBOY
+from peopleboy.tracker.contour.variants import CONTOUR
 
 SHAPE = (240, 320)
 RNG = np.random.default_rng(7)
 IMAGE = RNG.integers(0, 256, SHAPE, dtype=np.uint8)
-MODEL = ContourModel.build(SHAPE, PEOPLEBOY.contour)
+MODEL = ContourModel.build(SHAPE, CONTOUR.contour)
 
 
 def brood(parents=60, children=4):
@@ -79,4 +79,4 @@ def test_clutter_is_the_difference_that_three_quarters_of_the_pairs_do_not_excee
 def test_probability_is_the_logistic_function_to_a_float32() -> None:
     fit = RNG.normal(0.4, 3.0, 1000).astype(np.float32)
     odds = np.clip(np.float32(2 * 6.0) * (fit - np.float32(0.45)), -40, 40).astype(float)
-    np.testing.assert_allclose(probability(fit, PEOPLEBOY.likelihood), 1 / (1 + np.exp(-odds)), rtol=4e-7)
+    np.testing.assert_allclose(probability(fit, CONTOUR.likelihood), 1 / (1 + np.exp(-odds)), rtol=4e-7)

@@ -7,17 +7,17 @@ from peopleboy.tracker.contour.measurement.likelihood import ContourModel
 from peopleboy.tracker.contour.particle_filter import Belief, view_frame
 from peopleboy.tracker.contour.particles import equally_weighted
 from peopleboy.tracker.contour.tracked_person import Streak
-from peopleboy.tracker.contour.variants import PEOPLEBOY, VARIANTS
+from peopleboy.tracker.contour.variants import CONTOUR, VARIANTS
 from peopleboy.tracker.frame import THERMAL, Frame
 from tests.helpers.images.drawn_people import blank
 
 VIEW = view_frame(
     Frame(images={THERMAL: blank()}, time_s=1.0),
     1 / 15,
-    ContourModel.build((240, 320), PEOPLEBOY.contour),
-    PEOPLEBOY,
+    ContourModel.build((240, 320), CONTOUR.contour),
+    CONTOUR,
 )
-LIFE, SEARCH = PEOPLEBOY.life, PEOPLEBOY.search
+LIFE, SEARCH = CONTOUR.life, CONTOUR.search
 LARGE, SMALL = SEARCH.small_h + 1, SEARCH.small_h - 1
 
 
@@ -30,7 +30,7 @@ def belief(confidence, h=LARGE, spread_px2=10.0):
     return Belief(cloud, cloud, state(h=h), confidence, spread_px2)
 
 
-def frames_until_born(seen, known=(), config=PEOPLEBOY, most=10):
+def frames_until_born(seen, known=(), config=CONTOUR, most=10):
     streak = Streak()
     for frame in range(1, most):
         streak = streak.after(seen, known, VIEW, config)
@@ -62,14 +62,14 @@ def test_samples_that_do_not_agree_are_no_streak():
 def test_frames_must_be_in_a_row():
     streak = Streak()
     for confidence in (0.99, 0.1, 0.99):
-        streak = streak.after(belief(confidence), (), VIEW, PEOPLEBOY)
-        assert not streak.is_enough(PEOPLEBOY)
+        streak = streak.after(belief(confidence), (), VIEW, CONTOUR)
+        assert not streak.is_enough(CONTOUR)
     assert streak == Streak(frames=1, clear_frames=1)
 
 
 def test_what_is_small_counts_in_images_of_240_rows():
     doubled = replace(VIEW, image=np.zeros((480, 640), dtype=np.uint8))
-    after = Streak().after(belief(0.7, h=LARGE), (), doubled, PEOPLEBOY)
+    after = Streak().after(belief(0.7, h=LARGE), (), doubled, CONTOUR)
     assert after == Streak()
 
 

@@ -13,7 +13,7 @@ from peopleboy.tracker.contour.contour_tracker import ContourTracker
 from peopleboy.tracker.contour.occlusion.coasting import WalkOn
 from peopleboy.tracker.contour.particle_filter import weigh
 from peopleboy.tracker.contour.particles import X
-from peopleboy.tracker.contour.variants import PEOPLEBOY, VARIANTS
+from peopleboy.tracker.contour.variants import CONTOUR, VARIANTS
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import make_tracker
@@ -22,7 +22,7 @@ from tests.helpers.images.drawn_people import blank, draw_person
 from tests.helpers.some_of import some_of
 
 ROBOTS_OWN = calibration_of(Pinhole())
-APART = replace(PEOPLEBOY, interaction=InteractionConfig(detector_penalty=1e-9, detector_overlap=0.3))
+APART = replace(CONTOUR, interaction=InteractionConfig(detector_penalty=1e-9, detector_overlap=0.3))
 
 
 def frame(i, *people):
@@ -91,10 +91,10 @@ def test_the_image_is_measured_once_for_each_person_and_in_each_look_of_the_dete
 
 def searching(scans, **changes):
     """A tracker in which nobody is ever born, so that its detector goes on."""
-    detector = replace(PEOPLEBOY.detector, **changes)
-    search = replace(PEOPLEBOY.search, scans=scans, clear_frames=99)
-    life = replace(PEOPLEBOY.life, birth_frames=99)
-    config = replace(PEOPLEBOY, detector=detector, search=search, life=life)
+    detector = replace(CONTOUR.detector, **changes)
+    search = replace(CONTOUR.search, scans=scans, clear_frames=99)
+    life = replace(CONTOUR.life, birth_frames=99)
+    config = replace(CONTOUR, detector=detector, search=search, life=life)
     return ContourTracker(config, np.random.default_rng(0))
 
 
@@ -166,7 +166,7 @@ def identity_at(tracks, x):
 
 @pytest.mark.parametrize("seed", some_of(range(2), 2))
 def test_a_person_keeps_its_identity_through_a_total_occlusion(seed):
-    tracker = ContourTracker(PEOPLEBOY, np.random.default_rng(seed))
+    tracker = ContourTracker(CONTOUR, np.random.default_rng(seed))
     tracks = [tracker.update(passing(i)) for i in range(-60, 115)]
     before, after = identity_at(tracks[60 + 45], 60 + 2.2 * 15), identity_at(tracks[-1], 60 + 2.2 * 84)
     assert before is not None
@@ -185,7 +185,7 @@ def stopping(i, stops_s):
 
 @pytest.mark.slow
 def test_who_stops_behind_somebody_large_is_not_claimed_for_long_and_yet_known_again():
-    tracker = ContourTracker(PEOPLEBOY, np.random.default_rng(0))
+    tracker = ContourTracker(CONTOUR, np.random.default_rng(0))
     tracks = [tracker.update(stopping(i, stops_s=3)) for i in range(125)]
     walker = identity_at(tracks[30], 61 + 2.2 * 30)
     assert identity_at(tracks[42], 61 + 2.2 * 42) == walker
@@ -196,7 +196,7 @@ def test_who_stops_behind_somebody_large_is_not_claimed_for_long_and_yet_known_a
 @pytest.mark.slow
 @pytest.mark.parametrize(("seconds", "is_known"), [(4, True), (12, False)])
 def test_who_was_lost_is_remembered_for_ten_seconds(seconds, is_known):
-    tracker = ContourTracker(PEOPLEBOY, np.random.default_rng(1))
+    tracker = ContourTracker(CONTOUR, np.random.default_rng(1))
     gone = 40 + round(15 * seconds)
     for i in range(40):
         before = tracker.update(dressed(i, (150, 30, RED, 140)))
@@ -210,7 +210,7 @@ def test_who_was_lost_is_remembered_for_ten_seconds(seconds, is_known):
 def test_who_cannot_be_compared_yet_has_a_new_number_until_it_is_known_again(monkeypatch):
     answers = chain([False] * 5, repeat(True))
     monkeypatch.setattr(WalkOn, "can_compare", lambda *_: next(answers))
-    tracker = ContourTracker(PEOPLEBOY, np.random.default_rng(1))
+    tracker = ContourTracker(CONTOUR, np.random.default_rng(1))
     for i in range(40):
         tracker.update(dressed(i, (150, 30, RED, 140)))
     for i in range(40, 100):
@@ -238,6 +238,6 @@ def heat_alone(frame):
 
 @pytest.mark.slow
 def test_without_a_colour_camera_people_are_told_apart_by_their_warmth():
-    tracker = ContourTracker(PEOPLEBOY, np.random.default_rng(0))
+    tracker = ContourTracker(CONTOUR, np.random.default_rng(0))
     tracks = [tracker.update(heat_alone(passing(i))) for i in range(115)]
     assert identity_at(tracks[45], 60 + 2.2 * 15) == identity_at(tracks[-1], 60 + 2.2 * 84) is not None

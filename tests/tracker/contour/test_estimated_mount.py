@@ -14,8 +14,8 @@ from peopleboy.tracker.contour.particle_filter import is_within
 from peopleboy.tracker.contour.particles import CROWN, FOOT, H, W, X, Y, limits_px
 from peopleboy.tracker.contour.variants import VARIANTS
 
-PEOPLEBOY = VARIANTS["peopleboy"]
-LIMITS = PEOPLEBOY.detector.limits
+CONTOUR = VARIANTS["contour"]
+LIMITS = CONTOUR.detector.limits
 
 
 def standing(geometry: Pinhole, distance_m: float, stature_m: float = 1.72) -> np.ndarray:
@@ -52,13 +52,13 @@ def test_somebody_who_walks_to_and_fro_tells_horizon_and_height(height_m: float,
     ("height_m", "pitch_deg"), [(1.2, -15.0), (1.2, 0.0), (1.2, 15.0), (0.4, 0.0), (1.8, 0.0)]
 )
 def test_nobody_is_ruled_out_before_anybody_was_seen(height_m: float, pitch_deg: float) -> None:
-    limits = believed_from(PEOPLEBOY, MountBelief.usual(LIMITS)).detector.limits
+    limits = believed_from(CONTOUR, MountBelief.usual(LIMITS)).detector.limits
     states = np.array([standing(camera(height_m, pitch_deg), away) for away in (4.0, 6.0, 8.0)], np.float32)
     assert is_within(states, limits_px(240, limits)).all()
 
 
 def test_who_is_known_to_stand_higher_is_ruled_out() -> None:
-    limits = believed_from(PEOPLEBOY, taught(camera(1.2, 0.0))).detector.limits
+    limits = believed_from(CONTOUR, taught(camera(1.2, 0.0))).detector.limits
     state = standing(camera(1.2, 0.0), 5.0).astype(np.float32)
     raised = state.copy()
     raised[Y] -= 1.5 * state[H]
@@ -67,12 +67,12 @@ def test_who_is_known_to_stand_higher_is_ruled_out() -> None:
 
 def test_the_surer_the_mount_the_fewer_samples_look() -> None:
     unsure, sure = (
-        believed_from(PEOPLEBOY, belief).detector.count
+        believed_from(CONTOUR, belief).detector.count
         for belief in (MountBelief.usual(LIMITS), taught(camera(1.2, 0.0)))
     )
-    assert PEOPLEBOY.detector.count <= sure < 2 * PEOPLEBOY.detector.count < unsure
+    assert CONTOUR.detector.count <= sure < 2 * CONTOUR.detector.count < unsure
 
 
 def test_only_the_default_looks_for_people_on_the_floor() -> None:
     learnable = {name for name, config in VARIANTS.items() if is_learnable(config)}
-    assert learnable == {"peopleboy", "learned"}
+    assert learnable == {"contour", "learned"}

@@ -13,7 +13,7 @@ from peopleboy.tracker.contour.measurement.likelihood import ContourModel
 from peopleboy.tracker.contour.particle_filter import Belief, view_frame
 from peopleboy.tracker.contour.particles import equally_weighted
 from peopleboy.tracker.contour.tracked_person import SIZE, TrackedPerson
-from peopleboy.tracker.contour.variants import PEOPLEBOY
+from peopleboy.tracker.contour.variants import CONTOUR
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.track import Status
 from tests.helpers.images.drawn_people import blank
@@ -21,8 +21,8 @@ from tests.helpers.images.drawn_people import blank
 VIEW = view_frame(
     Frame(images={THERMAL: blank()}, time_s=1.0),
     1 / 15,
-    ContourModel.build((240, 320), PEOPLEBOY.contour),
-    PEOPLEBOY,
+    ContourModel.build((240, 320), CONTOUR.contour),
+    CONTOUR,
 )
 
 
@@ -47,17 +47,17 @@ def person(number, x=160.0, h=30.0, colour=0.0, hidden_s=1.0, **more):
 
 def test_of_two_at_the_same_place_the_one_with_the_same_looks_is_least_mismatch():
     lost = person(1, colour=0.0), person(2, colour=3.0)
-    assert least_mismatch(person(9, colour=3.1), lost, VIEW, PEOPLEBOY) is lost[1]
+    assert least_mismatch(person(9, colour=3.1), lost, VIEW, CONTOUR) is lost[1]
 
 
 def test_of_two_with_the_same_looks_the_nearer_one_is_least_mismatch():
     lost = person(1, x=60.0), person(2, x=150.0)
-    assert least_mismatch(person(9, x=160.0), lost, VIEW, PEOPLEBOY) is lost[1]
+    assert least_mismatch(person(9, x=160.0), lost, VIEW, CONTOUR) is lost[1]
 
 
 @pytest.mark.parametrize("found", [person(9, colour=5.0), person(9, h=80.0)])
 def test_a_stranger_is_nobody_who_was_lost(found):
-    assert least_mismatch(found, (person(1, hidden_s=0.3),), VIEW, PEOPLEBOY) is None
+    assert least_mismatch(found, (person(1, hidden_s=0.3),), VIEW, CONTOUR) is None
 
 
 def test_the_thesis_asks_that_the_nearest_is_also_the_most_alike():

@@ -67,7 +67,7 @@ def test_a_camera_that_looks_straight_up_or_down_has_its_horizon_far_away(pitch_
     mount = mount_of(calibration_of(camera(height_m, pitch_deg)), 240)
     assert abs(mount.horizon_px) == 24000.0
     assert math.copysign(1.0, mount.horizon_px) == -math.copysign(1.0, pitch_deg)  # below it when looking up
-    tracker = make_tracker("peopleboy", np.random.default_rng(0))
+    tracker = make_tracker("contour", np.random.default_rng(0))
     calibrations = {"thermal": calibration_of(camera(height_m, pitch_deg))}
     for tick in range(3):
         images = {"thermal": np.full((240, 320), 40, np.uint8)}

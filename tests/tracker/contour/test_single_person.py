@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
-from peopleboy.tracker.contour.variants import PAPER, PEOPLEBOY, THESIS
+from peopleboy.tracker.contour.variants import CONTOUR, PAPER, THESIS
 from peopleboy.tracker.frame import THERMAL, Frame, Odometry
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import TRACKERS, make_tracker
@@ -24,7 +24,7 @@ def alone(config):
 
 
 VARIANTS = {
-    "default": alone(PEOPLEBOY),
+    "default": alone(CONTOUR),
     "thesis": alone(THESIS),
     "paper": alone(PAPER),
 }
@@ -168,7 +168,7 @@ def test_particles_are_those_of_the_detector_first_and_of_the_person_then():
         tracker.update(person_frame(i / 15))
     assert set(tracker.explanation.particles) == {1}
     cloud = tracker.explanation.particles[1]
-    assert len(cloud) == PEOPLEBOY.person.count
+    assert len(cloud) == CONTOUR.person.count
     assert cloud.weight.sum() == pytest.approx(1, abs=1e-4)
     with pytest.raises(ValueError, match="read-only"):
         cloud.state[0, 0] = 0
@@ -188,7 +188,7 @@ def test_an_unknown_tracker_is_refused_with_the_names_of_those_that_exist():
 
 
 def test_a_filter_of_300_samples_finds_the_person_too():
-    config = replace(alone(PEOPLEBOY), person=replace(PEOPLEBOY.person, count=300))
+    config = replace(alone(CONTOUR), person=replace(CONTOUR.person, count=300))
     tracker = ContourTracker(config, np.random.default_rng(0))
     tracks = [tracker.update(person_frame(i / 15)) for i in range(25)]
     assert confirmed(tracks[-1])

@@ -13,7 +13,7 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.contour.explanation import ContourExplanation
-from peopleboy.tracker.contour.variants import PEOPLEBOY
+from peopleboy.tracker.contour.variants import CONTOUR
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, PANORAMA, THERMAL, Frame, Odometry
 from peopleboy.tracker.fusion.fused_tracker import FusedTracker, ThermalDepthTracker
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
@@ -59,7 +59,7 @@ class Heat:
     def explanation(self) -> ContourExplanation:
         ids = [one.id for one in self.tracks]
         return ContourExplanation(
-            config=PEOPLEBOY, ellipses=dict.fromkeys(ids, ELLIPSE), spread_px2=dict.fromkeys(ids, 1.0)
+            config=CONTOUR, ellipses=dict.fromkeys(ids, ELLIPSE), spread_px2=dict.fromkeys(ids, 1.0)
         )
 
 

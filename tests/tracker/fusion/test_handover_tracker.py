@@ -12,7 +12,7 @@ from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.tracker.contour.box_interaction import standing_box
 from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanation
-from peopleboy.tracker.contour.variants import PEOPLEBOY
+from peopleboy.tracker.contour.variants import CONTOUR
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
 from peopleboy.tracker.fusion.explanations import BothExplanations
 from peopleboy.tracker.fusion.handover_tracker import (
@@ -286,7 +286,7 @@ def test_without_a_thermal_image_nobody_is_pointed_out():
 
 def contours(*numbers):
     return ContourExplanation(
-        config=PEOPLEBOY,
+        config=CONTOUR,
         ellipses={number: replace(ELLIPSE, x=float(number)) for number in numbers},
         spread_px2={number: float(number) for number in numbers},
         particles={number: np.zeros(number) for number in (DETECTOR_KEY, *numbers)},

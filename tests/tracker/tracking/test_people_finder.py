@@ -81,7 +81,7 @@ def frames() -> list[Frame]:
     """What a robot sees that stands by while two people cross."""
     scenario, frames, before = load_scenario("crossing_2"), [], None
     with World(scenario.world(0)) as world:
-        tracker = make_tracker("peopleboy", stream(0, "tracker"))
+        tracker = make_tracker("contour", stream(0, "tracker"))
         for tick in closed_loop(world, tracker, scenario.make_behaviour(), 60):
             frames.append(make_frame(tick.observation, calibrations_of(world.cameras), before))
             before = tick.observation.odometry

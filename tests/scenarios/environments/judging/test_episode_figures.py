@@ -76,7 +76,7 @@ def known(figures: dict[str, Any]) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("like", "duration_s", "tracker"),
     [
-        pytest.param("follow_occluded", 27.0, "peopleboy", marks=pytest.mark.heavy),
+        pytest.param("follow_occluded", 27.0, "contour", marks=pytest.mark.heavy),
         ("single_follow", 6.0, "truth"),
     ],
 )
@@ -104,7 +104,7 @@ def test_an_episode_along_a_corridor_has_the_figures_of_the_run(tmp_path: Path) 
     path = write_short(tmp_path, "corridor_straight", 11.0)
     env = PeopleBoyEnv(path, observation="truth", task="corridor")
     commands, _, figures = play(env, path)
-    scores = repeat(path, commands, "peopleboy", tmp_path / "run")
+    scores = repeat(path, commands, "contour", tmp_path / "run")
     assert scores["corridor"]["way_m"] > 1.0
     assert known(figures["corridor"]) == known(scores["corridor"])
 

@@ -31,7 +31,7 @@ from peopleboy.tracker.contour.measurement.likelihood import (
     pixels_under,
 )
 from peopleboy.tracker.contour.particles import HEAD_DIVISOR
-from peopleboy.tracker.contour.variants import PEOPLEBOY, THESIS
+from peopleboy.tracker.contour.variants import CONTOUR, THESIS
 from tests.helpers.images.drawn_people import BACKGROUND, RADIATOR, WARM, blank, draw_person, fill_ellipse
 
 LITERAL = ContourConfig()
@@ -70,7 +70,7 @@ def test_the_head_stands_on_top_of_the_body():
     assert np.allclose(bottom, [[0, -30]], atol=1e-5)
 
 
-@pytest.mark.parametrize("config", [LITERAL, THESIS.contour, PEOPLEBOY.contour])
+@pytest.mark.parametrize("config", [LITERAL, THESIS.contour, CONTOUR.contour])
 def test_inner_points_lie_inside_and_outer_points_outside_of_the_contour(config):
     probes = build_probes(config, 1.0)
     mix = np.array([0.0, 20.0, 50.0, 1.0])
@@ -82,7 +82,7 @@ def test_inner_points_lie_inside_and_outer_points_outside_of_the_contour(config)
 
 @pytest.mark.parametrize("x", [160.0, 4.0, np.nan, 1e20])
 def test_the_pixels_under_a_contour_are_those_nearest_to_its_points(x):
-    probes = build_probes(PEOPLEBOY.contour, 1.0)
+    probes = build_probes(CONTOUR.contour, 1.0)
     state = np.array([x, 120, 12, 30, 3, 0, 0, 0, 0], np.float32)
     points = np.concatenate([probes.inner, probes.outer]) @ np.array([3.0, 12, 30, 1]) + (x, 120)
     inside = ((points >= -0.5) & (points < (319.5, 239.5))).all(axis=1)
@@ -137,7 +137,7 @@ def test_the_feet_section_peaks_at_the_line_under_the_feet():
     # All samples share the top of the head.
     state[:, 0], state[:, 2], state[:, 3] = 150, 14, h
     state[:, 1] = 110 + (h - 36) * (1 + 2 / 4.4)
-    feet = ContourModel.build(image.shape, PEOPLEBOY.contour).differences(image, state)[:, FEET]
+    feet = ContourModel.build(image.shape, CONTOUR.contour).differences(image, state)[:, FEET]
     assert h[feet > 0.9 * feet.max()].mean() == pytest.approx(36, rel=0.06)
 
 
@@ -151,13 +151,13 @@ def test_of_a_head_above_the_image_the_rest_speaks() -> None:
     image = blank()
     draw_person(image, 150, 40, 18, 44)
     state = np.array([[150, 40, 18, 44, 0, 0, 0, 0, 0]], dtype=np.float32)
-    cut = replace(PEOPLEBOY.contour, unseen_share=PEOPLEBOY.contour.cut_share)
+    cut = replace(CONTOUR.contour, unseen_share=CONTOUR.contour.cut_share)
     weights = section_weights(cut)
     plain, filled = (
         float(ContourModel.build(image.shape, config).differences(image, state)[0] @ weights)
-        for config in (PEOPLEBOY.contour, cut)
+        for config in (CONTOUR.contour, cut)
     )
-    assert plain < PEOPLEBOY.likelihood.threshold + 0.1 < filled
+    assert plain < CONTOUR.likelihood.threshold + 0.1 < filled
 
 
 def test_what_covers_without_weight_leaves_the_others_as_they_are() -> None:
@@ -166,7 +166,7 @@ def test_what_covers_without_weight_leaves_the_others_as_they_are() -> None:
     marked = image.copy()
     marked[:, 150:] = 0
     state = np.array([[150, 110, 18, 40, 0, 0, 0, 0, 0]], dtype=np.float32)
-    model = ContourModel.build(image.shape, replace(PEOPLEBOY.contour, feet_weight=0.0))
+    model = ContourModel.build(image.shape, replace(CONTOUR.contour, feet_weight=0.0))
     whole = model.differences(np.maximum(image, 1), state)[0]
     half = model.differences(np.maximum(marked, (marked > 0).astype(np.uint8)), state, 0.0, 0.0)[0]
     assert half[SIDE_LEFT] == pytest.approx(whole[SIDE_LEFT], abs=1e-5)
@@ -182,7 +182,7 @@ def test_clutter_is_what_most_pixels_differ_by_and_people_are_none() -> None:
 
 
 def test_in_clutter_the_response_bends_later_and_never_earlier() -> None:
-    model = ContourModel.build((240, 320), PEOPLEBOY.contour)
+    model = ContourModel.build((240, 320), CONTOUR.contour)
     assert model.amid(0.0) is model
     bent = model.amid(30.0).response[HEAD_TOP]
     assert (np.abs(bent) <= np.abs(model.response[HEAD_TOP])).all()
@@ -208,7 +208,7 @@ def test_the_response_is_odd_for_the_head_and_saturates():
 
 def test_section_weights_sum_to_one():
     assert section_weights(LITERAL).sum() == pytest.approx(1)
-    assert section_weights(PEOPLEBOY.contour).sum() == pytest.approx(1)
+    assert section_weights(CONTOUR.contour).sum() == pytest.approx(1)
     assert np.allclose(section_weights(LITERAL)[:FEET], (0.18, 0.18, 0.18, 0.07, 0.07, 0.16, 0.16))
 
 

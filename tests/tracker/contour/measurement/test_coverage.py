@@ -12,10 +12,10 @@ from peopleboy.tracker.contour.measurement.likelihood import (
     seen_shares,
     uncovered,
 )
-from peopleboy.tracker.contour.variants import PEOPLEBOY
+from peopleboy.tracker.contour.variants import CONTOUR
 from tests.helpers.images.drawn_people import blank, draw_person
 
-MODEL = ContourModel.build((240, 320), PEOPLEBOY.contour)
+MODEL = ContourModel.build((240, 320), CONTOUR.contour)
 
 
 def state(x=160.0, h=30.0, w=None):

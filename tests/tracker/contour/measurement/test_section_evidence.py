@@ -24,7 +24,7 @@ from peopleboy.tracker.contour.particles import HEAD_DIVISOR
 from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.track import Status, Track
 
-PEOPLEBOY = VARIANTS["peopleboy"]
+CONTOUR = VARIANTS["contour"]
 AT_REST = {"vx": 0.0, "vy": 0.0, "vw": 0.0, "vh": 0.0}
 STANDING = Ellipse(x=160.0, y=120.0, w=20.0, h=45.0, d=0.0, **AT_REST)
 
@@ -40,7 +40,7 @@ def track(number: int = 1, occluder: int | None = None) -> Track:
     )
 
 
-def explain(config: TrackerConfig = PEOPLEBOY, *ellipses: Ellipse) -> ContourExplanation:
+def explain(config: TrackerConfig = CONTOUR, *ellipses: Ellipse) -> ContourExplanation:
     """The explanation of tracks 1, 2, ... with these contours; of one who stands if none are given."""
     told = dict(enumerate(ellipses or (STANDING,), 1))
     return ContourExplanation(config=config, ellipses=told, spread_px2=dict.fromkeys(told, 1.0))
@@ -74,7 +74,7 @@ def test_what_is_wholly_in_view_responds_as_the_tracker_measures_it(name: str) -
 def test_an_occluder_s_body_hides_the_sections_on_its_side() -> None:
     front = replace(STANDING, x=185.0)
     tracks = [track(), track(2), track(3, occluder=2)]
-    evidence = evidence_of(person(), tracks, explain(PEOPLEBOY, STANDING, front, STANDING))
+    evidence = evidence_of(person(), tracks, explain(CONTOUR, STANDING, front, STANDING))
     assert evidence[1].seen == pytest.approx(np.ones(8))
     assert evidence[3].seen[SIDE_RIGHT] == pytest.approx(0.0)
     assert np.isnan(evidence[3].response[SIDE_RIGHT])
@@ -92,14 +92,14 @@ def test_evidence_is_between_minus_one_and_one_or_out_of_view_anywhere(
     x: float, y: float, h: float, d: float
 ) -> None:
     ellipse = Ellipse(x=x, y=y, w=0.4 * h, h=h, d=d, **AT_REST)
-    evidence = evidence_of(person(), [track()], explain(PEOPLEBOY, ellipse))[1]
+    evidence = evidence_of(person(), [track()], explain(CONTOUR, ellipse))[1]
     assert ((evidence.seen >= 0) & (evidence.seen <= 1)).all()
     assert np.array_equal(np.isnan(evidence.response), evidence.seen == 0)
     assert (np.abs(evidence.response[~np.isnan(evidence.response)]) <= 1 + 1e-5).all()
 
 
 def test_sections_are_drawn_along_the_outlines_and_none_over_another() -> None:
-    lines = section_lines(STANDING, PEOPLEBOY.contour)
+    lines = section_lines(STANDING, CONTOUR.contour)
     assert len(lines) == SECTIONS + 1
     body, head = outline(STANDING, count=3000)
     around = np.concatenate([body, head])

@@ -129,7 +129,7 @@ def test_the_shipped_tables_say_that_the_larger_and_lower_of_two_is_in_front(tra
 
 
 def test_a_tracker_orders_by_the_table_that_its_settings_name():
-    order = make_order(DepthConfig(order="learned", table="peopleboy", remembers_feet=True))
-    assert order is shipped_order("peopleboy", remembers_feet=True)
+    order = make_order(DepthConfig(order="learned", table="contour", remembers_feet=True))
+    assert order is shipped_order("contour", remembers_feet=True)
     with refused("nobody.yaml"):
         make_order(DepthConfig(order="learned", table="nobody"))

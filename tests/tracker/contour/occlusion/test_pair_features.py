@@ -111,7 +111,7 @@ def test_colours_that_nobody_knows_make_no_difference(models):
 
 
 def test_everybody_is_compared_at_once_as_they_are_two_by_two():
-    order = shipped_order("peopleboy")
+    order = shipped_order("contour")
     models = known_colours()
     states = [NEAR, FAR, (290.0, 120.0, 9.0, 25.0)]
     figures = [
