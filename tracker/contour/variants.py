@@ -114,7 +114,7 @@ It names no threshold of the fitness; 18 grey, below the thesis's 22, since sect
 weight.
 """
 
-_PEOPLEBOY_COLOUR = ColourConfig(
+_CONTOUR_COLOUR = ColourConfig(
     representation="moments1", sharpness=0.035, frames=30, affine=FAR_AFFINE, parallax=ROBOT_PARALLAX
 )
 
@@ -192,7 +192,7 @@ CONTOUR = TrackerConfig(
     interaction=InteractionConfig(
         detector_penalty=1e-9, detector_overlap=0.3, penalty=8.0, occluded_penalty=0.0
     ),
-    colour=_PEOPLEBOY_COLOUR,
+    colour=_CONTOUR_COLOUR,
     appearance=AppearanceConfig(),
     depth=DepthConfig(order="appearance", remembers_feet=True, removes_front=True, growth=1.2),
     height=HeightConfig(overlapped_spread=0.1),
@@ -200,12 +200,12 @@ CONTOUR = TrackerConfig(
 )
 """What works best by contours."""
 
-PEOPLEBOY_LEARNED = replace(CONTOUR, depth=replace(CONTOUR.depth, order="learned"))
+CONTOUR_LEARNED = replace(CONTOUR, depth=replace(CONTOUR.depth, order="learned"))
 """The same with a learned order in depth."""
 
 VARIANTS: Final[Mapping[str, TrackerConfig]] = {
     "contour": CONTOUR,
-    "learned": PEOPLEBOY_LEARNED,
+    "learned": CONTOUR_LEARNED,
     "thesis": THESIS_OCCLUSION,
     "thermal": THESIS,
     "colour": THESIS_COLOUR,

@@ -31,7 +31,7 @@ from tests.helpers.runs import synthetic_ticks as made
 
 
 def sheet(frames: int = 75) -> ContactSheet:
-    made_sheet = ContactSheet("made, seed 7, tracker peopleboy")
+    made_sheet = ContactSheet("made, seed 7, tracker contour")
     for tick, events in made.make_run(frames):
         made_sheet.add(tick, events)
     return made_sheet

@@ -53,7 +53,7 @@ class Recording:
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory: pytest.TempPathFactory) -> Recording:
     path = tmp_path_factory.mktemp("run") / "recording.rrd"
-    with Recorder(path, made.config(), title="made, seed 7, tracker peopleboy") as recorder:
+    with Recorder(path, made.config(), title="made, seed 7, tracker contour") as recorder:
         for tick, events in made.make_run(FRAMES):
             recorder.log(tick, events)
     return Recording(path)
@@ -208,7 +208,7 @@ def test_events_are_in_the_log(recording: Recording) -> None:
 
 def test_the_recording_is_named_after_scenario_and_seed_and_brings_its_layout(recording: Recording) -> None:
     assert recording.entry.application_id == "peopleboy"
-    assert recording.entry.recording_id == "made-seed-7-tracker-peopleboy"
+    assert recording.entry.recording_id == "made-seed-7-tracker-contour"
     assert [blueprint.application_id for blueprint in recording.blueprints] == ["peopleboy"]
 
 
