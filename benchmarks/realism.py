@@ -18,15 +18,15 @@ from benchmarks import call
 from peopleboy.scenarios.files.load import LIBRARY, load_scenario, parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.schema.robot import ORACLE
-from peopleboy.scenarios.likeness.compare import compare_footage
-from peopleboy.scenarios.likeness.page import auc_words, write_comparison
-from peopleboy.scenarios.likeness.tell_apart import Told
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import make_eyes
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.run_folder.image_files import image_file, write_png
 from peopleboy.scenarios.run_folder.output import whole
 from peopleboy.scenarios.run_folder.truth_files import gt_lines
+from peopleboy.scenarios.sim_to_real.compare import compare_footage
+from peopleboy.scenarios.sim_to_real.page import auc_words, write_comparison
+from peopleboy.scenarios.sim_to_real.tell_apart import Told
 from peopleboy.sim.world import World
 
 OUT = Path("runs/realism")

@@ -58,7 +58,7 @@ WITHOUT_PHYSICS = (
     "scenarios.export",
     "scenarios.files",
     "scenarios.footage",
-    "scenarios.likeness",
+    "scenarios.sim_to_real",
     "scenarios.loop",
     "scenarios.random_worlds",
     "scenarios.recording",

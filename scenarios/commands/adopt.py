@@ -43,9 +43,9 @@ def adopt(
     RUN may be a folder of runs, such as a sweep's. TRACKS is one of files then, SCENARIO-SEED.txt for each
     of them, as benchmarks ask for; those files may lie in a folder data in it.
     """
-    from peopleboy.scenarios.adopting.adopt import Adoption
-    from peopleboy.scenarios.adopting.adopt import adopt as take
-    from peopleboy.scenarios.adopting.sequences import sequences
+    from peopleboy.scenarios.import_tracks.adopt import Adoption
+    from peopleboy.scenarios.import_tracks.adopt import adopt as take
+    from peopleboy.scenarios.import_tracks.sequences import sequences
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.scenarios.scores.run_scores import headline
     from peopleboy.scenarios.scores.show_scores import print_scores

@@ -39,9 +39,9 @@ def compare_footage(
     or in thermal/, 8-bit grey, and gt.txt of the MOTChallenge format, or VOT's or OTB's. Both sides need two
     scenes at least. Needs scikit-learn.
     """
-    from peopleboy.scenarios.likeness.compare import compare_footage as compare
-    from peopleboy.scenarios.likeness.page import HEADS, headline, table_rows, write_comparison
     from peopleboy.scenarios.report.page_file import check_place
+    from peopleboy.scenarios.sim_to_real.compare import compare_footage as compare
+    from peopleboy.scenarios.sim_to_real.page import HEADS, headline, table_rows, write_comparison
 
     check_place(out)
     found = compare(rendered, real, seed)

@@ -55,7 +55,7 @@ def watch(folder: Path, out: Path | None, no_heat: bool, no_rrd: bool) -> None:
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.scenarios.run_folder.finished_run import open_run
     from peopleboy.scenarios.run_folder.output import check_named, writing_to
-    from peopleboy.scenarios.watching.watch_run import FOLDER, WatchOptions, watch_run
+    from peopleboy.scenarios.scene_model_runs.watch_run import FOLDER, WatchOptions, watch_run
 
     run = open_run(folder)
     place = folder / FOLDER if out is None else out

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.watching.run_frames import IMAGES
-from peopleboy.scenarios.watching.true_events import TrueEvent, WhoIsWho, matching
+from peopleboy.scenarios.scene_model_runs.run_frames import IMAGES
+from peopleboy.scenarios.scene_model_runs.true_events import TrueEvent, WhoIsWho, matching
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.backgrounds import Backgrounds
 from peopleboy.sim.truth.events import ThingLog

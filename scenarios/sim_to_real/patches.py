@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.likeness.clips import ROWS, ClipFrame, Grey
+from peopleboy.scenarios.sim_to_real.clips import ROWS, ClipFrame, Grey
 
 SIDE: Final = 32
 """Rows and columns of a patch."""

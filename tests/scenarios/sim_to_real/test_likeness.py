@@ -8,16 +8,16 @@ import cv2
 import numpy as np
 import pytest
 
-from peopleboy.scenarios.likeness.clips import ClipFrame, find_clips
-from peopleboy.scenarios.likeness.measures import (
+from peopleboy.scenarios.sim_to_real.clips import ClipFrame, find_clips
+from peopleboy.scenarios.sim_to_real.measures import (
     background_deviation,
     contrasts_of,
     measure_looks,
     noise_of,
     radial_power,
 )
-from peopleboy.scenarios.likeness.patches import SIDE, of_background, of_people
-from peopleboy.scenarios.likeness.tell_apart import features, tell_apart
+from peopleboy.scenarios.sim_to_real.patches import SIDE, of_background, of_people
+from peopleboy.scenarios.sim_to_real.tell_apart import features, tell_apart
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names, refused
 

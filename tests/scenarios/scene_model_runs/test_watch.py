@@ -16,11 +16,11 @@ from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.cli import cli
 from peopleboy.scenarios.run_folder.finished_run import open_run
-from peopleboy.scenarios.watching.bodies import TOLD_S, Bodies
-from peopleboy.scenarios.watching.tell import sentence
-from peopleboy.scenarios.watching.thing_names import thing_names
-from peopleboy.scenarios.watching.true_events import TrueEvent, WhoIsWho, matching
-from peopleboy.scenarios.watching.watch_run import true_events
+from peopleboy.scenarios.scene_model_runs.bodies import TOLD_S, Bodies
+from peopleboy.scenarios.scene_model_runs.tell import sentence
+from peopleboy.scenarios.scene_model_runs.thing_names import thing_names
+from peopleboy.scenarios.scene_model_runs.true_events import TrueEvent, WhoIsWho, matching
+from peopleboy.scenarios.scene_model_runs.watch_run import true_events
 from peopleboy.tracker.scene_model.scene import Change, Happening
 
 SCENARIO = """

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.likeness.clips import Grey
-from peopleboy.scenarios.likeness.measures import gradient
-from peopleboy.scenarios.likeness.patches import SIDE
 from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
+from peopleboy.scenarios.sim_to_real.clips import Grey
+from peopleboy.scenarios.sim_to_real.measures import gradient
+from peopleboy.scenarios.sim_to_real.patches import SIDE
 
 Floats = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.likeness.clips import ClipFrame, Grey
-from peopleboy.scenarios.likeness.patches import background_corners, covered, shrunk
+from peopleboy.scenarios.sim_to_real.clips import ClipFrame, Grey
+from peopleboy.scenarios.sim_to_real.patches import background_corners, covered, shrunk
 
 Floats = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.adopting.adopt import Adoption, check_adoption
+from peopleboy.scenarios.import_tracks.adopt import Adoption, check_adoption
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_whole_runs, runs_in
 
 

@@ -10,10 +10,10 @@ from typing import Any, Final
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.likeness.clips import Clip, ClipFrame, Grey, find_clips
-from peopleboy.scenarios.likeness.measures import Looks, measure_looks
-from peopleboy.scenarios.likeness.patches import anywhere, of_background, of_people
-from peopleboy.scenarios.likeness.tell_apart import Told, tell_apart
+from peopleboy.scenarios.sim_to_real.clips import Clip, ClipFrame, Grey, find_clips
+from peopleboy.scenarios.sim_to_real.measures import Looks, measure_looks
+from peopleboy.scenarios.sim_to_real.patches import anywhere, of_background, of_people
+from peopleboy.scenarios.sim_to_real.tell_apart import Told, tell_apart
 
 PICTURES: Final = 40
 """Of each scene, spread evenly."""

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.scenarios.watching.true_events import NEAR_M, TrueEvent
+from peopleboy.scenarios.scene_model_runs.true_events import NEAR_M, TrueEvent
 from peopleboy.tracker.scene_model.scene import Happening
 
 

@@ -16,9 +16,9 @@ from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.recording.scene_layer import SceneRecording
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.output import whole
-from peopleboy.scenarios.watching.bodies import Bodies
-from peopleboy.scenarios.watching.run_frames import check_frames, run_frames
-from peopleboy.scenarios.watching.scene_files import (
+from peopleboy.scenarios.scene_model_runs.bodies import Bodies
+from peopleboy.scenarios.scene_model_runs.run_frames import check_frames, run_frames
+from peopleboy.scenarios.scene_model_runs.scene_files import (
     BACKGROUND,
     LINES,
     MAP,
@@ -27,9 +27,9 @@ from peopleboy.scenarios.watching.scene_files import (
     write_background,
     write_map,
 )
-from peopleboy.scenarios.watching.tell import sentence
-from peopleboy.scenarios.watching.thing_names import thing_names
-from peopleboy.scenarios.watching.true_events import KINDS, TrueEvent, WhoIsWho
+from peopleboy.scenarios.scene_model_runs.tell import sentence
+from peopleboy.scenarios.scene_model_runs.thing_names import thing_names
+from peopleboy.scenarios.scene_model_runs.true_events import KINDS, TrueEvent, WhoIsWho
 from peopleboy.tracker.frame import DEPTH
 from peopleboy.tracker.scene_model.scene import Change, Happening
 from peopleboy.tracker.scene_model.scene_config import PeopleMaskConfig, SceneConfig

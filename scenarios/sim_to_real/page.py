@@ -6,11 +6,11 @@ from pathlib import Path
 
 import jinja2
 
-from peopleboy.scenarios.likeness.charts import draw_charts, grid
-from peopleboy.scenarios.likeness.clips import ROWS
-from peopleboy.scenarios.likeness.compare import PICTURES, Comparison, Side, figures_of
-from peopleboy.scenarios.likeness.tell_apart import Told
 from peopleboy.scenarios.report.page_file import write_page
+from peopleboy.scenarios.sim_to_real.charts import draw_charts, grid
+from peopleboy.scenarios.sim_to_real.clips import ROWS
+from peopleboy.scenarios.sim_to_real.compare import PICTURES, Comparison, Side, figures_of
+from peopleboy.scenarios.sim_to_real.tell_apart import Told
 
 HERE = Path(__file__).parent
 _STYLE = HERE.parent / "report"
