@@ -11,11 +11,10 @@ import click
 
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import OwnCodeFailed
-from peopleboy.scenarios.commands.adopt import adopt
 from peopleboy.scenarios.commands.browse import list_command, schema, show
-from peopleboy.scenarios.commands.compare_footage import compare_footage
 from peopleboy.scenarios.commands.evaluate import evaluate
 from peopleboy.scenarios.commands.export import export
+from peopleboy.scenarios.commands.import_tracks import import_tracks
 from peopleboy.scenarios.commands.learn import (
     train_detector,
     train_foreground,
@@ -26,9 +25,10 @@ from peopleboy.scenarios.commands.many import compare, sweep
 from peopleboy.scenarios.commands.render import render
 from peopleboy.scenarios.commands.report import report
 from peopleboy.scenarios.commands.run import run
+from peopleboy.scenarios.commands.sim_to_real import sim_to_real
 from peopleboy.scenarios.commands.study import datasets, reproduce, train_distance, train_occlusion, tune
 from peopleboy.scenarios.commands.track import track
-from peopleboy.scenarios.commands.view import view, watch
+from peopleboy.scenarios.commands.view import scene_model, view
 from peopleboy.scenarios.running.engine.task import TasksFailed
 
 FAILED = 1
@@ -44,10 +44,10 @@ COMMANDS = (
     evaluate,
     compare,
     track,
-    adopt,
-    compare_footage,
+    import_tracks,
+    sim_to_real,
     view,
-    watch,
+    scene_model,
     report,
     export,
     datasets,

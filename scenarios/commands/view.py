@@ -1,4 +1,4 @@
-"""Commands that look into a run: `view` its recording, `watch` what happens to things."""
+"""Commands that look into a run: `view` its recording, `scene-model` what happens to things."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def view(folder: Path, web: bool, port: int | None) -> None:
         open_viewer(layers)
 
 
-@click.command()
+@click.command("scene-model")
 @click.argument("folder", metavar="RUN", type=click.Path(path_type=Path))
 @click.option(
     "--out",
@@ -45,7 +45,7 @@ def view(folder: Path, web: bool, port: int | None) -> None:
 )
 @click.option("--no-heat", is_flag=True, help="Tell people by their shape alone, not by the thermal image.")
 @click.option("--no-rrd", is_flag=True, help="Write no recording.")
-def watch(folder: Path, out: Path | None, no_heat: bool, no_rrd: bool) -> None:
+def scene_model(folder: Path, out: Path | None, no_heat: bool, no_rrd: bool) -> None:
     """Tell what was moved in a run, and by whom, as the depth camera of its robot sees it.
 
     The run needs images: run the scenario with --frames, and a camera `depth`. Leaves scene.jsonl, a line a

@@ -79,7 +79,7 @@ def tell_apart(
         from sklearn.pipeline import make_pipeline
         from sklearn.preprocessing import StandardScaler
     except ImportError as error:
-        raise BadInput("compare-footage needs scikit-learn: pip install scikit-learn") from error
+        raise BadInput("sim-to-real needs scikit-learn: pip install scikit-learn") from error
     sides = [[_table(scene) for scene in side if len(scene)] for side in (rendered, real)]
     for name, side in zip(("rendered", "real"), sides, strict=True):
         _check_enough(name, side, of_what)

@@ -32,7 +32,7 @@ def adopted(driven: Path) -> Path:
     rows = [line.split(",") for line in (driven / "tracks.txt").read_text(encoding="utf-8").splitlines()]
     lines = [",".join([f, "7", str(float(x) + 3.0), *rest]) for f, _, x, *rest in rows if int(f) <= 20]
     theirs.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    assert run_cli("adopt", driven, theirs, "--name", "mine") == 0
+    assert run_cli("import-tracks", driven, theirs, "--name", "mine") == 0
     return driven.parent / "tiny_following-0-mine"
 
 
@@ -113,7 +113,9 @@ def test_what_cannot_be_of_the_run_is_refused_in_a_line_and_leaves_nothing(
 ) -> None:
     (tmp_path / "theirs.txt").write_text(f"{line}\n", encoding="utf-8")
     out = tmp_path / "out"
-    told = refusal(capsys, "adopt", driven, tmp_path / "theirs.txt", "--name", "mine", "--out", out, *options)
+    told = refusal(
+        capsys, "import-tracks", driven, tmp_path / "theirs.txt", "--name", "mine", "--out", out, *options
+    )
     assert_names(told, *says)
     assert not out.exists()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["theirs.txt"]
@@ -122,6 +124,6 @@ def test_what_cannot_be_of_the_run_is_refused_in_a_line_and_leaves_nothing(
 def test_boxes_may_be_in_the_image_of_another_camera(driven: Path, tmp_path: Path) -> None:
     (tmp_path / "theirs.txt").write_text("1,1,9,9,9,9,1,-1,-1,-1\n", encoding="utf-8")
     options = ("--name", "mine", "--camera", "colour", "--no-rrd", "--out", tmp_path / "out")
-    assert run_cli("adopt", driven, tmp_path / "theirs.txt", *options) == 0
+    assert run_cli("import-tracks", driven, tmp_path / "theirs.txt", *options) == 0
     assert run_cli("evaluate", tmp_path / "out", "--camera", "colour") == 0
     assert not (tmp_path / "out" / "recording.rrd").exists()

@@ -40,7 +40,7 @@ def exported(runs: Path) -> Path:
 def test_results_in_the_layout_of_an_export_come_back_as_runs_with_the_same_tracks(
     runs: Path, exported: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run_cli("adopt", runs, exported, "--name", "mine", "--no-rrd") == 0
+    assert run_cli("import-tracks", runs, exported, "--name", "mine", "--no-rrd") == 0
     told = capsys.readouterr().out
     adopted = open_whole_runs([runs.parent / "runs-mine" / name for name in SEQUENCES])
     for run, name, source in zip(adopted, SEQUENCES, ("first", "second"), strict=True):
@@ -74,7 +74,7 @@ def test_a_folder_that_is_not_of_these_runs_is_refused_and_leaves_nothing(
     for name in names:
         (tmp_path / "theirs" / f"{name}.txt").write_text("1,1,9,9,9,9,1,-1,-1,-1\n", encoding="utf-8")
     out = tmp_path / "out"
-    told = refusal(capsys, "adopt", runs, tmp_path / "theirs", "--name", "mine", "--out", out)
+    told = refusal(capsys, "import-tracks", runs, tmp_path / "theirs", "--name", "mine", "--out", out)
     assert_names(told, *says)
     assert not out.exists()
 
@@ -85,6 +85,6 @@ def test_a_spoilt_file_among_good_ones_is_found_before_anything_is_written(
     for name, line in zip(SEQUENCES, ("1,1,9,9,9,9,1,-1,-1,-1", "1,1,9,9"), strict=True):
         (tmp_path / f"{name}.txt").write_text(f"{line}\n", encoding="utf-8")
     out = tmp_path / "out"
-    told = refusal(capsys, "adopt", runs, tmp_path, "--name", "mine", "--out", out)
+    told = refusal(capsys, "import-tracks", runs, tmp_path, "--name", "mine", "--out", out)
     assert_names(told, "tiny-1.txt:1", "got 4")
     assert not out.exists()

@@ -60,7 +60,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def watch(*arguments: str) -> str:
-    return CliRunner().invoke(cli, ["watch", *arguments], catch_exceptions=False).output
+    return CliRunner().invoke(cli, ["scene-model", *arguments], catch_exceptions=False).output
 
 
 @pytest.mark.slow

@@ -127,7 +127,7 @@ def test_a_page_that_needs_nothing_else_and_the_same_figures_as_json(
     for name, sigma in (("a", 0.7), ("b", 0.8)):
         write_clip(tmp_path / "rendered" / name, sigma)
     real = [write_clip(tmp_path / "real" / name, 2.0) for name in ("c", "d")]
-    order = ("compare-footage", tmp_path / "rendered", "--real", real[0], "--real", real[1])
+    order = ("sim-to-real", tmp_path / "rendered", "--real", real[0], "--real", real[1])
     page = tmp_path / "page.html"
     assert run_cli(*order, "--out", page, "--json") == 0
     figures = json.loads(capsys.readouterr().out)
@@ -183,9 +183,9 @@ def test_one_scene_is_too_few_and_a_folder_must_be_there(
 ) -> None:
     one, other = write_clip(tmp_path / "one"), write_clip(tmp_path / "other")
     out = ("--out", tmp_path / "page.html")
-    assert_names(refusal(capsys, "compare-footage", one, "--real", other, *out), "rendered", "at least 2")
-    assert_names(refusal(capsys, "compare-footage", tmp_path / "no", "--real", other, *out), "no such folder")
+    assert_names(refusal(capsys, "sim-to-real", one, "--real", other, *out), "rendered", "at least 2")
+    assert_names(refusal(capsys, "sim-to-real", tmp_path / "no", "--real", other, *out), "no such folder")
     (tmp_path / "mine.html").write_text("do not lose me")
-    told = refusal(capsys, "compare-footage", one, "--real", other, "--out", tmp_path / "mine.html")
+    told = refusal(capsys, "sim-to-real", one, "--real", other, "--out", tmp_path / "mine.html")
     assert_names(told, "mine.html", "not be replaced")
     assert not (tmp_path / "page.html").exists()

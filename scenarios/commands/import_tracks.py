@@ -1,4 +1,4 @@
-"""The command `adopt`: tracks made elsewhere, as a run."""
+"""The command `import-tracks`: tracks made elsewhere, as a run."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import click
 from peopleboy.scenarios.commands.options import boxes_option, tell_note
 
 
-@click.command()
+@click.command("import-tracks")
 @click.argument("run", metavar="RUN", type=click.Path(path_type=Path))
 @click.argument("tracks", metavar="TRACKS", type=click.Path(path_type=Path))
 @click.option("--name", required=True, help="What their tracker is called.")
@@ -22,7 +22,7 @@ from peopleboy.scenarios.commands.options import boxes_option, tell_note
 @boxes_option
 @click.option("--no-rrd", is_flag=True, help="Write no rerun recording.")
 @click.option("--overwrite", is_flag=True, help="Replace an earlier run in the folder.")
-def adopt(
+def import_tracks(
     run: Path,
     tracks: Path,
     name: str,

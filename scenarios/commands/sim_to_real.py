@@ -1,4 +1,4 @@
-"""The command `compare-footage`: rendered thermal pictures beside real ones."""
+"""The command `sim-to-real`: rendered thermal pictures beside real ones."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import click
 from peopleboy.scenarios.commands.options import WholeNumber
 
 
-@click.command("compare-footage")
+@click.command("sim-to-real")
 @click.argument("rendered", metavar="RENDERED...", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option(
     "--real",
@@ -30,9 +30,7 @@ from peopleboy.scenarios.commands.options import WholeNumber
 )
 @click.option("--json", "as_json", is_flag=True, help="Print all figures as JSON.")
 @click.option("--seed", type=WholeNumber(min=0), default=0, show_default=True, help="Of what is chosen.")
-def compare_footage(
-    rendered: Sequence[Path], real: Sequence[Path], out: Path, as_json: bool, seed: int
-) -> None:
+def sim_to_real(rendered: Sequence[Path], real: Sequence[Path], out: Path, as_json: bool, seed: int) -> None:
     """Set rendered thermal pictures beside real ones, and say how well a classifier tells them apart.
 
     RENDERED are folders of runs with pictures, or sets of them. A real clip is a folder with pictures in it
