@@ -11,11 +11,11 @@ import numpy as np
 from markupsafe import Markup
 from matplotlib.axes import Axes
 
+from peopleboy.scenarios.report.charts.svg import LINE, SERIES, inline, new_figure, svg_style
 from peopleboy.scenarios.sim_to_real.clips import Grey
 from peopleboy.scenarios.sim_to_real.compare import Comparison
 from peopleboy.scenarios.sim_to_real.measures import CONTRAST_EDGES, GRADIENT_EDGES, GREY_EDGES, Looks
 from peopleboy.scenarios.sim_to_real.patches import SIDE
-from peopleboy.scenarios.report.charts.svg import LINE, SERIES, inline, new_figure, svg_style
 
 _WIDTH_PT, _HEIGHT_PT = 300.0, 165.0
 _COLUMNS: Final = 6
