@@ -6,9 +6,9 @@ Values were chosen, and networks trained, on seeds from 100 on; these figures ar
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import islice
 from statistics import median
 from typing import Any, Final
@@ -21,6 +21,7 @@ from rich.table import Table
 
 from benchmarks import call
 from benchmarks.peers.detectors import Hog
+from benchmarks.timing import spent_ms, timed_ms
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import Tick, closed_loop, make_frame
@@ -196,9 +197,8 @@ class _Timed:
         if PANORAMA not in frame.images:
             return self._tracker.update(frame)
         frame.rgb(PANORAMA)  # drawn now, if it is drawn when it is asked for
-        start = time.process_time()
-        tracks = self._tracker.update(frame)
-        self.spent_ms.append(1000.0 * (time.process_time() - start))
+        update_ms, tracks = timed_ms(partial(self._tracker.update, frame))
+        self.spent_ms.append(update_ms)
         return tracks
 
 
@@ -334,9 +334,7 @@ def time_beside_hog(scenario: str, tracker: str, seed: int) -> tuple[float, floa
         timed.update(frame)
         if number % _HOG_EVERY == 0:
             drawn = replace(frame, images={name: frame.images[name] for name in (COLOUR, THERMAL)})
-            start = time.process_time()
-            hog.detect(drawn)
-            hog_ms.append(1000.0 * (time.process_time() - start))
+            hog_ms.append(spent_ms(partial(hog.detect, drawn)))
     return median(timed.spent_ms[1:]), median(hog_ms[1:])
 
 

@@ -14,11 +14,9 @@ from typing import Final
 
 import click
 import numpy as np
-from numpy.typing import NDArray
 
 from benchmarks import call
-from benchmarks.told_boxes import told_boxes
-from benchmarks.tracker_ablation import print_row
+from benchmarks.sequences import Recording, print_head, print_row, true_boxes, truth_rows
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
@@ -27,11 +25,9 @@ from peopleboy.sim.cameras.electronics.gain import encode_8bit
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.truth.truth import Truth
 from peopleboy.sim.world import World
-from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
-from peopleboy.tracker.evaluation.sequence import TrueBoxes
-from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.evaluation.evaluate import Scores, combine
+from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
 SCENES: Final = ("crossing_2", "single_stationary")
@@ -102,70 +98,38 @@ def _moved(config: CameraConfig, camera: Camera) -> CameraConfig:
     return replace(config, camera=moved)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Film:
-    """One run: what a tracker is given, and what was true."""
-
-    frames: tuple[Frame, ...]
-    truth: TrueBoxes
-
-
-def play(scene: str, camera: Camera, seed: int) -> Film:
+def play(scene: str, camera: Camera, seed: int) -> Recording:
     """Play a scene whose robot stands, with another camera."""
     scenario = load_scenario(scene)
     config = mounted(scenario.world(seed), camera)
     count = round(scenario.duration_s * config.control_hz)
-    frames, truths = [], []
+    frames, truth = [], []
     with World(config) as world:
         for tick in range(count):
             observation = world.observe()
             frame = make_frame(observation, calibrations_of(world.cameras), None)
             images = {name: observation.images[name] for name in frame.images if not name.endswith("_c")}
-            images[THERMAL] = _warmer(observation.images["thermal_c"], camera.offset_k(tick / count))
-            frames.append(replace(frame, images=images))
-            truths.append(world.truth())
+            warmer_c = observation.images["thermal_c"] + np.float32(camera.offset_k(tick / count))
+            frames.append(replace(frame, images=images | {THERMAL: encode_8bit(warmer_c)}))
+            truth += truth_rows(tick + 1, world.truth())
             world.step(0.0, 0.0)
-    return Film(tuple(frames), _boxes(truths))
+    return Recording(tuple(frames), true_boxes(truth))
 
 
-def _warmer(temperature_c: NDArray[np.float32], offset_k: float) -> NDArray[np.uint8]:
-    return encode_8bit(temperature_c + np.float32(offset_k))
-
-
-def _boxes(truths: list[Truth]) -> TrueBoxes:
-    rows = [
-        (number, person.id, person.box, person.is_counted, person.visible_fraction)
-        for number, truth in enumerate(truths, start=1)
-        for person in truth.people
-        if person.box is not None
-    ]
-    frame, identity, box, counted, visible = zip(*rows, strict=True)
-    return TrueBoxes(
-        frame=np.array(frame),
-        id=np.array(identity),
-        box=np.array(box).reshape(-1, 4),
-        counted=np.array(counted, dtype=bool),
-        visible=np.array(visible),
-    )
-
-
-def track(film: Film, tracker: str, seed: int, *, is_calibrated: bool) -> Scores:
-    """Score a tracker on a film."""
-    eyes = make_tracker(tracker, stream(seed, "tracker"))
-    given = film.frames if is_calibrated else [replace(frame, calibrations={}) for frame in film.frames]
-    found = told_boxes(eyes.update(frame) for frame in given)
-    return evaluate(film.truth, found, frames=len(film.frames))
+def track(recording: Recording, tracker: str, seed: int) -> Scores:
+    """Score a tracker on a recording."""
+    people = make_tracker(tracker, stream(seed, "tracker"))
+    return recording.score(people.update(frame) for frame in recording.frames)
 
 
 def rows(names: tuple[str, ...], seeds: int, tracker: str) -> Iterator[tuple[str, list[str]]]:
     """Yield CP, CR, IDF1 and HOTA [%] of each camera, with calibration and then without."""
     for name in names:
-        films = [(seed, play(scene, CAMERAS[name], seed)) for scene in SCENES for seed in range(seeds)]
+        played = [(seed, play(scene, CAMERAS[name], seed)) for scene in SCENES for seed in range(seeds)]
+        calibrated = combine([track(one, tracker, seed) for seed, one in played])
+        uncalibrated = combine([track(one.uncalibrated(), tracker, seed) for seed, one in played])
         cells = []
-        for is_calibrated in (True, False):
-            scores = combine(
-                [track(film, tracker, seed, is_calibrated=is_calibrated) for seed, film in films]
-            )
+        for scores in (calibrated, uncalibrated):
             figures = (scores.thesis.cp, scores.thesis.cr, scores.mot.identity.idf1, scores.mot.hota.hota)
             cells += ["-" if math.isnan(figure) else f"{figure:.1f}" for figure in figures]
         yield name, cells
@@ -177,10 +141,9 @@ def rows(names: tuple[str, ...], seeds: int, tracker: str) -> Iterator[tuple[str
 @click.argument("cameras", nargs=-1, type=click.Choice(tuple(CAMERAS)))
 def main(seeds: int, tracker: str, cameras: tuple[str, ...]) -> None:
     """Print how a tracker does with these cameras, or with all, as a Markdown table [%]."""
-    make_tracker(tracker, stream(0, "tracker"))  # refused now rather than after films are made
+    make_tracker(tracker, stream(0, "tracker"))  # refused now rather than after scenes are played
     figures = ("CP", "CR", "IDF1", "HOTA")
-    print_row("camera", (*(f"{one}, calibrated" for one in figures), *(f"{one}, not" for one in figures)))
-    print_row("---", ["---:"] * 8)
+    print_head("camera", [f"{one}, {kind}" for kind in ("calibrated", "not") for one in figures])
     for name, cells in rows(cameras or tuple(CAMERAS), seeds, tracker):
         print_row(name, cells)
 

@@ -7,27 +7,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 import click
 import numpy as np
 
 from benchmarks import call
-from benchmarks.told_boxes import told_boxes
-from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.loop import closed_loop, make_frame
-from peopleboy.sim.random_streams import stream
-from peopleboy.sim.world import World
+from benchmarks.sequences import Recording, print_head, print_row, record
 from peopleboy.tracker.contour.contour_config import TrackerConfig
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
-from peopleboy.tracker.contour.variants import CONTOUR, PAPER, THESIS, THESIS_OCCLUSION
-from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
-from peopleboy.tracker.evaluation.sequence import TrueBoxes
-from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
+from peopleboy.tracker.contour.variants import PAPER, THESIS, THESIS_OCCLUSION
+from peopleboy.tracker.evaluation.evaluate import Scores, combine
+from peopleboy.tracker.track import Track
 
 ONE = ("single_stationary", "single_follow")
 SEVERAL = ("crossing_3", "hidden_1s", "hidden_2s", "pass_behind_pillar", "three_depths", "turn_while_hidden")
@@ -107,14 +99,6 @@ COLUMNS = (
 )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Recorded:
-    """One run: what the tracker saw, and what was true."""
-
-    frames: tuple[Frame, ...]
-    truth: TrueBoxes
-
-
 def differing(one: Any, other: Any, path: str = "") -> Iterator[str]:
     """Name the settings, such as "contour.points", in which two configurations differ.
 
@@ -138,10 +122,9 @@ def _of_kind(record: Any, model: Any) -> Any:
 
 def step_of(setting: str) -> str:
     """Name the step that a setting belongs to: the one with the longest matching beginning."""
-    matching = [
+    return max(
         (len(start), step) for step, starts in STEPS.items() for start in starts if setting.startswith(start)
-    ]
-    return max(matching)[1]
+    )[1]
 
 
 def adopt(base: Any, source: Any, names: Sequence[str]) -> Any:
@@ -172,46 +155,7 @@ def variants() -> Iterator[tuple[str, TrackerConfig]]:
         yield f"without: {step}", adopt(CONTOUR, THESIS, names)
 
 
-def record(scenario: str, seed: int) -> Recorded:
-    """Run a scenario of this name in the closed loop and keep what its tracker saw."""
-    return recorded(load_scenario(scenario), seed)
-
-
-def recorded(loaded: Scenario, seed: int) -> Recorded:
-    """Run a scenario in the closed loop and keep what its tracker saw."""
-    config = loaded.world(seed)
-    frames, rows, before = [], [], None
-    with World(config) as world:
-        count = round(loaded.duration_s * config.control_hz)
-        tracker = make_tracker(CONTOUR_TRACKER, stream(seed, "tracker"))
-        for tick in closed_loop(world, tracker, loaded.make_behaviour(), count):
-            frames.append(make_frame(tick.observation, calibrations_of(world.cameras), before))
-            before = tick.observation.odometry
-            rows += [
-                (tick.frame, person.id, person.box, person.is_counted, person.visible_fraction)
-                for person in tick.truth.people
-                if person.box is not None
-            ]
-    columns = zip(*rows, strict=True) if rows else ((),) * 5
-    frame, identity, box, counted, visible = (list(column) for column in columns)
-    truth = TrueBoxes(
-        frame=np.array(frame),
-        id=np.array(identity),
-        box=np.array(box).reshape(-1, 4),
-        counted=np.array(counted, dtype=bool),
-        visible=np.array(visible),
-    )
-    return Recorded(tuple(frames), truth)
-
-
-def replay(run: Recorded, config: TrackerConfig, seed: int) -> Scores:
-    """Score a tracker on a recorded run."""
-    tracker = ContourTracker(config, np.random.default_rng(seed))
-    tracks = told_boxes(tracker.update(frame) for frame in run.frames)
-    return evaluate(run.truth, tracks, frames=len(run.frames))
-
-
-def score(runs: dict[str, list[Recorded]], config: TrackerConfig) -> list[str]:
+def score(runs: dict[str, list[Recording]], config: TrackerConfig) -> list[str]:
     """Give one row of figures, as `COLUMNS` names them; false alarms are per 100 frames."""
     one, several, nobody = (scores_of(runs, names, config) for names in (ONE, SEVERAL, (EMPTY,)))
     percents = [getattr(scores.thesis, name) for scores in (one, several) for name in ("cp", "cr", "aa")]
@@ -221,9 +165,15 @@ def score(runs: dict[str, list[Recorded]], config: TrackerConfig) -> list[str]:
     return [*cells, f"{several.mot.clear.switches}", f"{false:.1f}"]
 
 
-def scores_of(runs: dict[str, list[Recorded]], names: Sequence[str], config: TrackerConfig) -> Scores:
+def scores_of(runs: dict[str, list[Recording]], names: Sequence[str], config: TrackerConfig) -> Scores:
     """Score a tracker on all runs of some scenarios together."""
-    return combine([replay(run, config, seed) for name in names for seed, run in enumerate(runs[name])])
+    numbered = [(seed, run) for name in names for seed, run in enumerate(runs[name])]
+    return combine([run.score(_tracked(run, config, seed)) for seed, run in numbered])
+
+
+def _tracked(run: Recording, config: TrackerConfig, seed: int) -> Iterator[tuple[Track, ...]]:
+    tracker = ContourTracker(config, np.random.default_rng(seed))
+    return (tracker.update(frame) for frame in run.frames)
 
 
 @click.command()
@@ -231,15 +181,9 @@ def scores_of(runs: dict[str, list[Recorded]], names: Sequence[str], config: Tra
 def main(seeds: int) -> None:
     """Print what each step from the literal tracker to the best by contours gives, in Markdown [%]."""
     runs = {name: [record(name, seed) for seed in range(seeds)] for name in (*ONE, *SEVERAL, EMPTY)}
-    print_row("", COLUMNS)
-    print_row("---", ["---:"] * len(COLUMNS))
+    print_head("", COLUMNS)
     for name, config in variants():
         print_row(name, score(runs, config))
-
-
-def print_row(name: str, cells: Sequence[str]) -> None:
-    """Print one line of the table, so that each is there as soon as it is known."""
-    click.echo(f"| {' | '.join((name, *cells))} |")
 
 
 if __name__ == "__main__":

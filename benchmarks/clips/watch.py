@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
+from functools import partial
 from itertools import islice
 from pathlib import Path
 from typing import Final
@@ -12,6 +12,8 @@ import numpy as np
 
 from benchmarks.clips.clip import Clip
 from benchmarks.peers.ours import Contestant, Ours
+from benchmarks.sequences import track_boxes
+from benchmarks.timing import timed_ms
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.thermal_views import ThermalViews
@@ -19,7 +21,6 @@ from peopleboy.scenarios.footage.views import open_views
 from peopleboy.scenarios.running.engine.task import Tell
 from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
-from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, is_own
 
 PEERS: Final = {"HOG x 2 + ByteTrack": 2.0, "HOG x 3 + ByteTrack": 3.0}
@@ -77,14 +78,13 @@ class WatchTask:
             TrackOptions(footage=self.clip.folder, out=Path(), tracker=name, rate_hz=self.rate_hz)
         )
         rows: list[tuple[int, int, Floats]] = []
-        times = []
+        times_ms = []
         for number, frame in enumerate(islice(views, self.clip.frames), start=1):
-            began = time.process_time()
-            boxes, ids = watcher.step(frame)
-            times.append(time.process_time() - began)
+            frame_ms, (boxes, ids) = timed_ms(partial(watcher.step, frame))
+            times_ms.append(frame_ms)
             rows += [(number, identity, box) for box, identity in zip(boxes, ids, strict=True)]
             tell(number)
-        return Watched(_scored(self.clip, rows), float(np.median(times)))
+        return Watched(_scored(self.clip, rows), float(np.median(times_ms)) / 1000.0)
 
 
 def make_watcher(name: str, seed: int) -> Contestant:
@@ -104,17 +104,12 @@ def make_watcher(name: str, seed: int) -> Contestant:
 
 def _peer(name: str) -> Contestant:
     try:
-        from benchmarks.clips.peer import make_peer
+        from benchmarks.peers.contestants import make_clip_peer
     except ImportError as error:
         raise BadInput(f"{name}: the package trackers is missing; `make peers` installs it") from error
-    return make_peer(PEERS[name])
+    return make_clip_peer(PEERS[name])
 
 
 def _scored(clip: Clip, rows: list[tuple[int, int, Floats]]) -> Scores:
-    tracks = TrackBoxes(
-        frame=np.array([frame for frame, _, _ in rows], dtype=np.int64),
-        id=np.array([identity for _, identity, _ in rows], dtype=np.int64),
-        box=np.array([box for _, _, box in rows], dtype=np.float64).reshape(-1, 4),
-        confidence=np.ones(len(rows)),
-    )
+    tracks = track_boxes((frame, identity, box, 1.0) for frame, identity, box in rows)
     return evaluate(clip.given.truth, tracks, frames=clip.frames, is_single=clip.given.is_single)

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-import time
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
 
@@ -14,6 +13,8 @@ import numpy as np
 
 import benchmarks.peers
 from benchmarks.peers.contestants import JOINT, PEERS, RATE_HZ, make_contestant
+from benchmarks.sequences import Row, track_boxes
+from benchmarks.timing import timed_ms
 from peopleboy import tracker
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.engine.task import Tell
@@ -95,31 +96,23 @@ def occlusions_of(shot: Film, truth: TrueBoxes, tracks: TrackBoxes) -> list[Occl
 
 def _run(name: str, shot: Film, said: Path) -> None:
     contestant = make_contestant(name, shot.seed, shot.truth())
-    rows: list[tuple[int, int, tuple[float, ...]]] = []
-    times = []
+    rows: list[Row] = []
+    times_ms = []
     for number, frame in enumerate(frames_of(shot), 1):
-        start = time.process_time()
-        boxes, ids = contestant.step(frame)
-        times.append(time.process_time() - start)
-        rows += [(number, identity, tuple(box)) for box, identity in zip(boxes, ids, strict=True)]
+        frame_ms, (boxes, ids) = timed_ms(partial(contestant.step, frame))
+        times_ms.append(frame_ms)
+        rows += [(number, identity, box, 1.0) for box, identity in zip(boxes, ids, strict=True)]
     said.parent.mkdir(parents=True, exist_ok=True)
-    write_tracks(said.with_suffix(".txt"), _tracks(rows))
-    about = {"ms": 1000.0 * _usual(times)}
+    write_tracks(said.with_suffix(".txt"), track_boxes(rows))
+    about = {"ms": _usual(times_ms)}
     said.with_suffix(".json").write_text(json.dumps(about) + "\n", encoding="utf-8")
 
 
-def _usual(times: list[float]) -> float:
+def _usual(times_ms: list[float]) -> float:
     """Take the mean of each second, and the median of all of them."""
     each = round(RATE_HZ)
-    return float(np.median([np.mean(times[begin : begin + each]) for begin in range(0, len(times), each)]))
-
-
-def _tracks(rows: list[tuple[int, int, tuple[float, ...]]]) -> TrackBoxes:
-    return TrackBoxes(
-        frame=np.array([frame for frame, _, _ in rows], dtype=np.int64),
-        id=np.array([identity for _, identity, _ in rows], dtype=np.int64),
-        box=np.array([box for _, _, box in rows], dtype=np.float64).reshape(-1, 4),
-        confidence=np.ones(len(rows)),
+    return float(
+        np.median([np.mean(times_ms[begin : begin + each]) for begin in range(0, len(times_ms), each)])
     )
 
 

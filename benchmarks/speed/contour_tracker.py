@@ -1,15 +1,17 @@
-"""The contour tracker, whole: a frame with nobody to four people, and the parts of it by their cost."""
+"""The contour tracker by its parts and by people, and the trackers beside OpenCV's HOG detector, by turns."""
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from statistics import mean, median
 
+import cv2
 import numpy as np
 
+from benchmarks.peers.detectors import Hog
+from benchmarks.timing import Turns, median_ms, spent_ms, timed_ms
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
@@ -20,16 +22,22 @@ from peopleboy.tracker.contour.box_interaction import overlap_shares, person_fac
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
 from peopleboy.tracker.contour.explanation import DETECTOR_KEY
 from peopleboy.tracker.contour.measurement.likelihood import ContourModel, covered_by, seen_shares
-from peopleboy.tracker.contour.particle_filter import FrameView, view_frame, weigh
+from peopleboy.tracker.contour.particle_filter import FrameView, begin, step, view_frame, weigh
 from peopleboy.tracker.contour.particles import mean_state, predict, resample
 from peopleboy.tracker.contour.variants import CONTOUR
-from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
 from peopleboy.tracker.track import Status
-from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
+from peopleboy.tracker.trackers import CONTOUR_TRACKER, DEFAULT_TRACKER, make_tracker
 
 SCENARIO = "crossing_4"  # they hide each other, partly and wholly
 MOST = 4
 STEP_S = 1 / 15
+SHAPE = (240, 320)
+SAMPLES = 1000
+HOG, FILTER_STEP = "HOG", "filter step"
+_TURN_FRAMES = 10  # of a tracker's turn: one after the other, as in a run
+_TURN_STEPS = 100  # likewise of the filter; then HOG, once
+_WARM_UP_STEPS = 10
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,19 +77,35 @@ class ContourTimes:
         return float(np.polyfit([c.people for c in self.crowds], [c.frame_ms for c in self.crowds], 1)[0])
 
 
+class FilterStep:
+    """Follows a drawn person at 320x240 by so many samples; each call predicts, weighs, estimates, resamples.
+
+    What is prepared once a frame for all filters is not in it.
+    """
+
+    def __init__(self, count: int) -> None:
+        self._config = replace(CONTOUR, person=replace(CONTOUR.person, count=count))
+        self._rng = np.random.default_rng(0)
+        frame = Frame(images={THERMAL: _drawn_person()}, time_s=0.0, odometry=Odometry(turn_rad=0.01))
+        model = ContourModel.build(SHAPE, self._config.contour)
+        self._view = view_frame(frame, STEP_S, model, self._config)
+        self._belief = begin(self._view, self._config.detector, self._config, self._rng)
+        self()  # which may compile
+
+    def __call__(self) -> None:
+        """Follow the person for one more frame."""
+        self._belief = step(self._belief.core, self._view, self._config.person, self._config, self._rng)
+
+
+def step_time_ms(count: int, steps: int = 300) -> float:
+    """Return the median CPU time [ms] of one step with this many samples."""
+    follow = FilterStep(count)
+    return median([spent_ms(follow) for _ in range(steps)][_WARM_UP_STEPS:])
+
+
 def films() -> tuple[Sequence[Frame], ...]:
-    """Shoot crowds of nobody to four people."""
+    """Record crowds of nobody to four people."""
     return tuple(list(shoot(SCENARIO, people)) for people in range(MOST + 1))
-
-
-def contour_times(crowds: Sequence[Sequence[Frame]]) -> ContourTimes:
-    """Track crowds of nobody to four people, and time it."""
-    film = crowds[-1]
-    return ContourTimes(
-        crowds=tuple(_crowd_time(film, people) for people, film in enumerate(crowds)),
-        prepare_ms=_milliseconds([partial(_view_of, frame) for frame in film]),
-        parts_ms=_parts_ms(film),
-    )
 
 
 def shoot(scenario: str, people: int | None = None, seed: int = 0) -> Iterator[Frame]:
@@ -98,21 +122,29 @@ def shoot(scenario: str, people: int | None = None, seed: int = 0) -> Iterator[F
             world.step(0.0, 0.0)
 
 
+def contour_times(crowds: Sequence[Sequence[Frame]]) -> ContourTimes:
+    """Track crowds of nobody to four people, and time it."""
+    film = crowds[-1]
+    return ContourTimes(
+        crowds=tuple(_crowd_time(film, people) for people, film in enumerate(crowds)),
+        prepare_ms=median_ms([partial(_view_of, frame) for frame in film]),
+        parts_ms=_parts_ms(film),
+    )
+
+
 def _crowd_time(film: Sequence[Frame], people: int) -> CrowdTime:
     tracker = make_tracker(CONTOUR_TRACKER, stream(0, "tracker"))
     times, tracked = [], []
     for frame in film:
-        start = time.process_time()
-        tracks = tracker.update(frame)
-        spent = time.process_time() - start
+        frame_ms, tracks = timed_ms(partial(tracker.update, frame))
         if len(people_in(tracker)) == people:
-            times.append(1000.0 * spent)
+            times.append(frame_ms)
             tracked.append(sum(track.status is not Status.TENTATIVE for track in tracks))
     return CrowdTime(people=people, frame_ms=median(times), frames=len(times), tracked=mean(tracked))
 
 
 def people_in(tracker: ContourTracker) -> list[int]:
-    """Give the numbers of those who have a filter."""
+    """Give the ids of the people who have a filter."""
     return [key for key in tracker.explanation.particles if key != DETECTOR_KEY]
 
 
@@ -123,7 +155,7 @@ def _parts_ms(film: Sequence[Frame]) -> dict[str, float]:
         tracker.update(frame)
     view = _view_of(film[len(film) // 2])
     each = [_person_works(tracker, number, view) for number in people_in(tracker)]
-    parts = {name: _milliseconds([works[name] for works in each] * 50) for name in each[0]}
+    parts = {name: median_ms([works[name] for works in each] * 50) for name in each[0]}
     # Weighing measures first.
     parts["weights, estimate"] -= parts["measure contour"]
     return parts
@@ -167,12 +199,42 @@ def _person_works(tracker: ContourTracker, number: int, view: FrameView) -> dict
     }
 
 
-def _milliseconds(works: Sequence[Callable[[], object]]) -> float:
-    """Give the median CPU time of some work [ms], after once to warm up."""
-    works[0]()
-    times = []
-    for work in works:
-        start = time.process_time()
-        work()
-        times.append(1000.0 * (time.process_time() - start))
-    return median(times)
+def beside_hog(film: Sequence[Frame]) -> Turns:
+    """Let the trackers follow four people in turns with a filter and HOG, which has one thread [ms].
+
+    Contour tracker and filter are medians of a turn's frames; the default tracker is their mean, as some of
+    its frames take longer than others.
+    """
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        return _turns(film)
+    finally:
+        cv2.setNumThreads(threads)
+
+
+def _turns(film: Sequence[Frame]) -> Turns:
+    trackers = {name: make_tracker(name, stream(0, "tracker")) for name in (CONTOUR_TRACKER, DEFAULT_TRACKER)}
+    hog, follow, turns = Hog(uses_colour=True), FilterStep(SAMPLES), Turns()
+    hog.detect(film[0])
+    for first in range(0, len(film), _TURN_FRAMES):
+        frames = Turns()
+        for frame in film[first : first + _TURN_FRAMES]:
+            spent = {name: spent_ms(partial(one.update, frame)) for name, one in trackers.items()}
+            if len(people_in(trackers[CONTOUR_TRACKER])) == MOST:
+                frames.add(spent)
+        step_ms = median(spent_ms(follow) for _ in range(_TURN_STEPS))
+        hog_ms = spent_ms(partial(hog.detect, film[first]))
+        if frames.values:
+            contour_ms, default_ms = frames.median(CONTOUR_TRACKER), mean(frames.values[DEFAULT_TRACKER])
+            turns.add(
+                {CONTOUR_TRACKER: contour_ms, DEFAULT_TRACKER: default_ms, FILTER_STEP: step_ms, HOG: hog_ms}
+            )
+    return turns
+
+
+def _drawn_person() -> np.ndarray:
+    v, u = np.mgrid[: SHAPE[0], : SHAPE[1]]
+    body = ((u - 160) / 18) ** 2 + ((v - 130) / 42) ** 2 < 1
+    head = ((u - 160) / 7) ** 2 + ((v - 78) / 10) ** 2 < 1
+    return np.where(head, 210, np.where(body, 120, 10)).astype(np.uint8)

@@ -12,20 +12,22 @@ Source: Panerati et al., Learning to Fly, a Gym Environment with PyBullet Physic
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
+from contextlib import closing
 from dataclasses import dataclass
-from statistics import median
+from itertools import product
 from typing import Any, Final, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.environments import ACTION, MANY, QUICK_HZ, RUN_HZ, SCENARIO, WARM_UP
-from benchmarks.speed.drone_mesh import drone_mesh
+from benchmarks.speed.environments import ACTION, MANY, QUICK_HZ, RUN_HZ, SCENARIO, WARM_UP, steps_per_s
+from benchmarks.timing import Turns
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.vector_environment import PeopleBoyVectorEnv
 from peopleboy.sim.physics.bullet import Bullet
+
+Corners = NDArray[np.float64]  # (V, 3) [m], drone frame
+Triangles = NDArray[np.int64]  # (T, 3) numbers of corners
 
 SIZE: Final = (64, 48)
 CONTROL_HZ: Final = 48
@@ -47,8 +49,64 @@ CASES: Final = (
     ("kinematic", QUICK_HZ, MANY),
 )
 _ROUNDS: Final = 3
+_DRONE, _WATCHER = "every second image", "every image"
 _LINK_FRAME, _BASE = 1, -1  # as PyBullet numbers them
 _CYLINDER, _MESH = 4, 5
+
+
+@dataclass(frozen=True, slots=True)
+class Prism:
+    """An upright prism, of 4 triangles a side but for 4.
+
+    Attributes:
+        sides: at least 3.
+        radius_m, height_m: its size [m].
+        centre_m: [m] drone frame.
+    """
+
+    sides: int
+    radius_m: float
+    height_m: float
+    centre_m: tuple[float, float, float]
+
+
+_ARMS_M: Final = tuple(product((0.0326, -0.0326), repeat=2))
+# The parts of cf2.dae, as it is drawn: 9434 triangles, of which prisms have 9424.
+PARTS: Final = (
+    *(Prism(199, 0.023, 0.001, (x, y, 0.012)) for x, y in _ARMS_M),  # propellers
+    *(Prism(38, 0.0035, 0.015, (x, y, 0.0)) for x, y in _ARMS_M),  # motors
+    *(Prism(83, 0.005, 0.008, (x, y, 0.0)) for x, y in _ARMS_M),  # their mounts
+    *(Prism(10, 0.003, 0.003, (0.8 * x, 0.8 * y, 0.0)) for x, y in _ARMS_M),  # arms
+    Prism(301, 0.014, 0.002, (0.0, 0.0, 0.0)),  # circuit board
+    Prism(14, 0.012, 0.002, (0.0, 0.0, -0.003)),
+    Prism(4, 0.012, 0.004, (0.0, 0.0, 0.004)),
+    *(Prism(4, 0.01, 0.002, (0.0, y, 0.003)) for y in (-0.01, 0.01)),  # headers
+    *(Prism(38 - pin % 2, 0.0005, 0.01, (0.001 * (pin - 10), 0.01, 0.003)) for pin in range(20)),
+)
+
+
+def drone_mesh() -> tuple[Corners, Triangles]:
+    """Put all parts together."""
+    corners, triangles, start = [], [], 0
+    for prism in PARTS:
+        ends, faces = _mesh_of(prism)
+        corners.append(ends)
+        triangles.append(faces + start)
+        start += len(ends)
+    return np.concatenate(corners), np.concatenate(triangles)
+
+
+def _mesh_of(prism: Prism) -> tuple[Corners, Triangles]:
+    sides = prism.sides
+    turn = 2.0 * np.pi * np.arange(sides) / sides
+    ring = prism.radius_m * np.stack([np.cos(turn), np.sin(turn), 0.0 * turn], axis=1)
+    up = np.array([0.0, 0.0, prism.height_m / 2.0])
+    corners = np.concatenate([ring - up, ring + up]) + prism.centre_m
+    one, fan = np.arange(sides), np.arange(1, sides - 1)
+    other, hub = (one + 1) % sides, np.zeros_like(fan)
+    faces = [(one, other, other + sides), (one, other + sides, one + sides), (hub, fan + 1, fan)]
+    faces.append((hub + sides, fan + sides, fan + 1 + sides))
+    return corners, np.concatenate([np.stack(face, axis=1) for face in faces])
 
 
 class DroneWorld:
@@ -115,21 +173,15 @@ class DroneRates:
 
 def drone_rates() -> DroneRates:
     """Measure all in turn, some times, and give the medians."""
-    drones, watchers = [], []
-    ours: dict[tuple[str, int, int], list[float]] = {case: [] for case in CASES}
+    turns = Turns()
     for _ in range(_ROUNDS):
-        drones.append(drone_rate(COMMANDS_AN_IMAGE))
-        watchers.append(drone_rate(1))
-        for case, rates in ours.items():
-            rates.append(pixels_rate(*case))
+        turn = {_DRONE: drone_rate(COMMANDS_AN_IMAGE), _WATCHER: drone_rate(1)}
+        turns.add(turn | {str(case): pixels_rate(*case) for case in CASES})
     return DroneRates(
-        drone_s=median(drones),
-        drone_images_s=median(watchers),
-        ours_s={case: median(rates) for case, rates in ours.items()},
-        ratios={
-            case: median(our / drone for our, drone in zip(rates, drones, strict=True))
-            for case, rates in ours.items()
-        },
+        drone_s=turns.median(_DRONE),
+        drone_images_s=turns.median(_WATCHER),
+        ours_s={case: turns.median(str(case)) for case in CASES},
+        ratios={case: turns.ratio(str(case), _DRONE) for case in CASES},
     )
 
 
@@ -142,12 +194,12 @@ def drone_rate(commands_an_image: int, steps: int = 120) -> float:
             if number % commands_an_image == 0:
                 world.see()
 
-        return _rate(step, steps)
+        return steps_per_s(step, steps, warm_up=WARM_UP)
 
 
 def pixels_rate(physics: str, physics_hz: int, worlds: int, rounds: int = 200) -> float:
     """Return the same of environments that give images of one camera, as small."""
-    told: dict[str, Any] = {
+    options: dict[str, Any] = {
         "scenario": SCENARIO,
         "observation": "pixels",
         "image_size": SIZE,
@@ -155,21 +207,11 @@ def pixels_rate(physics: str, physics_hz: int, worlds: int, rounds: int = 200) -
         "physics": physics,
         "physics_hz": physics_hz,
     }
-    env = PeopleBoyEnv(**told) if worlds == 1 else PeopleBoyVectorEnv(worlds, **told)
+    env = PeopleBoyEnv(**options) if worlds == 1 else PeopleBoyVectorEnv(worlds, **options)
     action = np.tile(np.array(ACTION, np.float32), (worlds, 1) if worlds > 1 else 1)
-    env.reset(seed=0)
-    rate = _rate(lambda _number: env.step(action), rounds)
-    env.close()
-    return worlds * rate
-
-
-def _rate(step: Callable[[int], object], steps: int) -> float:
-    for number in range(WARM_UP):
-        step(number)
-    start = time.process_time()
-    for number in range(steps):
-        step(number)
-    return steps / (time.process_time() - start)
+    with closing(env):
+        env.reset(seed=0)
+        return worlds * steps_per_s(lambda _: env.step(action), rounds, warm_up=WARM_UP)
 
 
 def main() -> None:

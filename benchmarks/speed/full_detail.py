@@ -1,56 +1,56 @@
 """What full detail costs: both camera images with full truth of a scenario, beside the same in plain detail.
 
 `python -m benchmarks.speed.full_detail` prints a row for each scenario of the library in full detail, the one
-that it costs most first; names of scenarios behind it choose others.
+that it costs most first; names of scenarios behind it choose others. `--renderers` compares the ray caster,
+plain and in full detail, with TinyRenderer in a corridor of four people instead.
 """
 
 from __future__ import annotations
 
-import time
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import click
-import numpy as np
 from rich.console import Console
 from rich.table import Table
 
 from benchmarks import call
+from benchmarks.timing import Turns, spent_ms
 from peopleboy.behaviours.command import Command
 from peopleboy.scenarios.files.load import LIBRARY, library, load_scenario, parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.schema.robot import ORACLE
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import make_eyes
+from peopleboy.sim.cameras.electronics.thermal_presets import THERMAL_PRESETS
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
+from peopleboy.sim.places.rooms import build_place, straight_corridor
+from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
 
 GOAL = 1.5
 """How many times as long full detail may take."""
 
+PLAIN, FULL = "plain", "full"
+RAYCAST, BULLET = "raycast", "bullet"
+TRUTH = ", truth"  # one view and its truth alone, of a renderer
 PRESET = "uncooled"  # electronics of the thermal camera where detail is full, unless the file has others
 SEED = 0
-_COMPILED = 2  # instants after which all kernels are compiled
+COMPILED = 2  # instants after which all kernels are compiled
+
+# (x, y) [m] of the people in front of the robot, who walk on at the same pace.
+STARTS_M = ((3.0, 0.4), (4.2, -0.5), (5.5, 0.5), (7.5, -0.2))
+_SHINE = 0.5  # of the floor, where detail is full
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DetailTimes:
-    """Medians over the instants of a run: thermal image, colour image and full truth.
+def detail_times(name: str, instants: int | None = None) -> Turns:
+    """Play a scenario of the library in both details, instant by instant in turn, and time each [ms].
 
-    Attributes:
-        plain_ms: [ms] with `detail: plain` and a fixed gain.
-        full_ms: [ms] with `detail: full` and an uncooled camera's electronics.
-        ratio: how many times as long full detail takes at the same instant, which a machine that is now busy
-            and now idle disturbs less.
-    """
-
-    plain_ms: float
-    full_ms: float
-    ratio: float
-
-
-def detail_times(name: str, instants: int | None = None) -> DetailTimes:
-    """Play a scenario of the library in both details, instant by instant in turn, and time each.
+    Timed are thermal image, colour image and full truth, `plain` with a fixed gain, and `full` with an
+    uncooled camera's electronics.
 
     Args:
         name: of the scenario.
@@ -59,52 +59,111 @@ def detail_times(name: str, instants: int | None = None) -> DetailTimes:
     Raises:
         BadInput: there is no such scenario.
     """
-    plain, full = in_detail(name, "plain"), in_detail(name, "full")
-    commands = _drive(full, instants)
-    times: tuple[list[float], list[float]] = ([], [])
+    plain, full = in_detail(name, PLAIN), in_detail(name, FULL)
+    commands = _commands(full, instants)
     with World(plain.world(SEED)) as plain_world, World(full.world(SEED)) as full_world:
-        for command in commands:
-            for world, spent in zip((plain_world, full_world), times, strict=True):
-                start = time.process_time()
-                world.truth()
-                dict(world.take_images())  # made only when asked for
-                spent.append(time.process_time() - start)
-                world.step(command.linear_m_s, command.angular_rad_s)
-    spent_ms = 1000.0 * np.array(times)[:, _COMPILED:]
-    plain_ms, full_ms = np.median(spent_ms, axis=1)
-    ratio = np.median(spent_ms[1] / spent_ms[0])
-    return DetailTimes(plain_ms=float(plain_ms), full_ms=float(full_ms), ratio=float(ratio))
+        return _timed({PLAIN: plain_world, FULL: full_world}, commands)
+
+
+def render_times(instants: int = 40) -> Turns:
+    """Draw the same instants of a corridor by TinyRenderer and the ray caster, plain and full, in turn [ms].
+
+    Names with `TRUTH` behind them are of one camera's view and its truth, the others of both images, too.
+    """
+    with (
+        World(_corridor(RAYCAST)) as cast,
+        World(_corridor(BULLET)) as drawn,
+        World(_polished(_corridor(RAYCAST))) as full,
+    ):
+        ahead = Command(linear_m_s=0.5, angular_rad_s=0.0)
+        for world in (cast, drawn, full):
+            world.step(ahead.linear_m_s, ahead.angular_rad_s)
+        return _timed({RAYCAST: cast, BULLET: drawn, FULL: full}, [ahead] * (instants + COMPILED))
+
+
+def _timed(worlds: Mapping[str, World], commands: Sequence[Command]) -> Turns:
+    turns = Turns()
+    for number, command in enumerate(commands):
+        turn = {}
+        for name, world in worlds.items():
+            turn[f"{name}{TRUTH}"] = spent_ms(world.truth)
+            # Images are made only when asked for.
+            turn[name] = turn[f"{name}{TRUTH}"] + spent_ms(partial(_all_images, world))
+            world.step(command.linear_m_s, command.angular_rad_s)
+        if number >= COMPILED:
+            turns.add(turn)
+    return turns
+
+
+def _all_images(world: World) -> dict[str, Any]:
+    return dict(world.take_images())
 
 
 def in_detail(name: str, detail: str) -> Scenario:
-    """A scenario of the library in a detail, the thermal camera's electronics with it."""
+    """Load a scenario of the library in a detail, the thermal camera's electronics with it."""
     data: dict[str, Any] = load_scenario(name).spec.model_dump(mode="json", exclude_unset=True)
     robot = data.get("robot", {})
     cameras = robot.get("cameras", {})
-    electronics = {"preset": PRESET} | cameras.get("thermal", {}) if detail == "full" else {}
+    electronics = {"preset": PRESET} | cameras.get("thermal", {}) if detail == FULL else {}
     robot |= {"cameras": cameras | {"thermal": {"kind": "thermal"} | electronics}}
     return parse_scenario(data | {"detail": detail, "robot": robot}, source=name, folder=LIBRARY)
 
 
-def _drive(scenario: Scenario, instants: int | None) -> list[Command]:
-    """What the robot does in a scenario, so that both worlds are seen from the same places."""
+def _commands(scenario: Scenario, instants: int | None) -> list[Command]:
+    """Give the robot's commands in a scenario, so that both worlds are seen from the same places."""
     config = scenario.world(SEED)
-    frames = round(scenario.duration_s * config.control_hz) if instants is None else instants + _COMPILED
+    frames = round(scenario.duration_s * config.control_hz) if instants is None else instants + COMPILED
     with World(config) as world:
         ticks = closed_loop(world, make_eyes(ORACLE, SEED, world.truth), scenario.make_behaviour(), frames)
         return [tick.command for tick in ticks]
 
 
+def _corridor(renderer: str) -> WorldConfig:
+    people = tuple(
+        PersonConfig(name=f"person {i}", path=(Waypoint(at_m=(x, y)), Waypoint(at_m=(x + 10.0, y))))
+        for i, (x, y) in enumerate(STARTS_M)
+    )
+    place = build_place(straight_corridor(20.0, 2.4))
+    return WorldConfig(place=place, people=people, renderer=renderer, robot=RobotConfig(at_m=(1.0, 0.0)))
+
+
+def _polished(config: WorldConfig) -> WorldConfig:
+    """Change a world to full detail, with a floor that mirrors and all that electronics do to images."""
+    cameras = {**config.robot.cameras, "thermal": THERMAL_PRESETS[PRESET]}
+    fixtures = tuple(
+        replace(one, part=replace(one.part, material=replace(one.part.material, shine=_SHINE)))
+        if one.name == "floor" and one.part is not None
+        else one
+        for one in config.place.fixtures
+    )
+    place, robot = replace(config.place, fixtures=fixtures), replace(config.robot, cameras=cameras)
+    return replace(config, detail=FULL, place=place, robot=robot)
+
+
+def _renderer_lines() -> Iterator[str]:
+    found = render_times()
+    for title, end in (("two images and truth", ""), ("one view and truth", TRUTH)):
+        cast_ms, drawn_ms = (found.median(f"{name}{end}") for name in (RAYCAST, BULLET))
+        yield f"{title}: raycast {cast_ms:.2f} ms, bullet {drawn_ms:.1f} ms"
+    yield f"ratio of the two images {found.ratio(BULLET, RAYCAST):.1f}"
+    yield f"full detail: {found.median(FULL):.2f} ms, {found.ratio(FULL, RAYCAST):.2f} times as long"
+
+
 @click.command()
 @click.argument("scenarios", nargs=-1)
 @click.option("--instants", type=click.IntRange(1), help="How many are timed; all of a run by default.")
-def main(scenarios: Sequence[str], instants: int | None) -> None:
+@click.option("--renderers", is_flag=True, help="Compare renderers in a corridor instead.")
+def main(scenarios: Sequence[str], instants: int | None, *, renderers: bool) -> None:
     """Print CPU times of SCENARIOS in plain and in full detail; those of full detail by default."""
-    names = scenarios or [name for name in library() if load_scenario(name).spec.detail == "full"]
+    if renderers:
+        for line in _renderer_lines():
+            click.echo(line)
+        return
+    names = scenarios or [name for name in library() if load_scenario(name).spec.detail == FULL]
     times = {name: detail_times(name, instants) for name in names}
     table = Table("scenario", "plain, ms", "full, ms", "times as long", "goal", box=None)
-    for name, found in sorted(times.items(), key=lambda item: -item[1].ratio):
-        row = (found.plain_ms, found.full_ms, found.ratio, GOAL)
+    for name, found in sorted(times.items(), key=lambda item: -item[1].ratio(FULL, PLAIN)):
+        row = (found.median(PLAIN), found.median(FULL), found.ratio(FULL, PLAIN), GOAL)
         table.add_row(name, *(f"{value:.2f}" for value in row))
     Console(width=100).print(table)
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 
-from benchmarks.results.tables import read_tables
+from benchmarks.results import read_tables
 from docs.generate import choices
 from docs.generate.commands import commands
 from docs.generate.metrics import comfort, corridor, following, metrics

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from benchmarks.results.tables import Column, ResultTable
+from benchmarks.results import Column, ResultTable
 from docs.generate.markdown import table
 
 

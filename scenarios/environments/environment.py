@@ -85,7 +85,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             page whose address is printed if there is no screen; or None.
         physics: "bullet" or "kinematic", which is quicker and needs no PyBullet; None for the scenario's.
         physics_hz: steps of physics a second, a multiple of 15; None is that of a run, 240. 60 is quicker by
-            what `python -m benchmarks.environments` prints, beside how far the robot's way is off then.
+            what `python -m benchmarks.speed.environments` prints, beside how far the robot's way is off then.
         normalise: whether numbers are brought within -1..1, see `peopleboy.scenarios.environments.normalise`.
 
     Raises:

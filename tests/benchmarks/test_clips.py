@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
-from benchmarks.clips.bench import OUT
+from benchmarks.clips.bench import OUT, ClipRow
 from benchmarks.clips.clip import open_clips
-from benchmarks.clips.show import ClipRow
 from benchmarks.clips.watch import Watched, _scored
 from benchmarks.footage import main
 from peopleboy.bad_input import BadInput

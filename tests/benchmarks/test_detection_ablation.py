@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from benchmarks.detection_ablation.film import Film
-from benchmarks.detection_ablation.stages import LEAST, DetectorOfStage, Stage, thermal_finder
-from benchmarks.detection_ablation.variants import VARIANTS
-from benchmarks.tracker_ablation import recorded
+from benchmarks.detection_ablation import LEAST, VARIANTS, DetectorOfStage, Stage, thermal_finder
+from benchmarks.sequences import Recording, record
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.proposals.detector import PeopleDetector
@@ -20,12 +18,12 @@ from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
 
 
 @pytest.fixture(scope="module")
-def film() -> Film:
-    return Film.of_run(recorded(load_scenario("crossing_2").lasting(1.0), 100))
+def film() -> Recording:
+    return record(load_scenario("crossing_2").lasting(1.0), 100)
 
 
 @pytest.mark.slow
-def test_all_looks_together_are_those_of_the_detector(film: Film) -> None:
+def test_all_looks_together_are_those_of_the_detector(film: Recording) -> None:
     whole, all_stages = PeopleDetector(least_score=LEAST), DetectorOfStage(Stage.CLOSER_LOOK)
     for frame in film.frames:
         grey = frame.grey(THERMAL)
@@ -34,14 +32,14 @@ def test_all_looks_together_are_those_of_the_detector(film: Film) -> None:
             assert_array_equal(found, wanted)
 
 
-def test_as_it_is_it_is_the_tracker(film: Film) -> None:
+def test_as_it_is_it_is_the_tracker(film: Recording) -> None:
     tracker = DetectionTracker()
     expected = [tracker.update(frame) for frame in film.frames]
     assert VARIANTS["as it is"].tracked(film) == expected
     assert expected[-1]
 
 
-def test_a_threshold_finds_people_by_the_greys_it_was_made_for_alone(film: Film) -> None:
+def test_a_threshold_finds_people_by_the_greys_it_was_made_for_alone(film: Recording) -> None:
     find = thermal_finder(Stage.THRESHOLD)
     frame = film.frames[-1]
     warmer = np.clip(frame.grey(THERMAL).astype(int) + 60, 0, 255).astype(np.uint8)
@@ -53,7 +51,7 @@ def test_every_variant_is_another_tracker() -> None:
     assert len(set(map(repr, VARIANTS.values()))) == len(VARIANTS)
 
 
-def test_what_is_not_known_of_cameras_is_left_out(film: Film) -> None:
+def test_what_is_not_known_of_cameras_is_left_out(film: Recording) -> None:
     assert film.frames[0].calibrations
     assert not any(frame.calibrations for frame in film.uncalibrated().frames)
     assert np.shares_memory(film.uncalibrated().frames[0].images[THERMAL], film.frames[0].images[THERMAL])

@@ -3,8 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.speed.drone import SIZE, DroneWorld
-from benchmarks.speed.drone_mesh import drone_mesh
+from benchmarks.speed.drone import SIZE, DroneWorld, drone_mesh
 from peopleboy.sim.physics.bullet_io import metric_depth
 
 

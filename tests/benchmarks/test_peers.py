@@ -11,8 +11,7 @@ from benchmarks.peers.compete import FilmTask
 from benchmarks.peers.detectors import Blobs, Boxes, Detections, Oracle, _from_colour
 from benchmarks.peers.joint_filter import run_chain
 from benchmarks.peers.show import write_results
-from benchmarks.results.measured import take_in
-from benchmarks.results.tables import read_tables
+from benchmarks.results import read_tables, take_in
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import THERMAL, Frame
 

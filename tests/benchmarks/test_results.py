@@ -5,9 +5,8 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from benchmarks.results import __main__ as command
-from benchmarks.results.measured import take_in
-from benchmarks.results.tables import PATH, Column, ResultTable, ResultTables, Row, as_yaml, read_tables
+from benchmarks import results as command
+from benchmarks.results import PATH, Column, ResultTable, ResultTables, Row, as_yaml, read_tables, take_in
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.run import RunOptions, run

@@ -1,4 +1,4 @@
-"""Whether memory stays flat: a tracker sees people come and go for 100 000 frames.
+"""Whether memory stays flat: a tracker sees people come and go for 100 000 frames, an environment is reset.
 
 The frames of one scenario are kept and shown again and again, with time going on; with `--world` they are
 rendered, in a new world every time.
@@ -6,19 +6,23 @@ rendered, in a new world every time.
 
 from __future__ import annotations
 
-import argparse
 import ctypes
+import gc
 import os
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import closing
 from dataclasses import dataclass, replace
 from itertools import chain, count, islice, repeat
 from multiprocessing import get_context
 from pathlib import Path
 
+import click
 import numpy as np
 
+from benchmarks import call
 from benchmarks.speed.contour_tracker import STEP_S, shoot
+from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
@@ -90,17 +94,38 @@ def endless_frames(*, renders: bool = False) -> Iterator[Frame]:
         yield replace(frame, time_s=number * STEP_S)
 
 
-def main() -> None:
-    """Run, and print the curve."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.memory", description=__doc__)
-    parser.add_argument("--frames", type=int, default=100_000)
-    parser.add_argument("--world", action="store_true", help="render every round in a new world")
-    options = parser.parse_args()
-    curve = long_run(options.frames, renders=options.world)
+def reset_growth(resets: int) -> float:
+    """Return by how many bytes the memory of a process of its own grows with each reset."""
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as process:
+        return process.submit(_reset_growth, resets).result()
+
+
+def _reset_growth(resets: int) -> float:
+    with closing(PeopleBoyEnv("single_follow", observation="truth")) as env:
+        # What the C library keeps for later use grows with the first hundred.
+        for seed in range(max(resets, 100)):
+            env.reset(seed=seed)
+        before_mb = _held_mb()
+        for seed in range(resets):
+            env.reset(seed=seed)
+        return 1e6 * (_held_mb() - before_mb) / resets
+
+
+def _held_mb() -> float:
+    gc.collect()
+    return resident_mb()
+
+
+@click.command()
+@click.option("--frames", default=100_000, show_default=True)
+@click.option("--world", "renders", is_flag=True, help="Render every round in a new world.")
+def main(frames: int, *, renders: bool) -> None:
+    """Track, and print the curve."""
+    curve = long_run(frames, renders=renders)
     for frame, held in zip(curve.frame, curve.resident_mb, strict=True):
-        print(f"{frame:8d} frames  {held:7.1f} MB")
-    print(f"{curve.people} people were born; growth {curve.bytes_per_frame:.0f} bytes a frame")
+        click.echo(f"{frame:8d} frames  {held:7.1f} MB")
+    click.echo(f"{curve.people} people were born; growth {curve.bytes_per_frame:.0f} bytes a frame")
 
 
 if __name__ == "__main__":
-    main()
+    call(main, "benchmarks.speed.memory")

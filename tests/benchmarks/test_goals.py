@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from benchmarks.speed.bench_figures import BenchFigure, Goal, earlier, nested, read_figures, reasons, table_of
+from benchmarks.goals import BenchFigure, Goal, earlier, nested, read_figures, reasons, table_of
 from peopleboy.bad_input import BadInput
 
 QUICK = BenchFigure(("tracker", "HOG", "ratio"), 20.0, "{:.1f}", Goal(least=30), "its parts")

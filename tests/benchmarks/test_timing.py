@@ -1,11 +1,13 @@
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 
-from benchmarks.memory import MemoryCurve, memory_curve
-from benchmarks.speed.beside_hog import BesideHog, Turn
 from benchmarks.speed.contour_tracker import ContourTimes, CrowdTime
+from benchmarks.speed.memory import MemoryCurve, memory_curve
+from benchmarks.timing import Turns
 from peopleboy.tracker.frame import THERMAL, Frame
 
 
@@ -35,10 +37,20 @@ def test_a_persons_cost_is_the_slope_over_the_crowds() -> None:
 
 
 def test_a_machine_that_is_slow_for_some_turns_changes_no_ratio() -> None:
-    slow = [1.0, 1.0, 2.0, 2.0, 1.5]
-    turns = tuple(
-        Turn(contour_ms=2.0 * by, step_ms=0.1 * by, default_ms=10.0 * by, hog_ms=60.0 * by) for by in slow
-    )
-    assert BesideHog(turns).contour_ratio == pytest.approx(30.0)
-    assert BesideHog(turns).step_ratio == pytest.approx(600.0)
-    assert BesideHog(turns).default_ratio == pytest.approx(6.0)
+    turns = Turns()
+    for slow in (1.0, 1.0, 2.0, 2.0, 1.5):
+        turns.add({"contour": 2.0 * slow, "step": 0.1 * slow, "default": 10.0 * slow, "HOG": 60.0 * slow})
+    assert [turns.ratio("HOG", name) for name in ("contour", "step", "default")] == [30.0, 600.0, 6.0]
+    assert (turns.median("contour"), turns.least("HOG")) == (3.0, 60.0)
+
+
+def test_contestants_take_turns_in_order_and_one_that_was_left_out_counts_for_nothing() -> None:
+    calls: list[str] = []
+    turns = Turns()
+    for _ in range(2):
+        turns.measure({name: partial(calls.append, name) for name in "ab"})
+    assert calls == ["a", "b"] * 2
+    assert [len(turns.values[name]) for name in "ab"] == [2, 2]
+    turns.add({"c": np.nan})
+    turns.add({"c": 3.0})
+    assert turns.median("c") == 3.0

@@ -1,0 +1,239 @@
+"""What each part of the tracker by detection gives: `python -m benchmarks.detection_ablation`.
+
+Scenes and random worlds are recorded once; every variant then sees the same.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum, auto
+from itertools import islice
+from pathlib import Path
+from typing import Final
+
+import click
+import numpy as np
+
+from benchmarks import call
+from benchmarks.clips.clip import CHOSEN_BY, Clip, open_clips
+from benchmarks.peers.detectors import Blobs
+from benchmarks.sequences import Recording, print_head, print_row, record
+from peopleboy.scenarios.footage.options import TrackOptions
+from peopleboy.scenarios.footage.views import open_views
+from peopleboy.scenarios.random_worlds.random_world import random_scenario
+from peopleboy.tracker.camera_mount import Mount
+from peopleboy.tracker.evaluation.evaluate import Scores, combine
+from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.proposals.detector import SMALLEST_PX, Grey, PeopleDetector, look
+from peopleboy.tracker.proposals.looks.second_look import look_again, shipped_network
+from peopleboy.tracker.proposals.model import shipped_model
+from peopleboy.tracker.proposals.suppression import Proposals
+from peopleboy.tracker.track import Track
+from peopleboy.tracker.trackers import DEFAULT_TRACKER
+from peopleboy.tracker.tracking.config import DetectionTrackerConfig, ExistenceConfig, ReidentificationConfig
+from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
+from peopleboy.tracker.tracking.people_finder import Finder, ThermalFinder
+
+SCENES: Final = (
+    "crossing_4",
+    "behind_wall_edge",
+    "stop_and_talk",
+    "leader_swap",
+    "hidden_2s",
+    "turn_while_hidden",
+    "sitting",
+    "crowd_8",
+)
+COLUMNS: Final = (
+    "library: HOTA",
+    "IDF1",
+    "switches",
+    "worlds: HOTA",
+    "of those seen",
+    "false per 1000 frames",
+)
+COLUMNS_OF_CLIPS: Final = ("clips: HOTA", "false per 1000 frames")
+_SEEN: Final = 0.3
+CLIPS_HZ: Final = 30.0
+LEAST: Final = DetectionTrackerConfig().existence.weakest
+_SURE: Final = 3.0  # log odds of a warm blob
+
+
+class Stage(Enum):
+    """By what people are found: a threshold, or the detector as far as it looks."""
+
+    THRESHOLD = auto()
+    TREES = auto()
+    SECOND_LOOK = auto()
+    CLOSER_LOOK = auto()
+
+
+class DetectorOfStage(PeopleDetector):
+    """A detector that looks no further than to a stage."""
+
+    def __init__(self, stage: Stage) -> None:
+        """Take the shipped trees and networks."""
+        super().__init__(least_score=LEAST)
+        self._stage = stage
+
+    def found(
+        self, grey: Grey, change: Grey, mount: Mount | None, expected: Proposals, *, everywhere: bool
+    ) -> Proposals:
+        """Look for people in an image of which it is known by how much (H, W) greys changed.
+
+        Trees by themselves look everywhere, whoever is expected.
+        """
+        if self._stage is Stage.CLOSER_LOOK:
+            return super().found(grey, change, mount, expected, everywhere=everywhere)
+        if self._stage is Stage.TREES:
+            return look(shipped_model(), grey, change, mount, SMALLEST_PX, LEAST)
+        first = self.proposed(grey, change, mount, expected) if everywhere else expected
+        return look_again(shipped_network(), grey, change, first, mount, LEAST)
+
+
+class WarmFinder:
+    """Takes whatever is upright and warmer than a grey for somebody: evidence that is not relative."""
+
+    def __call__(self, frame: Frame, expected: Proposals, *, everywhere: bool) -> Proposals:  # noqa: ARG002
+        """Find people in a frame, whoever is expected."""
+        boxes = Blobs().detect(frame).box
+        return Proposals.of_trees(boxes, np.full(len(boxes), _SURE))
+
+
+def thermal_finder(stage: Stage) -> Finder:
+    """Make one that looks no further than to a stage."""
+    return WarmFinder() if stage is Stage.THRESHOLD else ThermalFinder(DetectorOfStage(stage))
+
+
+_ALL: Final = DetectionTrackerConfig()
+
+
+@dataclass(frozen=True, slots=True)
+class Variant:
+    """A tracker, and what it knows.
+
+    Attributes:
+        config: its settings.
+        stage: the last stage of its detector, on the thermal image; None for all, and the colour image.
+        is_calibrated: whether it is known how cameras sit.
+    """
+
+    config: DetectionTrackerConfig = _ALL
+    stage: Stage | None = None
+    is_calibrated: bool = True
+
+    def tracked(self, film: Recording) -> list[tuple[Track, ...]]:
+        """Follow people in all frames."""
+        find = None if self.stage is None else thermal_finder(self.stage)
+        tracker = DetectionTracker(self.config, find)
+        return [
+            tracker.update(frame) for frame in (film if self.is_calibrated else film.uncalibrated()).frames
+        ]
+
+
+def _without_doubt(old: ExistenceConfig) -> ExistenceConfig:
+    return replace(old, shared_doubt=0.0)
+
+
+def _without_revision(old: ReidentificationConfig) -> ReidentificationConfig:
+    return replace(old, parted_s=math.inf, lost_s=math.inf)
+
+
+_EVERYBODY: Final = replace(_ALL, schedule=replace(_ALL.schedule, rescore_s=0.0, anew_s=0.0))
+_OFTEN: Final = replace(
+    _EVERYBODY, schedule=replace(_EVERYBODY.schedule, settled_s=_ALL.schedule.unsettled_s)
+)
+_EVERYWHERE: Final = replace(
+    _ALL, schedule=replace(_ALL.schedule, unsettled_s=0.0, settled_s=0.0, anew_s=0.0)
+)
+
+VARIANTS: Final[Mapping[str, Variant]] = {
+    "as it is": Variant(),
+    "nothing is known of the cameras": Variant(is_calibrated=False),
+    "everybody is 1.72 m tall": Variant(replace(_ALL, motion=replace(_ALL.motion, build=1e-3, posture=0.0))),
+    "the detector looks at everybody in each image": Variant(_EVERYBODY),
+    "and every third image is searched everywhere": Variant(_OFTEN),
+    "every image is searched everywhere": Variant(_EVERYWHERE),
+    "proposed by the thermal image alone": Variant(stage=Stage.CLOSER_LOOK),
+    "and without the closer look": Variant(stage=Stage.SECOND_LOOK),
+    "and without the second look, by trees alone, everywhere": Variant(_EVERYWHERE, Stage.TREES),
+    "by what is warmer than a grey and upright, everywhere": Variant(_EVERYWHERE, Stage.THRESHOLD),
+    "nested boxes are as good": Variant(
+        replace(
+            _ALL,
+            existence=_without_doubt(_ALL.existence),
+            existence_uncalibrated=_without_doubt(_ALL.existence_uncalibrated),
+        )
+    ),
+    "no late decisions": Variant(
+        replace(
+            _ALL,
+            reidentification=_without_revision(_ALL.reidentification),
+            reidentification_uncalibrated=_without_revision(_ALL.reidentification_uncalibrated),
+        )
+    ),
+}
+
+
+def clip_recording(clip: Clip) -> Recording:
+    """Read a real clip.
+
+    Raises:
+        BadInput: a picture cannot be used.
+    """
+    options = TrackOptions(footage=clip.folder, out=Path(), tracker=DEFAULT_TRACKER, rate_hz=CLIPS_HZ)
+    frames = tuple(islice(open_views(options), clip.frames))
+    return Recording(frames, clip.given.truth, boxes_whole=True)
+
+
+def of_worlds(scenes: Sequence[Recording], worlds: Sequence[Recording], variant: Variant) -> list[str]:
+    """Give a row's figures, as `COLUMNS` names them."""
+    library = combine([film.score(variant.tracked(film)) for film in scenes])
+    ways = [(film, variant.tracked(film)) for film in worlds]
+    everybody = combine([film.score(way) for film, way in ways])
+    seen = combine([film.score(way, min_visible=_SEEN) for film, way in ways])
+    return [
+        f"{library.mot.hota.hota:.1f}",
+        f"{library.mot.identity.idf1:.1f}",
+        str(library.mot.clear.switches),
+        f"{everybody.mot.hota.hota:.1f}",
+        f"{seen.mot.hota.hota:.1f}",
+        _false(everybody),
+    ]
+
+
+def of_clips(clips: Sequence[Recording], variant: Variant) -> list[str]:
+    """Give a row's figures, as `COLUMNS_OF_CLIPS` names them."""
+    scores = combine([film.score(variant.tracked(film)) for film in clips])
+    return [f"{scores.mot.hota.hota:.1f}", _false(scores)]
+
+
+def _false(scores: Scores) -> str:
+    return f"{1000.0 * scores.counts.false_tracks / scores.counts.frames:.2f}"
+
+
+@click.command()
+@click.option("--seed", default=1, show_default=True, help="Of the scenes.")
+@click.option(
+    "--worlds", type=click.IntRange(min=1), default=30, show_default=True, help="How many, from 0 on."
+)
+@click.option(
+    "--clips",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    help="Folder of clips, of which those are taken by which values may be chosen.",
+)
+def main(seed: int, worlds: int, clips: Path | None) -> None:
+    """Print how the tracker does as it is, and without each of its parts, as a Markdown table."""
+    real = [] if clips is None else [clip_recording(clip) for clip in open_clips(clips, CHOSEN_BY)]
+    scenes = [record(name, seed) for name in SCENES]
+    drawn = [record(random_scenario(number), number) for number in range(worlds)]
+    columns = (*COLUMNS, *(COLUMNS_OF_CLIPS if real else ()))
+    print_head("", columns)
+    for name, variant in VARIANTS.items():
+        print_row(name, [*of_worlds(scenes, drawn, variant), *(of_clips(real, variant) if real else ())])
+
+
+if __name__ == "__main__":
+    call(main, "benchmarks.detection_ablation")

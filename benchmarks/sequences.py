@@ -1,0 +1,121 @@
+"""Recorded sequences: what trackers see and what is true, and tracks as they are scored."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import click
+import numpy as np
+
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.loop import closed_loop, make_frame
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.truth.truth import Truth
+from peopleboy.sim.world import World
+from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
+from peopleboy.tracker.footage.box_kinds import boxed_whole
+from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.track import Track, confirmed
+from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
+
+Row = tuple[int, int, Sequence[float], float]
+"""Frame, id, box and confidence of a track."""
+TruthRow = tuple[int, int, Sequence[float], bool, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Recording:
+    """A recorded sequence.
+
+    Attributes:
+        frames: what a tracker sees.
+        truth: the boxes of everybody.
+        boxes_whole: whether those are of whole people.
+    """
+
+    frames: tuple[Frame, ...]
+    truth: TrueBoxes
+    boxes_whole: bool = False
+
+    def uncalibrated(self) -> Recording:
+        """Give the same, with nothing known of the cameras."""
+        return replace(self, frames=tuple(replace(frame, calibrations={}) for frame in self.frames))
+
+    def score(self, tracks: Iterable[Sequence[Track]], min_visible: float = 0.0) -> Scores:
+        """Score the tracks of each frame, by those of whom more than a share is visible."""
+        if self.boxes_whole:
+            tracks = (boxed_whole(each, frame) for each, frame in zip(tracks, self.frames, strict=True))
+        found = confirmed_boxes(tracks)
+        return evaluate(self.truth, found, frames=len(self.frames), min_visible=min_visible)
+
+
+def record(scenario: str | Scenario, seed: int) -> Recording:
+    """Run a scenario in the closed loop, driven by the contour tracker, and keep what that saw."""
+    loaded = load_scenario(scenario) if isinstance(scenario, str) else scenario
+    config = loaded.world(seed)
+    frames, rows, before = [], [], None
+    with World(config) as world:
+        count = round(loaded.duration_s * config.control_hz)
+        tracker = make_tracker(CONTOUR_TRACKER, stream(seed, "tracker"))
+        for tick in closed_loop(world, tracker, loaded.make_behaviour(), count):
+            frames.append(make_frame(tick.observation, calibrations_of(world.cameras), before))
+            before = tick.observation.odometry
+            rows += truth_rows(tick.frame, tick.truth)
+    return Recording(tuple(frames), true_boxes(rows))
+
+
+def truth_rows(frame: int, truth: Truth) -> list[TruthRow]:
+    """Give frame, id, box, whether it counts, and visible share of everybody who has a box."""
+    return [
+        (frame, person.id, person.box, person.is_counted, person.visible_fraction)
+        for person in truth.people
+        if person.box is not None
+    ]
+
+
+def true_boxes(rows: Sequence[TruthRow]) -> TrueBoxes:
+    """Make columns of what `truth_rows` gives."""
+    frame, identity, box, counted, visible = zip(*rows, strict=True) if rows else ((),) * 5
+    return TrueBoxes(
+        frame=np.array(frame),
+        id=np.array(identity),
+        box=np.array(box).reshape(-1, 4),
+        counted=np.array(counted, dtype=bool),
+        visible=np.array(visible),
+    )
+
+
+def confirmed_boxes(frames: Iterable[Iterable[Track]]) -> TrackBoxes:
+    """Take the boxes of confirmed tracks in the thermal image, frame by frame, the first one being 1."""
+    return track_boxes(
+        (number, track.id, box, track.confidence)
+        for number, tracks in enumerate(frames, start=1)
+        for track, box in confirmed(tracks, THERMAL)
+    )
+
+
+def track_boxes(rows: Iterable[Row]) -> TrackBoxes:
+    """Make columns of rows."""
+    listed = list(rows)
+    frame, identity, box, confidence = zip(*listed, strict=True) if listed else ((),) * 4
+    return TrackBoxes(
+        frame=np.array(frame, dtype=np.int64),
+        id=np.array(identity, dtype=np.int64),
+        box=np.array(box, dtype=np.float64).reshape(-1, 4),
+        confidence=np.array(confidence, dtype=np.float64),
+    )
+
+
+def print_row(name: str, cells: Sequence[str]) -> None:
+    """Print one line of a Markdown table, so that each is there as soon as it is known."""
+    click.echo(f"| {' | '.join((name, *cells))} |")
+
+
+def print_head(name: str, columns: Sequence[str], ruler: Sequence[str] | None = None) -> None:
+    """Print the head of a Markdown table, whose columns of numbers are on the right."""
+    print_row(name, columns)
+    print_row("---", ruler or ["---:"] * len(columns))
