@@ -17,7 +17,7 @@ from benchmarks import call
 from benchmarks.sequences import Recording, print_head, print_row, record
 from peopleboy.tracker.contour.contour_config import TrackerConfig
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
-from peopleboy.tracker.contour.variants import PAPER, THESIS, THESIS_OCCLUSION
+from peopleboy.tracker.contour.variants import CONTOUR, PAPER, THESIS, THESIS_OCCLUSION
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.track import Track
 

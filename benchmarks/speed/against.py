@@ -1,6 +1,6 @@
 """`python -m benchmarks.speed.against OTHER_CHECKOUT`: how much faster runs are here than in another one.
 
-Both track by contours, which older ones know no other way to do, and take turns on this machine, each in a
+Both track by contours, under the name that each has for it, and take turns on this machine, each in a
 process and with caches of its own, so that other work slows both.
 The other one may be older than the package's present layout; its first turn compiles, and is not counted.
 """
@@ -19,18 +19,19 @@ from typing import Final
 import click
 
 from benchmarks import call
-from peopleboy.tracker.trackers import CONTOUR_TRACKER
 
 HERE: Final = Path(__file__).parents[2]
 SCENARIO: Final = "crossing_pair"
 _CODE: Final = f"""
 import inspect, json
+from peopleboy.tracker import trackers
 try:
     from benchmarks.speed.closed_loop import loop_speed, run_speed
 except ImportError:
     from benchmarks.closed_loop import loop_speed, run_speed
-told = {{"tracker": "{CONTOUR_TRACKER}"}} if "tracker" in inspect.signature(run_speed).parameters else {{}}
-print(json.dumps([loop_speed("{SCENARIO}", **told), run_speed("{SCENARIO}", **told)]))
+has_choice = "tracker" in inspect.signature(run_speed).parameters
+options = {{"tracker": trackers.CONTOUR_TRACKER}} if has_choice else {{}}
+print(json.dumps([loop_speed("{SCENARIO}", **options), run_speed("{SCENARIO}", **options)]))
 """
 
 
@@ -48,7 +49,7 @@ class Gain:
 
 
 def gain_over(other: Path, rounds: int) -> Gain:
-    """Measure both in turn, and give the medians of what came of each turn."""
+    """Measure both in turn, and give the medians of the turns."""
     _speeds(other)
     turns = [(_speeds(HERE), _speeds(other)) for _ in range(rounds)]
     loop, run = (median(here[which] / there[which] for here, there in turns) for which in (0, 1))
