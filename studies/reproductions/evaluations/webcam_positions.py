@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.cameras.kinds import flat_geometry
@@ -287,14 +288,12 @@ def _standing(film: _Film) -> list[slice]:
 
 def true_webcams(config: WorldConfig, cameras: Sequence[str]) -> Floats:
     """Give x, y [m], heading and angle of view [rad] of the webcams in the room, (C, 4)."""
-    (x, y), turn = config.robot.at_m, config.robot.heading_rad
-    cosine, sine = math.cos(turn), math.sin(turn)
+    robot = Pose2(*config.robot.at_m, config.robot.heading_rad)
     rows = []
     for camera in (flat_geometry(config.robot.cameras, name) for name in cameras):
-        ahead, aside, _ = camera.position_m
-        place = x + cosine * ahead - sine * aside, y + sine * ahead + cosine * aside
+        place = robot.transform_point(camera.position_m[:2])
         view = 2.0 * math.atan(camera.width / 2.0 / camera.focal_px)
-        rows.append((*place, turn + camera.yaw_rad, view))
+        rows.append((*place, robot.heading + camera.yaw_rad, view))
     return np.array(rows)
 
 

@@ -147,7 +147,7 @@ def test_a_robot_that_moves_learns_nothing_and_begins_anew_where_it_stops() -> N
     assert all(scene.is_frozen for scene in moving)
     still = [model.update(room_frame(24 + k, [])) for k in range(20)]
     assert (still[-1].vista, still[-1].is_frozen) == (1, False)
-    assert model.pose.x_m == pytest.approx(0.2)
+    assert model.pose.x == pytest.approx(0.2)
 
 
 def broken(frame: Frame, **images: object) -> Frame:
