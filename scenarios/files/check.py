@@ -23,8 +23,7 @@ from peopleboy.scenarios.files.schema.people import PersonSpec, WaypointSpec
 from peopleboy.scenarios.files.schema.robot import ORACLE, CameraSpec, RobotSpec
 from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
 from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.cameras.kinds import check_rate
-from peopleboy.sim.cameras.overlap import colour_from_thermal
+from peopleboy.sim.cameras.kinds import check_rate, colour_from_thermal
 from peopleboy.sim.config import CONTROL_HZ
 from peopleboy.sim.places.floor_plan import FloorPlan, Rectangle
 from peopleboy.sim.places.furniture.thing_kinds import KINDS

@@ -13,7 +13,7 @@ from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.depth_presets import DEPTH_PRESETS
 from peopleboy.sim.cameras.electronics.thermal_presets import THERMAL_PRESETS
 from peopleboy.sim.cameras.kinds import KINDS
-from peopleboy.sim.geometry.mirror import MIRRORS, Mirror
+from peopleboy.sim.geometry.panorama import MIRRORS, Mirror
 from peopleboy.sim.robot.robot_config import RobotConfig
 
 _IN_DEGREES = {"vertical_fov_deg": "vertical_fov_rad", "pitch_deg": "pitch_rad", "yaw_deg": "yaw_rad"}

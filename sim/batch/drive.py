@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.batch.joined_worlds import JoinedWorlds, slice_world
 from peopleboy.sim.batch.people import BatchWalks
-from peopleboy.sim.geometry.angles import remainder
+from peopleboy.sim.geometry.vectors import remainder
 from peopleboy.sim.physics.kinematic import Kinematic
 from peopleboy.sim.physics.solid_shapes import Array, Placements, Solids, refresh
 from peopleboy.sim.physics.vehicle import Vehicle, push_out, roll

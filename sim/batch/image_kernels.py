@@ -14,7 +14,7 @@ from peopleboy.sim.cameras.colour import encode, light_image
 from peopleboy.sim.cameras.noise import look_up
 from peopleboy.sim.cameras.surfaces import MaterialTable, combine
 from peopleboy.sim.cameras.thermal import radiance_image, to_apparent_c
-from peopleboy.sim.geometry.products import from_each, invert
+from peopleboy.sim.geometry.vectors import from_each, invert
 from peopleboy.sim.rendering.canvas import Canvas, Lens, locate, shade
 from peopleboy.sim.rendering.raycast import draw
 from peopleboy.sim.shapes.joined_tables import JoinedTables, Numbers, ends, join_tables, table_of

@@ -22,7 +22,7 @@ from peopleboy.sim.cameras.surfaces import (
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.view import View
-from peopleboy.sim.shapes.finishes import TEXEL_STEP
+from peopleboy.sim.shapes.materials import TEXEL_STEP
 
 # The room's lamps hang above and a little to one side, so that walls and sides of people differ in shade.
 LIGHT = np.array([0.35, 0.25, 0.90]) / np.linalg.norm([0.35, 0.25, 0.90])

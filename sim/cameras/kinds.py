@@ -29,7 +29,7 @@ from peopleboy.sim.cameras.sensors import (
     ThermalSensor,
 )
 from peopleboy.sim.cameras.thermal import encode_16bit
-from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose, transform
 from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.rendering.panoramic_sight import PanoramicSight
 from peopleboy.sim.rendering.sight import FLAT, Sight
@@ -250,3 +250,46 @@ def check_cameras(cameras: Mapping[str, CameraConfig]) -> None:
     for names in (folders, images):
         for taken in (name for name in cameras if names.count(name) > 1):
             raise BadInput(f"camera {taken!r}: another camera gives images of that name; choose another")
+
+
+# From pixels of one camera to pixels of the other, for things at one depth.
+
+
+def affine_between(thermal: Pinhole, colour: Pinhole, depth_m: float) -> Matrix:
+    """Find the (2, 3) map of thermal pixels u, v, 1 to colour pixels, for things at a depth.
+
+    The depth is that along the thermal camera's axis. The map is exact where the optical axes are parallel,
+    as they are by default; where they are not, it is the best fit, in least squares, over the thermal image.
+
+    Source: thesis, equation 6.1, which fixes the map by hand; here it follows from the cameras.
+
+    Raises:
+        BadInput: the depth is not positive, or the colour camera does not see the plane.
+    """
+    if not depth_m > 0.0:
+        raise BadInput(f"depth {depth_m} m must be positive")
+    columns, rows = np.linspace(0.0, thermal.width - 1.0, 9), np.linspace(0.0, thermal.height - 1.0, 9)
+    u, v = (grid.ravel() for grid in np.meshgrid(columns, rows))
+    pixels = np.stack([u, v, np.ones_like(u)], axis=1)
+    points = depth_m * pixels @ np.linalg.inv(thermal.intrinsics).T
+    colour_from_thermal = invert_pose(colour.robot_from_camera) @ thermal.robot_from_camera
+    seen = colour.project(transform(colour_from_thermal, points))
+    if not np.isfinite(seen).all():
+        raise BadInput(f"the colour camera does not see the plane {depth_m} m before the thermal camera")
+    return np.asarray(np.linalg.lstsq(pixels, seen)[0].T, np.float64)
+
+
+# Where things of the thermal image are in the colour image.
+
+# A track has no depth: its box is mapped as if the person were so far away.
+_TYPICAL_DEPTH_M: Final = 4.0
+
+
+def colour_from_thermal(cameras: Mapping[str, CameraConfig]) -> Matrix:
+    """Find the (2, 3) map of pixels of `thermal` to those of `colour`, for people at a typical distance.
+
+    Raises:
+        BadInput: one is missing or not flat, or the colour camera does not see what the thermal one sees.
+    """
+    thermal, colour = (flat_geometry(cameras, name) for name in ("thermal", "colour"))
+    return affine_between(thermal, colour, _TYPICAL_DEPTH_M)

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.shapes.paintings import Painting, Unrolling
+from peopleboy.sim.shapes.materials import Painting, Unrolling
 
 _LEVEL, _ASLANT = int(Unrolling.LEVEL), int(Unrolling.ASLANT)
 _STEPS = np.array([256.0, 4096.0])  # to a kelvin, and to a factor of 1 on light

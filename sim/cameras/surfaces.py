@@ -16,10 +16,8 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.paintings import make_paint_table
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
-from peopleboy.sim.geometry.products import multiply
-from peopleboy.sim.shapes.finishes import TEXEL_STEP, Finish
-from peopleboy.sim.shapes.materials import Material, PatternKind
-from peopleboy.sim.shapes.paintings import Painting
+from peopleboy.sim.geometry.vectors import multiply
+from peopleboy.sim.shapes.materials import TEXEL_STEP, Finish, Material, Painting, PatternKind
 
 # Keeps the edges of patterns away from the faces of boxes, whose coordinates round either way.
 _OFFSET = 0.137

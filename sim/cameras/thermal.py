@@ -30,7 +30,7 @@ from peopleboy.sim.cameras.surfaces import (
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.view import View
-from peopleboy.sim.shapes.finishes import TEXEL_STEP
+from peopleboy.sim.shapes.materials import TEXEL_STEP
 
 _CONTRAST = 2.0  # [W / (m2 sr)] about three kelvin: behind the blur fainter edges show no stairs
 LOWEST_C, HIGHEST_C, _STEP_K = -40.0, 160.0, 0.05

@@ -28,9 +28,8 @@ from peopleboy.sim.physics.bullet_rays import GivenBodies, SolidBoxes
 from peopleboy.sim.physics.model_files import MISSING_PHYSICS, find_model
 from peopleboy.sim.physics.solid_shapes import PartKey
 from peopleboy.sim.shapes.bounds import FAR_M, NEAR_M
-from peopleboy.sim.shapes.meshes import load_triangles
 from peopleboy.sim.shapes.shape_table import VisualShape, as_given
-from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
+from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector, load_triangles
 
 try:
     with quiet():

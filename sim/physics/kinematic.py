@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.geometry.products import multiply
+from peopleboy.sim.geometry.vectors import multiply
 from peopleboy.sim.physics.model_files import find_model
 from peopleboy.sim.physics.solid_shapes import PartKey, Placements, Solids, cast, make_solids, refresh
 from peopleboy.sim.physics.urdf import read_links

@@ -13,8 +13,7 @@ from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.model_files import data_folder, is_in_data
 from peopleboy.sim.physics.urdf import find_urdf, mesh_files, read_urdf
 from peopleboy.sim.places.place import Fixture
-from peopleboy.sim.shapes.meshes import load_triangles
-from peopleboy.sim.shapes.shapes import Shape, ShapeKind
+from peopleboy.sim.shapes.shapes import Shape, ShapeKind, load_triangles
 
 Extent = NDArray[np.float64]  # (2, 3) [m]: lowest and highest x, y, z
 

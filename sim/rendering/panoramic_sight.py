@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix, invert_pose
-from peopleboy.sim.rendering.cover import Cover, count_cover
 from peopleboy.sim.rendering.ring import Outline, draw_ring, make_drawing, outline, ring_of
 from peopleboy.sim.rendering.sight import Mask, Scene, Sight
-from peopleboy.sim.rendering.view import NOBODY, View, person_bits
+from peopleboy.sim.rendering.view import NOBODY, Cover, View, count_cover, person_bits
 
 _Key = tuple[Panorama, bytes, bytes]
 

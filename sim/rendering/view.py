@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 NOBODY = -1
@@ -35,3 +36,65 @@ def person_bits(person_of_part: NDArray[np.int64]) -> NDArray[np.uint64]:
     """(P,) the bit of the person that a part belongs to, 0 for none."""
     bits = np.uint64(1) << np.maximum(person_of_part, 0).astype(np.uint64)
     return np.where(person_of_part == NOBODY, np.uint64(0), bits)
+
+
+# Who covers how many pixels of whom in a view (a numba kernel).
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cover:
+    """Who covers how many pixels of whom.
+
+    Attributes:
+        seen: (N, M) pixels of person n's silhouette inside the image at which owner m is seen.
+        bounds: (N, 4) first and last column and row of each person's visible pixels; last < first for none.
+    """
+
+    seen: NDArray[np.int64]
+    bounds: NDArray[np.int64]
+
+
+def count_cover(
+    part: NDArray[np.int32],
+    cover: NDArray[np.uint64],
+    owner_of_part: NDArray[np.int64],
+    people: int,
+    owners: int,
+) -> Cover:
+    """Count, for each person's silhouette, what is seen there.
+
+    Args:
+        part: (H, W) part seen.
+        cover: (H, W) bit n where person n's silhouette lies, hidden or not.
+        owner_of_part: (P,) owner of each part; person n is owner n.
+        people: N.
+        owners: M, persons first.
+    """
+    return Cover(*_count(part, cover, owner_of_part, people, owners))
+
+
+@njit(cache=True)
+def _count(
+    part: NDArray[np.int32],
+    cover: NDArray[np.uint64],
+    owner_of_part: NDArray[np.int64],
+    people: int,
+    owners: int,
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    height, width = part.shape
+    seen = np.zeros((people, owners), np.int64)
+    bounds = np.empty((people, 4), np.int64)
+    bounds[:, 0], bounds[:, 1], bounds[:, 2], bounds[:, 3] = width, -1, height, -1
+    for v in range(height):
+        for u in range(width):
+            bits = cover[v, u]
+            if bits == 0:
+                continue
+            owner = owner_of_part[part[v, u]]
+            for person in range(people):
+                if (bits >> np.uint64(person)) & np.uint64(1):
+                    seen[person, owner] += 1
+            if owner < people:
+                bounds[owner, 0], bounds[owner, 1] = min(bounds[owner, 0], u), max(bounds[owner, 1], u)
+                bounds[owner, 2], bounds[owner, 3] = min(bounds[owner, 2], v), max(bounds[owner, 3], v)
+    return seen, bounds

@@ -4,9 +4,46 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import Literal
+from typing import Final, Literal
 
-from peopleboy.sim.shapes.finishes import Finish
+import numpy as np
+from numpy.typing import NDArray
+
+# What a surface carries beside its material: folds, a face, straps, on a grid wrapped round its part.
+
+Grid = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Finish:
+    """Differences from a part's material by the direction from its z axis, and by height along it.
+
+    Column c of C looks c / C of a turn from +x towards +y; the first column comes again after the last.
+
+    Attributes:
+        lowest_m: [m] z of the first row.
+        texel_m: [m] from row to row; rows go up.
+        kelvin: (R, C) [K] added to the temperature.
+        light: (R, C) factor on what the surface reflects.
+        cover: (R, C) share 0..1 that has the finish's colour instead of the material's.
+        rgb: (3,) linear reflectance of that colour.
+    """
+
+    lowest_m: float
+    texel_m: float
+    kelvin: Grid
+    light: Grid
+    cover: Grid
+    rgb: Grid = field(default_factory=lambda: np.zeros(3))
+
+    def texels(self) -> NDArray[np.int16]:
+        """(R C, 3) kelvin, light and cover in steps of 1 / 256, so that every machine has the same."""
+        layers = np.stack([self.kelvin, self.light, self.cover], axis=-1).reshape(-1, 3)
+        return np.clip(np.rint(layers / TEXEL_STEP), -32768, 32767).astype(np.int16)
+
+
+TEXEL_STEP: Final = 1.0 / 256.0
+
 
 Detail = Literal["plain", "full"]
 Rgb = tuple[float, float, float]
@@ -84,3 +121,33 @@ class Material:
     covering: Covering = Covering.BARE
     gradient_k_per_m: float = 0.0
     uneven_k: float = 0.0
+
+
+# What a surface has beyond its material: fine differences of temperature and brightness, on a grid.
+
+
+class Unrolling(IntEnum):
+    """How a painting lies on its part: which sums of the part's coordinates are its own."""
+
+    LEVEL = 0  # across is x, up is y: floors and ceilings
+    UPRIGHT = 1  # across is x + y, up is z: walls, and whatever stands on the floor
+    ASLANT = 2  # across is x + y, up is z + (x - y) / 2: what is round, which has no side without a pattern
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Painting:
+    """Differences from a part's material over its surface, in the frame of the part.
+
+    Attributes:
+        unrolling: how it lies on the part.
+        origin_m: [m] where the middle of the first texel is, across and up.
+        texel_m: [m] from texel to texel.
+        kelvin: (H, W) [K] added to the temperature; rows go up, columns across.
+        light: (H, W) factor on what the surface reflects and glows.
+    """
+
+    unrolling: Unrolling
+    origin_m: tuple[float, float]
+    texel_m: float
+    kelvin: NDArray[np.float32]
+    light: NDArray[np.float32]

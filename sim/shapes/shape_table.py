@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix, transform
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.shapes.meshes import load_triangles
-from peopleboy.sim.shapes.shapes import Shape, ShapeKind, Vector
+from peopleboy.sim.shapes.shapes import Shape, ShapeKind, Vector, load_triangles
 
 # How many surfaces a shape has, each a piece of a plane or of a quadric: a mesh has one a triangle.
 _SURFACES = {

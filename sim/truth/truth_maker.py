@@ -17,8 +17,8 @@ from peopleboy.sim.people.crowd import Crowd
 from peopleboy.sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS
 from peopleboy.sim.physics.solid_shapes import PartKey
 from peopleboy.sim.places.moving import Mover
-from peopleboy.sim.rendering.cover import Cover
 from peopleboy.sim.rendering.sight import Seen
+from peopleboy.sim.rendering.view import Cover
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.truth.truth import (
     BORDER,

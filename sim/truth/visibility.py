@@ -11,8 +11,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
-from peopleboy.sim.geometry.products import fma
-from peopleboy.sim.geometry.vectors import Point
+from peopleboy.sim.geometry.vectors import Point, fma
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.rendering.canvas import Lens
 from peopleboy.sim.truth.scenes import BYSTANDER, Records

@@ -26,8 +26,7 @@ from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
 from peopleboy.scenarios.scores.reference_boxes import Yardstick
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
-from peopleboy.sim.geometry.mirror import MIRRORS
-from peopleboy.sim.geometry.panorama import Panorama
+from peopleboy.sim.geometry.panorama import MIRRORS, Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.evaluation.table import to_json
 from peopleboy.tracker.footage.box_kinds import BoxKind

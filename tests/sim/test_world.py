@@ -17,8 +17,7 @@ from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.physics import bullet
 from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.shapes.materials import Material
-from peopleboy.sim.shapes.paintings import Painting
+from peopleboy.sim.shapes.materials import Material, Painting
 from peopleboy.sim.world import World, light_level
 from tests.helpers.calls.refused import refused
 from tests.helpers.worlds.small_worlds import NO_NOISE, SMALL, box_thing, config, hall, person, robot

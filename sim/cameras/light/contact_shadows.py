@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.rendering.canvas import Lens, Rectangle
-from peopleboy.sim.rendering.contacts import REACH_M, Contacts, gap
+from peopleboy.sim.rendering.full_detail import REACH_M, Contacts, gap
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.bounds import NEAR_M
 

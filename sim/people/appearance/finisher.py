@@ -26,8 +26,7 @@ from peopleboy.sim.people.body.manner import Manner, draw_manner
 from peopleboy.sim.people.body.outfit import Outfit, draw_outfit
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.shapes.finishes import Finish
-from peopleboy.sim.shapes.materials import Material, Rgb
+from peopleboy.sim.shapes.materials import Finish, Material, Rgb
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 _CLOTH_TEXEL_M, _SKIN_TEXEL_M, _FACE_TEXEL_M, _HAIR_TEXEL_M = 0.007, 0.010, 0.003, 0.006

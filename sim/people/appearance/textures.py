@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.shapes.finishes import Finish
-from peopleboy.sim.shapes.materials import Rgb
+from peopleboy.sim.shapes.materials import Finish, Rgb
 
 Grid = NDArray[np.float64]
 

@@ -12,8 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.angles import remainder
-from peopleboy.sim.geometry.products import fma
+from peopleboy.sim.geometry.vectors import fma, remainder
 from peopleboy.sim.people.body.postures import RISE_S, Posture
 from peopleboy.sim.people.body.stance import POSTURES
 from peopleboy.sim.people.walking.script import (

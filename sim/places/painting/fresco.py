@@ -11,7 +11,7 @@ from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.places.extent import Extent, shape_extents
 from peopleboy.sim.places.painting.noise import Clouds
 from peopleboy.sim.places.place import Fixture
-from peopleboy.sim.shapes.paintings import Painting, Unrolling
+from peopleboy.sim.shapes.materials import Painting, Unrolling
 
 Array = NDArray[np.float64]
 

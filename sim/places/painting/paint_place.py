@@ -22,8 +22,7 @@ from peopleboy.sim.places.painting.things import paint_thing
 from peopleboy.sim.places.painting.warmth import frame_doors, warm_by
 from peopleboy.sim.places.place import Fixture, Place
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.shapes.materials import Covering, Material
-from peopleboy.sim.shapes.paintings import Painting
+from peopleboy.sim.shapes.materials import Covering, Material, Painting
 
 _PAINTERS: Mapping[Covering, Callable[[Fresco], None]] = {
     Covering.PLASTER: paint_plaster,

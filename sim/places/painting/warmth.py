@@ -8,7 +8,7 @@ import numpy as np
 
 from peopleboy.sim.places.extent import Extent
 from peopleboy.sim.places.painting.fresco import Array, Fresco
-from peopleboy.sim.shapes.paintings import Unrolling
+from peopleboy.sim.shapes.materials import Unrolling
 
 _LEAST_K = 2.0  # a thing that differs less from a surface leaves no trace
 _REACH_M, _NEAR_M = 0.6, 0.14

@@ -17,7 +17,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.geometry.mirror import Mirror
+from peopleboy.sim.geometry.panorama import Mirror
 from peopleboy.studies.reproductions.evaluations.webcam_positions import (
     HEADING,
     RANGE,

@@ -20,7 +20,7 @@ from peopleboy.scenarios.recording.layout import lay_out
 from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.recording.recording_file import pack
 from peopleboy.scenarios.recording.rows import PIXEL_STEP
-from peopleboy.sim.cameras.overlap import colour_from_thermal
+from peopleboy.sim.cameras.kinds import colour_from_thermal
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World

@@ -18,8 +18,7 @@ from peopleboy.sim.cameras.surfaces import (
 )
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.shapes.finishes import Finish
-from peopleboy.sim.shapes.materials import Material, PatternKind
+from peopleboy.sim.shapes.materials import Finish, Material, PatternKind
 
 PHASE = stream(0, "surface.variation").uniform(0.0, 1.0, (3, 3))
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import COLOUR_BASELINE_M
-from peopleboy.sim.geometry.alignment import affine_between
+from peopleboy.sim.cameras.kinds import affine_between
 from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose, transform
 from peopleboy.sim.robot.robot_config import RobotConfig
 

@@ -7,8 +7,7 @@ import pytest
 from numpy.typing import ArrayLike
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.geometry.mirror import MIRRORS, Mirror
-from peopleboy.sim.geometry.panorama import Panorama
+from peopleboy.sim.geometry.panorama import MIRRORS, Mirror, Panorama
 
 BOTH = pytest.mark.parametrize("mirror", MIRRORS.values(), ids=MIRRORS)
 

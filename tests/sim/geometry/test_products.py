@@ -5,7 +5,7 @@ from numba import njit
 
 from peopleboy.sim.geometry.pinhole import invert_pose
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.geometry.products import fma, from_each, invert
+from peopleboy.sim.geometry.vectors import fma, from_each, invert
 
 
 def poses(count):

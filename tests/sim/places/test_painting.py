@@ -10,7 +10,7 @@ from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.sim.places.painting.noise import draw_clouds
 from peopleboy.sim.places.painting.paint_place import paint_place
 from peopleboy.sim.places.place import Place
-from peopleboy.sim.shapes.paintings import Painting
+from peopleboy.sim.shapes.materials import Painting
 from peopleboy.sim.world import World
 from tests.helpers.calls.refused import refused
 

@@ -11,8 +11,8 @@ from peopleboy.sim.cameras.light.contact_shadows import add_contact_shadows, lig
 from peopleboy.sim.cameras.light.mirroring import mirrored_share
 from peopleboy.sim.geometry.pinhole import Pinhole, transform
 from peopleboy.sim.rendering.canvas import Lens
-from peopleboy.sim.rendering.contacts import REACH_M, find_contacts, gap
 from peopleboy.sim.rendering.edges import smooth
+from peopleboy.sim.rendering.full_detail import REACH_M, find_contacts, gap
 from peopleboy.sim.rendering.reflections import EVERY, Reflection, find_reflections
 from peopleboy.sim.rendering.render import cast
 from peopleboy.sim.rendering.sight import FLAT, Scene, Seen

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from peopleboy.sim.cameras.camera_config import ColourConfig, PanoramaConfig, ThermalConfig
-from peopleboy.sim.geometry.mirror import MIRRORS
-from peopleboy.sim.geometry.panorama import Panorama
+from peopleboy.sim.geometry.panorama import MIRRORS, Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.rendering.panoramic_sight import first_and_last
 from peopleboy.sim.robot.robot_config import RobotConfig

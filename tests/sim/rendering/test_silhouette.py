@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.rendering.render import cast
-from peopleboy.sim.rendering.silhouette import silhouette_area, silhouette_bounds
+from peopleboy.sim.rendering.sight import silhouette_area, silhouette_bounds
 from peopleboy.sim.shapes.shape_table import ShapeTable, VisualShape, make_shape_table
 from peopleboy.sim.shapes.shapes import ShapeKind
 

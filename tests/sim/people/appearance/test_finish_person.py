@@ -7,8 +7,7 @@ from peopleboy.sim.people.appearance.finisher import Finisher
 from peopleboy.sim.people.body.clothes import Clothes
 from peopleboy.sim.people.person import Person, PersonConfig, Waypoint
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.shapes.finishes import Finish
-from peopleboy.sim.shapes.materials import Material
+from peopleboy.sim.shapes.materials import Finish, Material
 
 STANDING = (Waypoint(at_m=(0.0, 0.0)),)
 PLAIN = Clothes(top="t_shirt", bottom="jeans")

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from peopleboy.sim.geometry.angles import remainder
+from peopleboy.sim.geometry.vectors import remainder
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.crowd import those_present
 from peopleboy.sim.people.person import PlanarState, Waypoint

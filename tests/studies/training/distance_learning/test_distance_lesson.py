@@ -7,8 +7,7 @@ import pytest
 import yaml
 
 from peopleboy.scenarios.loop.calibrations import calibration_of
-from peopleboy.sim.geometry.mirror import MIRRORS
-from peopleboy.sim.geometry.panorama import Panorama
+from peopleboy.sim.geometry.panorama import MIRRORS, Panorama
 from peopleboy.tracker.panoramic.panorama_view import choose_view
 from peopleboy.tracker.panoramic.paper import appearance_file
 from peopleboy.tracker.panoramic.paper.appearance_file import AppearanceModel, ship, shipped_models

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.sim.geometry.alignment import affine_between
+from peopleboy.sim.cameras.kinds import affine_between
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.tracker.contour.appearance.colour_view import ColourView
 from peopleboy.tracker.contour.appearance.regions import aligned, alignment, part_rectangles, pixel_bounds
