@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from peopleboy.behaviours.behaviour import Behaviour
-from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.behaviour import Behaviour, Command
 from peopleboy.behaviours.following.follow_person import FollowConfig, FollowPerson
 from peopleboy.behaviours.percept import Percept, SeenPerson
 

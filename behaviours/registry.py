@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from peopleboy.bad_input import BadInput
-from peopleboy.behaviours.behaviour import Behaviour
-from peopleboy.behaviours.checked_behaviour import make_own_behaviour
-from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.behaviour import Behaviour, Command, make_own_behaviour
 from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig, FollowCorridor
 from peopleboy.behaviours.following.follow_person import FollowConfig, FollowPerson
 from peopleboy.behaviours.patrol import Patrol

@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 
 from peopleboy.bad_input import BadInput
-from peopleboy.behaviours.command import STOP, Command
+from peopleboy.behaviours.behaviour import STOP, Command
 from peopleboy.behaviours.percept import Percept
 
 

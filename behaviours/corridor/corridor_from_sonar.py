@@ -6,10 +6,78 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown
-from peopleboy.behaviours.corridor.wall_echoes import BeamConfig, wall_distances
-from peopleboy.behaviours.percept import Percept, Points
+from peopleboy.behaviours.percept import Percept, Points, Ranges
+from peopleboy.behaviours.sonar.echo_points import RING_CENTRE_X_M, RING_HALF_AXES_M
+
+# How a sonar's beam hears a straight wall.
+
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BeamConfig:
+    """A sonar's beam.
+
+    Attributes:
+        half_cone_rad: [rad] half its opening; the echo comes from where in it the wall is nearest.
+        reach_m: [m] a range beyond this is no echo.
+        slant_rad: [rad] a beam that meets a wall more obliquely than this tells nothing.
+    """
+
+    half_cone_rad: float = math.radians(7.5)
+    reach_m: float = 4.9
+    slant_rad: float = math.radians(68.0)
+
+
+def wall_distances(percept: Percept, normals_rad: Points, beam: BeamConfig) -> tuple[Points, Flags]:
+    """Turn each reading into a distance [m] from the robot's origin to the wall, and tell whether it can.
+
+    A beam whose axis is off the wall's normal by a hears the wall at distance / cos(a - half cone), or at its
+    distance where the cone holds the normal.
+
+    Args:
+        percept: with the sonars' ranges.
+        normals_rad: (K,) [rad] directions in the robot's frame in which a wall may lie.
+        beam: the sonars' beams.
+
+    Returns:
+        (K, N) distances, and whether the beam can have heard that wall.
+    """
+    off = np.abs(np.angle(np.exp(1j * (percept.sonar_angle_rad - normals_rad[:, None]))))
+    slant = np.maximum(off - beam.half_cone_rad, 0.0)
+    facing = np.stack([np.cos(normals_rad), np.sin(normals_rad)])  # (2, K)
+    distance = percept.sonar_m * np.cos(slant) + (mounts(percept.sonar_angle_rad) @ facing).T
+    return distance, (slant < beam.slant_rad) & (percept.sonar_m < beam.reach_m)
+
+
+def without_walls(percept: Percept, walls: Points, tolerance_m: float, beam: BeamConfig) -> Ranges:
+    """Leave only what is in the way: ranges that a wall explains become infinite: (N,) [m].
+
+    Args:
+        percept: with the sonars' ranges.
+        walls: (K, 2) direction [rad] in the robot's frame and distance [m] of each wall.
+        tolerance_m: [m] an echo so little before a wall, or behind it, is the wall's.
+        beam: the sonars' beams.
+    """
+    distance, _ = wall_distances(percept, walls[:, 0], beam)
+    off = np.abs(np.angle(np.exp(1j * (percept.sonar_angle_rad - walls[:, :1]))))
+    is_wall = (off < math.pi / 2.0) & (distance > walls[:, 1:] - tolerance_m)
+    left: Ranges = np.where(is_wall.any(axis=0) | (percept.sonar_m >= beam.reach_m), np.inf, percept.sonar_m)
+    return left
+
+
+def side_walls(corridor: Corridor) -> Points:
+    """Give direction [rad] and distance [m] of the left and the right wall: (2, 2), robot frame."""
+    half = corridor.width_m / 2.0
+    return np.array(
+        [
+            (math.pi / 2.0 - corridor.heading_rad, half - corridor.offset_m),
+            (-math.pi / 2.0 - corridor.heading_rad, half + corridor.offset_m),
+        ]
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,3 +204,79 @@ def _corridor(
     if not config.width_m[0] <= left + right <= config.width_m[1]:
         return Unknown(f"walls {left + right:.1f} m apart make no corridor")
     return Corridor(offset_m=(right - left) / 2.0, heading_rad=heading, width_m=left + right)
+
+
+# Where the sonars sit on the robot.
+
+# The PeopleBot's sideways units sit this far fore and aft of the ellipse on which all others lie.
+SIDEWAYS_M = 0.113
+
+
+def mounts(angle_rad: Points) -> Points:
+    """Give the sonars' places by their directions [rad]: (N, 2) [m], x forward, y left.
+
+    Of two units that look the same way, which only those do that look sideways, the first sits fore.
+
+    Source: ARIA's peoplebot-sh.p, SonarUnit 0..15, within 3 cm.
+    """
+    places: Points = np.stack([np.cos(angle_rad), np.sin(angle_rad)], axis=1) * RING_HALF_AXES_M
+    places[:, 0] += RING_CENTRE_X_M
+    is_same = np.abs(angle_rad[:, None] - angle_rad) < 1e-6
+    has_later, has_earlier = np.triu(is_same, 1).any(axis=1), np.tril(is_same, -1).any(axis=1)
+    places[:, 0] += SIDEWAYS_M * (has_later.astype(np.float64) - has_earlier)
+    return places
+
+
+# Where a corridor ends: a wall across it, and the ways that open beside it.
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EndConfig:
+    """What counts as a wall across, and as an open side.
+
+    Attributes:
+        beam: how a beam hears a wall; across, only those that look ahead count.
+        side_beam: the same for the walls at the sides, whose echoes are none of a wall across.
+        farthest_m: [m] a wall across is looked for up to here.
+        agree_m: [m] the echoes of one wall lie within this of their middle.
+        least_echoes: of the four sonars ahead; a person is heard by two.
+        open_m: [m] a side is open where the sideways sonars hear nothing up to this far behind its wall.
+        sideways_rad: [rad] those sonars look this close to the side's direction.
+    """
+
+    beam: BeamConfig = field(default_factory=lambda: BeamConfig(slant_rad=math.radians(35.0)))
+    side_beam: BeamConfig = field(default_factory=BeamConfig)
+    farthest_m: float = 3.0
+    agree_m: float = 0.12
+    least_echoes: int = 3
+    open_m: float = 0.6
+    sideways_rad: float = math.radians(20.0)
+
+
+def wall_ahead(percept: Percept, corridor: Corridor, config: EndConfig) -> float | None:
+    """Give the distance [m] along the corridor to a wall across it; None if there is none near."""
+    distances, can_be = wall_distances(percept, np.array([-corridor.heading_rad]), config.beam)
+    to_sides, can_be_side = wall_distances(percept, side_walls(corridor)[:, 0], config.side_beam)
+    is_side = can_be_side & (np.abs(to_sides - side_walls(corridor)[:, 1:]) < config.agree_m)
+    heard = distances[0][can_be[0] & ~is_side.any(axis=0)]
+    if len(heard) < config.least_echoes:
+        return None
+    middle = float(np.median(heard))
+    agreeing = int(np.sum(np.abs(heard - middle) < config.agree_m))
+    return middle if agreeing >= config.least_echoes and middle < config.farthest_m else None
+
+
+def open_room(percept: Percept, corridor: Corridor, config: EndConfig) -> tuple[float, float]:
+    """Give how far [m] one can go behind where the left and the right wall should be; 0 for a closed side."""
+    left, right = (
+        _room(percept, float(direction), float(distance), config)
+        for direction, distance in side_walls(corridor)
+    )
+    return left, right
+
+
+def _room(percept: Percept, direction_rad: float, wall_m: float, config: EndConfig) -> float:
+    off = np.abs(np.angle(np.exp(1j * (percept.sonar_angle_rad - direction_rad))))
+    ranges = percept.sonar_m[off < config.sideways_rad]
+    room = float(np.max(ranges, initial=0.0)) - wall_m
+    return room if room > config.open_m else 0.0

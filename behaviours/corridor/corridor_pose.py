@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from peopleboy.behaviours.dead_reckoning import Motion
+from peopleboy.behaviours.percept import Points
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,3 +54,83 @@ def blend(expected: Corridor, seen: Corridor, share: float) -> Corridor:
         heading_rad=expected.heading_rad + share * (seen.heading_rad - expected.heading_rad),
         width_m=expected.width_m + share * (seen.width_m - expected.width_m),
     )
+
+
+# Which lane of a corridor to drive in, past people who stand in it.
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LaneConfig:
+    """Room to leave.
+
+    Attributes:
+        ahead_m: [m] up to here people are driven round.
+        behind_m: [m] and until they are this far behind.
+        wish_m: [m] between the robot's middle and the nearest echo of a person, where there is room for it.
+        least_m: [m] the same, the least; a lane with less is blocked ...
+        squeeze_m: [m] ... but one on which the robot is already passing only with less than this: beams are
+            wide, and from nearby a person's echoes spread.
+        wall_m: [m] between the robot's middle and a wall, the least.
+        step_m: [m] between lanes.
+    """
+
+    ahead_m: float = 2.2
+    behind_m: float = 0.35
+    wish_m: float = 0.75
+    least_m: float = 0.55
+    squeeze_m: float = 0.35
+    wall_m: float = 0.55
+    step_m: float = 0.05
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Lane:
+    """A way along the corridor.
+
+    Attributes:
+        offset_m: [m] left of the centre line.
+        clearance_m: [m] to the nearest echo beside it, infinite if there is none.
+    """
+
+    offset_m: float
+    clearance_m: float
+
+
+def in_corridor(points: Points, corridor: Corridor) -> Points:
+    """Express echoes in the corridor: (N, 2) [m] ahead of the robot, and left of the centre line."""
+    cos, sin = math.cos(corridor.heading_rad), math.sin(corridor.heading_rad)
+    ahead = points[:, 0] * cos - points[:, 1] * sin
+    left = corridor.offset_m + points[:, 0] * sin + points[:, 1] * cos
+    return np.stack([ahead, left], axis=1)
+
+
+def beside(places: Points, corridor: Corridor, config: LaneConfig) -> Points:
+    """Keep those who stand between the walls, and along the part of the way that counts: (M, 2) [m]."""
+    ahead, left = places.T
+    is_near = (ahead > -config.behind_m) & (ahead < config.ahead_m)
+    kept: Points = places[is_near & (np.abs(left) < corridor.width_m / 2.0)]
+    return kept
+
+
+def middle_lane(people: Points) -> Lane:
+    """Take the centre line."""
+    return Lane(offset_m=0.0, clearance_m=float(np.min(np.abs(people[:, 1]), initial=np.inf)))
+
+
+def best_lane(people: Points, corridor: Corridor, config: LaneConfig, side: int = 0) -> Lane:
+    """Take the lane with the wished clearance that is nearest to the centre line; else the clearest one.
+
+    Args:
+        people: (M, 2) [m] ahead of the robot, and left of the centre line.
+        corridor: for its width.
+        config: room to leave.
+        side: +1 for lanes to the left of the centre line only, -1 for those to the right, 0 for all.
+    """
+    room = max(corridor.width_m / 2.0 - config.wall_m, 0.0)
+    steps = math.floor(room / config.step_m)
+    lanes = config.step_m * np.arange(-steps if side <= 0 else 0, (steps if side >= 0 else 0) + 1)
+    clearance = np.abs(lanes[:, None] - people[:, 1]).min(axis=1, initial=np.inf)
+    missing = np.maximum(config.wish_m - clearance, 0.0)
+    # First the clearance, then the way to the centre line.
+    best = int(np.lexsort((np.abs(lanes), np.round(missing, 3)))[0])
+    return Lane(offset_m=float(lanes[best]), clearance_m=float(clearance[best]))

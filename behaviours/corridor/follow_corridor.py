@@ -8,27 +8,36 @@ from typing import Literal
 
 import numpy as np
 
-from peopleboy.behaviours.command import STOP, Command
-from peopleboy.behaviours.corridor.corridor_end import EndConfig, open_room, wall_ahead
+from peopleboy.behaviours.behaviour import STOP, Command
 from peopleboy.behaviours.corridor.corridor_from_image import (
     CameraView,
     ImageCorridorConfig,
     corridor_from_image,
 )
-from peopleboy.behaviours.corridor.corridor_from_sonar import SonarCorridorConfig, corridor_from_sonar
-from peopleboy.behaviours.corridor.corridor_lane import (
+from peopleboy.behaviours.corridor.corridor_from_sonar import (
+    EndConfig,
+    SonarCorridorConfig,
+    corridor_from_sonar,
+    open_room,
+    side_walls,
+    wall_ahead,
+    without_walls,
+)
+from peopleboy.behaviours.corridor.corridor_pose import (
+    Corridor,
     Lane,
     LaneConfig,
+    Unknown,
     beside,
     best_lane,
+    blend,
+    drive_on,
     in_corridor,
     middle_lane,
 )
-from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown, blend, drive_on
-from peopleboy.behaviours.corridor.wall_echoes import side_walls, without_walls
 from peopleboy.behaviours.dead_reckoning import Motion
 from peopleboy.behaviours.percept import Percept
-from peopleboy.behaviours.sonar.echo_memory import EchoMemory, EchoMemoryConfig, remember
+from peopleboy.behaviours.sonar.echo_points import EchoMemory, EchoMemoryConfig, remember
 
 Sense = Literal["sonar", "image"]
 

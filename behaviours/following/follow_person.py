@@ -5,9 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
-from peopleboy.behaviours.command import STOP, Command
+from peopleboy.behaviours.behaviour import STOP, Command
 from peopleboy.behaviours.dead_reckoning import Motion
-from peopleboy.behaviours.following.avoid import WIDELY, AvoidConfig, swerve
+from peopleboy.behaviours.following.avoid import (
+    WIDELY,
+    AvoidConfig,
+    RoomConfig,
+    is_somebody_near,
+    is_way_out,
+    swerve,
+)
 from peopleboy.behaviours.following.last_seen import (
     LastPlace,
     PlaceConfig,
@@ -16,20 +23,20 @@ from peopleboy.behaviours.following.last_seen import (
     on_the_way,
     place_of,
 )
-from peopleboy.behaviours.following.make_room import RoomConfig, is_somebody_near, is_way_out
-from peopleboy.behaviours.following.occluder import OccluderConfig, hider, keep_behind
 from peopleboy.behaviours.following.reidentification import ReidentificationConfig, company, recognise
 from peopleboy.behaviours.following.target import (
+    OccluderConfig,
     Target,
     TargetConfig,
     carry_on,
     first_sight,
     forget_drift,
+    hider,
+    keep_behind,
     look_again,
 )
 from peopleboy.behaviours.percept import Percept, SeenPerson
-from peopleboy.behaviours.sonar.echo_memory import EchoMemory, EchoMemoryConfig, remember
-from peopleboy.behaviours.sonar.echo_points import echoes
+from peopleboy.behaviours.sonar.echo_points import EchoMemory, EchoMemoryConfig, echoes, remember
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

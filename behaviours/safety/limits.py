@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from peopleboy.behaviours.command import STOP, Command
+from peopleboy.behaviours.behaviour import STOP, Command
 from peopleboy.behaviours.percept import Percept, Points
 from peopleboy.behaviours.sonar.echo_points import BESIDE_RAD, echoes
 

@@ -24,7 +24,7 @@ from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.schema.robot import ORACLE
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import make_eyes
-from peopleboy.sim.cameras.electronics.thermal_presets import THERMAL_PRESETS
+from peopleboy.sim.cameras.depth_presets import THERMAL_PRESETS
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor

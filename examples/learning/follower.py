@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.behaviour import Command
 from peopleboy.behaviours.following.follow_person import (
     FollowConfig,
     FollowPerson,

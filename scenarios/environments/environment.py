@@ -13,7 +13,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.behaviour import Command
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.environments.arguments import check_actions, check_size, check_word, shown_cameras
 from peopleboy.scenarios.environments.judging.episode_figures import Figures, track_in

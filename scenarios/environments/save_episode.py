@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from peopleboy.behaviours.command import STOP, Command
+from peopleboy.behaviours.behaviour import STOP, Command
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.running.run import RunOptions, run
 from peopleboy.scenarios.scores.run_scores import RunScores

@@ -22,7 +22,7 @@ from peopleboy.scenarios.drawing.overlay import encode_jpeg
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.truth_files import further_cameras
 from peopleboy.sim.cameras.camera_config import DepthConfig, ThermalConfig
-from peopleboy.sim.cameras.depth_image import points_of
+from peopleboy.sim.cameras.depth import points_of
 from peopleboy.sim.cameras.thermal import encode_16bit
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Pinhole

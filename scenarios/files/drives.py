@@ -12,7 +12,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from peopleboy.bad_input import BadInput
-from peopleboy.behaviours.command import STOP, Command
+from peopleboy.behaviours.behaviour import STOP, Command
 from peopleboy.behaviours.percept import Percept
 
 KEPT: Final = "drive.parquet"

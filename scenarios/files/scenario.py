@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from peopleboy.bad_input import BadInput, Key
-from peopleboy.behaviours.behaviour import Behaviour
-from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.behaviour import Behaviour, Command
 from peopleboy.behaviours.corridor.corridor_from_image import CameraView
 from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig
 from peopleboy.behaviours.following.follow_person import FollowConfig

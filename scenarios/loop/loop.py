@@ -11,8 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.behaviours.behaviour import Behaviour
-from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.behaviour import Behaviour, Command
 from peopleboy.behaviours.percept import Percept, SeenPerson
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.own_code import at_frame

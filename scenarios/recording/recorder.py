@@ -42,7 +42,7 @@ from peopleboy.scenarios.recording.sketches import explained_sketches
 from peopleboy.scenarios.recording.solids import NOBODY, body_capsules
 from peopleboy.scenarios.recording.still import JPEG, Still
 from peopleboy.sim.cameras.camera_config import DepthConfig
-from peopleboy.sim.cameras.depth_image import points_of
+from peopleboy.sim.cameras.depth import points_of
 from peopleboy.sim.cameras.kinds import colour_from_thermal, shown_to_people, with_boxes
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Matrix, transform

@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
-from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.behaviour import Command
 from peopleboy.scenarios.files.drives import write_drive
 from peopleboy.scenarios.files.suite import SuiteRun, drive_path, load_suite, runs_of
 from peopleboy.scenarios.loop.loop import closed_loop

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.blur import rotation_blur
 from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, LightConfig
-from peopleboy.sim.cameras.light.contact_shadows import add_contact_shadows
-from peopleboy.sim.cameras.light.mirroring import add_reflections
+from peopleboy.sim.cameras.light.mirroring import add_contact_shadows, add_reflections
 from peopleboy.sim.cameras.noise import gaussian
 from peopleboy.sim.cameras.paintings import LIGHT_STEP, paint_run
 from peopleboy.sim.cameras.surfaces import (

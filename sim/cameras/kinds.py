@@ -18,8 +18,8 @@ from peopleboy.sim.cameras.camera_config import (
     PanoramaConfig,
     ThermalConfig,
 )
-from peopleboy.sim.cameras.depth_image import show_amplitude, show_depth
-from peopleboy.sim.cameras.electronics.eye import show_scene
+from peopleboy.sim.cameras.depth import show_amplitude, show_depth
+from peopleboy.sim.cameras.electronics.gain import show_scene
 from peopleboy.sim.cameras.sensors import (
     ColourSensor,
     DepthSensor,

@@ -19,12 +19,10 @@ from peopleboy.sim.cameras.depth import (
     skip_structured_light,
     structured_light,
     time_of_flight,
+    to_millimetres,
 )
-from peopleboy.sim.cameras.depth_image import to_millimetres
-from peopleboy.sim.cameras.electronics.drift import Drift
-from peopleboy.sim.cameras.electronics.gain import Gain
-from peopleboy.sim.cameras.electronics.output import compress, sharpen
-from peopleboy.sim.cameras.noise import random_words, skip_gaussian
+from peopleboy.sim.cameras.electronics.gain import Gain, compress, sharpen
+from peopleboy.sim.cameras.noise import Drift, random_words, skip_gaussian
 from peopleboy.sim.cameras.panoramic import finer, panorama_image, roll_up, unroll
 from peopleboy.sim.cameras.surfaces import MaterialTable
 from peopleboy.sim.cameras.thermal import Detector, detect, make_detector, surface_image

@@ -12,8 +12,7 @@ from peopleboy.registration import register_environments
 
 if TYPE_CHECKING:
     from peopleboy.bad_input import BadInput
-    from peopleboy.behaviours.behaviour import Behaviour
-    from peopleboy.behaviours.command import Command
+    from peopleboy.behaviours.behaviour import Behaviour, Command
     from peopleboy.behaviours.percept import Percept
     from peopleboy.behaviours.registry import make_behaviour
     from peopleboy.scenarios.environments.environment import PeopleBoyEnv
@@ -33,7 +32,7 @@ _HOMES: Final = {
     "BadInput": "bad_input",
     "Behaviour": "behaviours.behaviour",
     "BoxKind": "tracker.footage.box_kinds",
-    "Command": "behaviours.command",
+    "Command": "behaviours.behaviour",
     "Frame": "tracker.frame",
     "PeopleBoyEnv": "scenarios.environments.environment",
     "Percept": "behaviours.percept",

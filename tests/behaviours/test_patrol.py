@@ -1,4 +1,4 @@
-from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.behaviour import Command
 from peopleboy.behaviours.patrol import Patrol, PatrolConfig
 from tests.helpers.percepts.percepts import percept, person
 from tests.helpers.percepts.toy_world import STEP_S

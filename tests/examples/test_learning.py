@@ -11,7 +11,7 @@ from examples.learning import evaluate, train, worlds
 from examples.learning.evolution import evolve
 from examples.learning.follower import SIZE, SPEED_SIGHTS, TURN_SIGHTS, LearnedFollower, load_weights
 from peopleboy.bad_input import BadInput
-from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.behaviour import Command
 from peopleboy.behaviours.following.follow_person import FollowPerson
 from peopleboy.behaviours.percept import Percept, SeenPerson
 from peopleboy.behaviours.registry import make_behaviour

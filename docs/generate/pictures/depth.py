@@ -10,7 +10,7 @@ from peopleboy.scenarios.drawing.palette import person_colour
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import DepthConfig, ThermalConfig
-from peopleboy.sim.cameras.depth_image import show_depth
+from peopleboy.sim.cameras.depth import show_depth
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor

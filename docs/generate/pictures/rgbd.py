@@ -12,7 +12,7 @@ from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.running.blind_drive import blind_drive
-from peopleboy.sim.cameras.depth_image import show_depth
+from peopleboy.sim.cameras.depth import show_depth
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
 from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation, RgbdTracker

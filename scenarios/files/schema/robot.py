@@ -23,8 +23,7 @@ from peopleboy.scenarios.files.schema.values import (
     Share,
     Strict,
 )
-from peopleboy.sim.cameras.depth_presets import DEPTH_PRESETS
-from peopleboy.sim.cameras.electronics.thermal_presets import THERMAL_PRESETS
+from peopleboy.sim.cameras.depth_presets import DEPTH_PRESETS, THERMAL_PRESETS
 from peopleboy.sim.cameras.kinds import KINDS
 
 Failure = Literal["camera_frozen", "camera_black", "tracker_raises", "sonar_maximum", "odometry_jumps"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -9,8 +10,11 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
+from peopleboy.sim.rendering.canvas import Lens, Rectangle
+from peopleboy.sim.rendering.full_detail import REACH_M, Contacts, gap
 from peopleboy.sim.rendering.reflections import EVERY, Reflection
 from peopleboy.sim.rendering.view import View
+from peopleboy.sim.shapes.bounds import NEAR_M
 
 Image = NDArray[np.float32]
 
@@ -139,3 +143,133 @@ def mirrored_share(reflectance: float, cosine: float) -> float:
     square = away * away
     share: float = reflectance + (1.0 - reflectance) * square * square * away
     return share
+
+
+# Soft shadows on the floor where people and things touch it, or are near above it.
+
+Array = NDArray[np.float64]
+
+_EVERY = 4  # pixels between those whose light is reckoned, in row and column
+_LEAST_WIDE_M = 0.05  # takes part in the sum, so that a stick takes some light, too
+_SLOWLY_M = 0.12  # a gap of this height below something halves its shadow
+_DEEPEST = 0.85  # share of the light from all around that is lost at most
+_NOWHERE_M = 1e9  # where the floor is not seen
+_ALL_AROUND = 0.6  # share of a floor's light that comes from all around, and not from the lamps above
+
+
+def add_contact_shadows(
+    image: NDArray[np.float32], view: View, camera: Pinhole, world_from_camera: Matrix, contacts: Contacts
+) -> None:
+    """Darken the floor of an (H, W, 3) image near what stands on it, in place.
+
+    Light on the floor's plane is reckoned at every fourth pixel, and is linear between.
+    """
+    lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
+    light = light_on_floor(lens, world_from_camera, contacts.prints)
+    _darken(image, view.part, contacts.is_floor, light)
+
+
+@njit(cache=True, fastmath=True)
+def light_on_floor(lens: Lens, world_from_camera: Array, prints: Array) -> NDArray[np.float32]:
+    """Share of light that the floor gets where the ray of every fourth pixel meets it, 1 where none does."""
+    height, width = lens.height // _EVERY + 2, lens.width // _EVERY + 2
+    light = np.ones((height, width), np.float32)
+    x, y = np.full((height, width), _NOWHERE_M), np.full((height, width), _NOWHERE_M)
+    pose, first, last = world_from_camera, height, -1
+    for j in range(height):
+        down = (_EVERY * j - lens.centre_v) / lens.focal
+        for i in range(width):
+            across = (_EVERY * i - lens.centre_u) / lens.focal
+            fall = pose[2, 0] * across + pose[2, 1] * down + pose[2, 2]
+            if fall * pose[2, 3] < 0.0:
+                z = -pose[2, 3] / fall
+                x[j, i] = (pose[0, 0] * across + pose[0, 1] * down + pose[0, 2]) * z + pose[0, 3]
+                y[j, i] = (pose[1, 0] * across + pose[1, 1] * down + pose[1, 2]) * z + pose[1, 3]
+                first, last = min(first, j), j
+    for k in range(len(prints)):
+        row = prints[k]
+        left, top, right, bottom = _reached(row, lens, pose)
+        for j in range(max(top, first), min(bottom, last) + 1):
+            for i in range(left, right + 1):
+                away = gap(row, x[j, i], y[j, i])
+                if away < REACH_M:
+                    light[j, i] *= 1.0 - lost_light(row, away)
+    for j in range(first, last + 1):
+        for i in range(width):
+            light[j, i] = 1.0 - _ALL_AROUND * min(1.0 - light[j, i], _DEEPEST)
+    return light
+
+
+@njit(cache=True, error_model="numpy", fastmath=False)
+def _reached(row: Array, lens: Lens, pose: Array) -> Rectangle:
+    """Every fourth pixel, in row and column, that may see what a footprint (9,) takes light from."""
+    reach = row[6] + REACH_M
+    wide = row[4] * abs(row[2]) + row[5] * abs(row[3]) + reach
+    deep = row[4] * abs(row[3]) + row[5] * abs(row[2]) + reach
+    columns, rows = lens.width // _EVERY + 1, lens.height // _EVERY + 1
+    left, top, right, bottom = float(columns), float(rows), 0.0, 0.0
+    behind = beyond_left = beyond_right = above = below = 0
+    for corner in range(4):
+        x = row[0] + (wide if corner & 1 else -wide) - pose[0, 3]
+        y = row[1] + (deep if corner & 2 else -deep) - pose[1, 3]
+        z = pose[0, 2] * x + pose[1, 2] * y - pose[2, 2] * pose[2, 3]
+        across = lens.focal * (pose[0, 0] * x + pose[1, 0] * y - pose[2, 0] * pose[2, 3]) + lens.centre_u * z
+        down = lens.focal * (pose[0, 1] * x + pose[1, 1] * y - pose[2, 1] * pose[2, 3]) + lens.centre_v * z
+        # So that a footprint that is partly behind the camera is known to be beyond a side of the image.
+        beyond_left += across < 0.0
+        beyond_right += across > _EVERY * columns * z
+        above += down < 0.0
+        below += down > _EVERY * rows * z
+        behind += z < NEAR_M
+        u, v = across / (_EVERY * z), down / (_EVERY * z)
+        left, right = min(left, u), max(right, u)
+        top, bottom = min(top, v), max(bottom, v)
+    if max(behind, beyond_left, beyond_right, above, below) == 4:
+        return 0, 0, -1, -1
+    if behind > 0:
+        return 0, 0, columns, rows
+    return (
+        max(math.ceil(left), 0), max(math.ceil(top), 0),
+        min(math.floor(right), columns), min(math.floor(bottom), rows),
+    )  # fmt: skip
+
+
+@njit(cache=True, fastmath=True)
+def _darken(
+    image: NDArray[np.float32],
+    part: NDArray[np.int32],
+    is_floor: NDArray[np.bool_],
+    light: NDArray[np.float32],
+) -> None:
+    height, width = part.shape
+    step, full = np.float32(1.0 / _EVERY), np.float32(1.0)
+    for j in range(light.shape[0] - 1):
+        for i in range(light.shape[1] - 1):
+            a, b, c, d = light[j, i], light[j, i + 1], light[j + 1, i], light[j + 1, i + 1]
+            if min(min(a, b), min(c, d)) >= full:
+                continue
+            for v in range(_EVERY * j, min(_EVERY * j + _EVERY, height)):
+                down = step * np.float32(v - _EVERY * j)
+                one, slope = a + down * (c - a), step * (b - a + down * (d - c - b + a))
+                for u in range(_EVERY * i, min(_EVERY * i + _EVERY, width)):
+                    if part[v, u] >= 0 and is_floor[part[v, u]]:
+                        share = one + slope * np.float32(u - _EVERY * i)
+                        for channel in range(3):
+                            image[v, u, channel] *= share
+
+
+@njit(cache=True, fastmath=True)
+def lost_light(row: Array, away: float) -> float:
+    """Share of an even sky's light that a footprint (9,) takes from a place so far [m] from it.
+
+    An endless wall of height h takes (1 - d / sqrt(d^2 + h^2)) / 2 at a distance d. What is narrow takes
+    less, the farther the less; what does not touch the floor takes less, the higher it begins.
+    """
+    if away >= REACH_M:
+        return 0.0
+    high, low = row[8], max(row[7], 0.0) / _SLOWLY_M
+    wide = _LEAST_WIDE_M + row[5] + row[6] + 0.5 * row[4]
+    wall = 0.5 * (1.0 - away / math.sqrt(away * away + high * high))
+    fade = 1.0 - away / REACH_M
+    lost: float = wall * wide / (wide + away) * fade / (1.0 + low * low)
+    return lost

@@ -7,9 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from peopleboy.sim.places.extent import Extent, fixture_extent
-from peopleboy.sim.places.painting.fresco import Fresco, begin
+from peopleboy.sim.places.painting.fresco import Clouds, Fresco, begin, draw_clouds
 from peopleboy.sim.places.painting.indoors import paint_ceiling, paint_flooring, paint_plaster
-from peopleboy.sim.places.painting.noise import Clouds, draw_clouds
 from peopleboy.sim.places.painting.outdoors import (
     paint_facade,
     paint_leaves,
@@ -17,12 +16,21 @@ from peopleboy.sim.places.painting.outdoors import (
     paint_skyline,
     paint_street,
 )
-from peopleboy.sim.places.painting.sunlight import shine_on
-from peopleboy.sim.places.painting.things import paint_thing
-from peopleboy.sim.places.painting.warmth import frame_doors, warm_by
+from peopleboy.sim.places.painting.sunlight import frame_doors, shine_on, warm_by
 from peopleboy.sim.places.place import Fixture, Place
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import Covering, Material, Painting
+
+# How things stand out from their temperature: warmer above than below, uneven, worn.
+
+
+def paint_thing(fresco: Fresco, material: Material) -> None:
+    """Give a thing its gradient and its unevenness."""
+    fresco.kelvin += material.gradient_k_per_m * (fresco.up - 0.5 * fresco.size[1])
+    scale = min(max(0.3 * max(fresco.size), 0.1), 1.5)
+    fresco.kelvin += max(material.uneven_k, 0.25) * fresco.cloudy(scale)
+    fresco.light *= 1.0 + 0.03 * fresco.cloudy(scale)
+
 
 _PAINTERS: Mapping[Covering, Callable[[Fresco], None]] = {
     Covering.PLASTER: paint_plaster,

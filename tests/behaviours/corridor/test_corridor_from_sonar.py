@@ -6,10 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.behaviours.corridor.corridor_from_sonar import corridor_from_sonar
+from peopleboy.behaviours.corridor.corridor_from_sonar import corridor_from_sonar, mounts
 from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown, blend, drive_on
 from peopleboy.behaviours.dead_reckoning import Motion
-from peopleboy.behaviours.sonar.sonar_ring import mounts
 from tests.helpers.images.drawn_corridors import percept_of, sonar_in_corridor
 from tests.helpers.percepts.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 

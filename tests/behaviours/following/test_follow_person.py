@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.behaviours.command import EMERGENCY_STOP, STOP
+from peopleboy.behaviours.behaviour import EMERGENCY_STOP, STOP
 from peopleboy.behaviours.following.follow_person import FollowConfig, FollowPerson, FollowState, follow
 from peopleboy.behaviours.following.reidentification import recognise
 from peopleboy.behaviours.registry import make_behaviour

@@ -4,9 +4,9 @@ import dataclasses
 
 import numpy as np
 
-from peopleboy.behaviours.command import STOP
+from peopleboy.behaviours.behaviour import STOP
+from peopleboy.behaviours.following.avoid import RoomConfig, is_somebody_near, is_way_out
 from peopleboy.behaviours.following.follow_person import FollowConfig, FollowState, follow
-from peopleboy.behaviours.following.make_room import RoomConfig, is_somebody_near, is_way_out
 from tests.helpers.percepts.percepts import free, percept, person
 from tests.helpers.percepts.toy_world import STEP_S
 

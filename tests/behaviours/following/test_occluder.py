@@ -4,8 +4,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.behaviours.following.occluder import OccluderConfig, hider, keep_behind
-from peopleboy.behaviours.following.target import Target, TargetConfig, bearing
+from peopleboy.behaviours.following.target import (
+    OccluderConfig,
+    Target,
+    TargetConfig,
+    bearing,
+    hider,
+    keep_behind,
+)
 from peopleboy.behaviours.percept import SeenPerson
 
 CONFIG, VIEW = OccluderConfig(), TargetConfig()

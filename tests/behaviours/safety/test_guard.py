@@ -4,7 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.behaviour import Command
 from peopleboy.behaviours.percept import Percept
 from peopleboy.behaviours.safety.guard import Guarded
 from peopleboy.behaviours.scripted import Scripted

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
-from peopleboy.behaviours.command import STOP, Command
+from peopleboy.behaviours.behaviour import STOP, Command
 from peopleboy.behaviours.safety.limits import SafetyConfig, limit, safe_speed
 from peopleboy.behaviours.sonar.echo_points import echoes, fill_drop_outs
 from tests.helpers.percepts.percepts import free, percept_of

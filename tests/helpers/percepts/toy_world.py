@@ -9,8 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.behaviours.behaviour import Behaviour
-from peopleboy.behaviours.command import STOP, Command
+from peopleboy.behaviours.behaviour import STOP, Behaviour, Command
 from peopleboy.behaviours.percept import Percept, SeenPerson
 
 Array = NDArray[np.float64]

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import yaml
 
-from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.behaviour import Command
 from peopleboy.scenarios.export.replay import replay
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario

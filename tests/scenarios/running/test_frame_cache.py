@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.behaviour import Command
 from peopleboy.scenarios.files.drives import read_drive, write_drive
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of

@@ -16,11 +16,12 @@ from peopleboy.sim.cameras.depth import (
     DISPARITY_SD_PX,
     DISPARITY_STEP_PX,
     hole_share,
+    points_of,
     rays_of,
+    show_depth,
     structured_light,
     time_of_flight,
 )
-from peopleboy.sim.cameras.depth_image import points_of, show_depth
 from peopleboy.sim.cameras.noise import smooth_gaussian
 from peopleboy.sim.cameras.surfaces import make_material_table
 from peopleboy.sim.geometry.pinhole import Pinhole

@@ -16,9 +16,9 @@ from peopleboy.sim.cameras.depth import (
     amplitude_of,
     draw_offsets,
     rays_of,
+    show_amplitude,
     structured_light,
 )
-from peopleboy.sim.cameras.depth_image import show_amplitude
 from peopleboy.sim.cameras.depth_presets import DEPTH_PRESETS
 from peopleboy.sim.cameras.kinds import image_names
 from peopleboy.sim.cameras.surfaces import make_material_table

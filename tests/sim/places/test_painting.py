@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
-from peopleboy.sim.places.painting.noise import draw_clouds
+from peopleboy.sim.places.painting.fresco import draw_clouds
 from peopleboy.sim.places.painting.paint_place import paint_place
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.shapes.materials import Painting

@@ -7,8 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.sim.cameras.light.contact_shadows import add_contact_shadows, light_on_floor, lost_light
-from peopleboy.sim.cameras.light.mirroring import mirrored_share
+from peopleboy.sim.cameras.light.mirroring import (
+    add_contact_shadows,
+    light_on_floor,
+    lost_light,
+    mirrored_share,
+)
 from peopleboy.sim.geometry.pinhole import Pinhole, transform
 from peopleboy.sim.rendering.canvas import Lens
 from peopleboy.sim.rendering.edges import smooth

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from peopleboy.sim.cameras.camera_config import ThermalConfig
-from peopleboy.sim.cameras.electronics.drift import PIXEL_SHARE, SMOOTH_SHARE, Drift
-from peopleboy.sim.cameras.electronics.thermal_presets import THERMAL_PRESETS
+from peopleboy.sim.cameras.depth_presets import THERMAL_PRESETS
+from peopleboy.sim.cameras.noise import PIXEL_SHARE, SMOOTH_SHARE, Drift
 from peopleboy.sim.cameras.thermal import make_detector
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import ThermalConfig
-from peopleboy.sim.cameras.electronics.eye import show_scene
 from peopleboy.sim.cameras.electronics.gain import (
     BIN_K,
     Gain,
@@ -19,6 +18,7 @@ from peopleboy.sim.cameras.electronics.gain import (
     equalised,
     grey_curve,
     histogram,
+    show_scene,
     span_of,
 )
 

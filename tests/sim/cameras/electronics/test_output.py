@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from peopleboy.sim.cameras.blur import optics_blur
-from peopleboy.sim.cameras.electronics.output import MOST_K, compress, sharpen
+from peopleboy.sim.cameras.electronics.gain import MOST_K, compress, sharpen
 
 
 def edge(step_k: float) -> np.ndarray:
