@@ -9,8 +9,8 @@ from peopleboy.behaviours.behaviour import Behaviour, Command, make_own_behaviou
 from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig, FollowCorridor
 from peopleboy.behaviours.following.follow_person import FollowConfig, FollowPerson
 from peopleboy.behaviours.patrol import Patrol
-from peopleboy.behaviours.safety.guard import Guarded
-from peopleboy.behaviours.safety.limits import SafetyConfig
+from peopleboy.behaviours.safety_guard import Guarded
+from peopleboy.behaviours.safety_limits import SafetyConfig
 from peopleboy.behaviours.scripted import Scripted, Stand
 
 

@@ -21,7 +21,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.cameras.electronics.gain import encode_8bit
+from peopleboy.sim.cameras.imaging.electronics import encode_8bit
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.random_streams import stream

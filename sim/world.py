@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.imaging.surfaces import MaterialTable, make_material_table
 from peopleboy.sim.cameras.kinds import flat_geometry, kind_of
 from peopleboy.sim.cameras.rig import Rig
 from peopleboy.sim.cameras.sensors import Glimpse
-from peopleboy.sim.cameras.surfaces import MaterialTable, make_material_table
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
@@ -24,8 +24,8 @@ from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.people.crowd import Crowd, Handling
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.physics.physics import Physics, open_physics
-from peopleboy.sim.places.painting.paint_place import paint_place
 from peopleboy.sim.places.place import Place
+from peopleboy.sim.places.textures.texture_place import paint_place
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.sight import Scene, Seen, Sight, look

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown
+from peopleboy.behaviours.corridor.corridor_geometry import Corridor, Unknown
 from peopleboy.behaviours.percept import Points
 
 Image = NDArray[np.uint8]

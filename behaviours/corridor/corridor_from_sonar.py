@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown
+from peopleboy.behaviours.corridor.corridor_geometry import Corridor, Unknown
 from peopleboy.behaviours.percept import Percept, Points, Ranges
-from peopleboy.behaviours.sonar.echo_points import RING_CENTRE_X_M, RING_HALF_AXES_M
+from peopleboy.behaviours.sonar_echoes import RING_CENTRE_X_M, RING_HALF_AXES_M
 
 # How a sonar's beam hears a straight wall.
 

@@ -23,7 +23,7 @@ from peopleboy.behaviours.corridor.corridor_from_sonar import (
     wall_ahead,
     without_walls,
 )
-from peopleboy.behaviours.corridor.corridor_pose import (
+from peopleboy.behaviours.corridor.corridor_geometry import (
     Corridor,
     Lane,
     LaneConfig,
@@ -37,7 +37,7 @@ from peopleboy.behaviours.corridor.corridor_pose import (
 )
 from peopleboy.behaviours.dead_reckoning import Motion
 from peopleboy.behaviours.percept import Percept
-from peopleboy.behaviours.sonar.echo_points import EchoMemory, EchoMemoryConfig, remember
+from peopleboy.behaviours.sonar_echoes import EchoMemory, EchoMemoryConfig, remember
 
 Sense = Literal["sonar", "image"]
 

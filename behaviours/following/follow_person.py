@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from peopleboy.behaviours.behaviour import STOP, Command
 from peopleboy.behaviours.dead_reckoning import Motion
-from peopleboy.behaviours.following.avoid import (
+from peopleboy.behaviours.following.avoidance import (
     WIDELY,
     AvoidConfig,
     RoomConfig,
@@ -36,7 +36,7 @@ from peopleboy.behaviours.following.target import (
     look_again,
 )
 from peopleboy.behaviours.percept import Percept, SeenPerson
-from peopleboy.behaviours.sonar.echo_points import EchoMemory, EchoMemoryConfig, echoes, remember
+from peopleboy.behaviours.sonar_echoes import EchoMemory, EchoMemoryConfig, echoes, remember
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -18,13 +18,13 @@ from rich.table import Table
 
 from benchmarks import call
 from benchmarks.timing import Turns, spent_ms
-from peopleboy.behaviours.command import Command
+from peopleboy.behaviours.behaviour import Command
 from peopleboy.scenarios.files.load import LIBRARY, library, load_scenario, parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.schema.robot import ORACLE
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import make_eyes
-from peopleboy.sim.cameras.depth_presets import THERMAL_PRESETS
+from peopleboy.sim.cameras.presets import THERMAL_PRESETS
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor

@@ -22,7 +22,7 @@ from examples.learning.worlds import LEARNED_ON, NEVER_SEEN
 from examples.show import Figures, play, print_figures, summary
 from peopleboy.behaviours.behaviour import Behaviour
 from peopleboy.behaviours.registry import make_behaviour
-from peopleboy.behaviours.safety.guard import Guarded
+from peopleboy.behaviours.safety_guard import Guarded
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.written_controller import WrittenController
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from examples.learning.follower import LearnedFollower, Weights
 from peopleboy.behaviours.registry import make_behaviour
-from peopleboy.behaviours.safety.guard import Guarded
+from peopleboy.behaviours.safety_guard import Guarded
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.written_controller import WrittenController
 from peopleboy.sim.random_streams import stream

@@ -25,7 +25,7 @@ from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.sim.places.floor_plan import Door, FloorPlan, check_doors
 from peopleboy.sim.places.place import Fixture, Place, Sun
 from peopleboy.sim.places.rooms import Surfaces, build_place, l_corridor, straight_corridor, t_corridor
-from peopleboy.sim.places.scenery.street_pieces import StreetLook, street_shell
+from peopleboy.sim.places.street import StreetLook, street_shell
 from peopleboy.sim.shapes.materials import Material
 
 

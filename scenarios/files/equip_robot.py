@@ -10,8 +10,8 @@ from typing import Any
 from peopleboy.bad_input import BadInput, found_in
 from peopleboy.scenarios.files.schema.robot import CameraSpec, RobotSpec
 from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.cameras.depth_presets import DEPTH_PRESETS, THERMAL_PRESETS
 from peopleboy.sim.cameras.kinds import KINDS
+from peopleboy.sim.cameras.presets import DEPTH_PRESETS, THERMAL_PRESETS
 from peopleboy.sim.geometry.panorama import MIRRORS, Mirror
 from peopleboy.sim.robot.robot_config import RobotConfig
 

@@ -9,10 +9,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.cameras.blur import sweep_weights, weighted_sum
 from peopleboy.sim.cameras.colour import encode, light_image
-from peopleboy.sim.cameras.noise import look_up
-from peopleboy.sim.cameras.surfaces import MaterialTable, combine
+from peopleboy.sim.cameras.imaging.blur import sweep_weights, weighted_sum
+from peopleboy.sim.cameras.imaging.noise import look_up
+from peopleboy.sim.cameras.imaging.surfaces import MaterialTable, combine
 from peopleboy.sim.cameras.thermal import radiance_image, to_apparent_c
 from peopleboy.sim.geometry.vectors import from_each, invert
 from peopleboy.sim.rendering.canvas import Canvas, Lens, locate, shade

@@ -19,12 +19,12 @@ from peopleboy.sim.batch.image_kernels import (
     render_colour,
     render_radiance,
 )
-from peopleboy.sim.cameras.blur import optics_blur_sheet, optics_margin, sweep_of_one_rad
 from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, ThermalConfig
 from peopleboy.sim.cameras.colour import GAMMA, LIGHT
-from peopleboy.sim.cameras.noise import QUANTILES
+from peopleboy.sim.cameras.imaging.blur import optics_blur_sheet, optics_margin, sweep_of_one_rad
+from peopleboy.sim.cameras.imaging.noise import QUANTILES
+from peopleboy.sim.cameras.imaging.surfaces import rays_through
 from peopleboy.sim.cameras.sensors import ColourSensor, ThermalSensor
-from peopleboy.sim.cameras.surfaces import rays_through
 from peopleboy.sim.cameras.thermal import (
     BRIGHTEST,
     DIMMEST,

@@ -6,12 +6,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.cameras.blur import rotation_blur
 from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, LightConfig
-from peopleboy.sim.cameras.light.mirroring import add_contact_shadows, add_reflections
-from peopleboy.sim.cameras.noise import gaussian
-from peopleboy.sim.cameras.paintings import LIGHT_STEP, paint_run
-from peopleboy.sim.cameras.surfaces import (
+from peopleboy.sim.cameras.imaging.blur import rotation_blur
+from peopleboy.sim.cameras.imaging.lighting import add_contact_shadows, add_reflections
+from peopleboy.sim.cameras.imaging.noise import gaussian
+from peopleboy.sim.cameras.imaging.paint_table import LIGHT_STEP, paint_run
+from peopleboy.sim.cameras.imaging.surfaces import (
     MaterialTable,
     finish_run,
     part_from_pixel,

@@ -13,8 +13,13 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from peopleboy.sim.cameras.camera_config import DEPTH_BASELINE_M, DepthConfig
-from peopleboy.sim.cameras.noise import gaussian, skip_gaussian, skip_smooth_gaussian, smooth_gaussian
-from peopleboy.sim.cameras.surfaces import MaterialTable, part_from_pixel, pattern_value, surface_point
+from peopleboy.sim.cameras.imaging.noise import gaussian, skip_gaussian, skip_smooth_gaussian, smooth_gaussian
+from peopleboy.sim.cameras.imaging.surfaces import (
+    MaterialTable,
+    part_from_pixel,
+    pattern_value,
+    surface_point,
+)
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.rendering.view import View
 

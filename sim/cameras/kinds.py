@@ -19,7 +19,7 @@ from peopleboy.sim.cameras.camera_config import (
     ThermalConfig,
 )
 from peopleboy.sim.cameras.depth import show_amplitude, show_depth
-from peopleboy.sim.cameras.electronics.gain import show_scene
+from peopleboy.sim.cameras.imaging.electronics import show_scene
 from peopleboy.sim.cameras.sensors import (
     ColourSensor,
     DepthSensor,

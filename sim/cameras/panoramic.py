@@ -10,10 +10,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.cameras.blur import hat_integral
 from peopleboy.sim.cameras.colour import LIGHT, shade_of
-from peopleboy.sim.cameras.paintings import painted
-from peopleboy.sim.cameras.surfaces import MaterialTable, finish_at, pattern_value
+from peopleboy.sim.cameras.imaging.blur import hat_integral
+from peopleboy.sim.cameras.imaging.paint_table import painted
+from peopleboy.sim.cameras.imaging.surfaces import MaterialTable, finish_at, pattern_value
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.vectors import map_point

@@ -21,10 +21,10 @@ from peopleboy.sim.cameras.depth import (
     time_of_flight,
     to_millimetres,
 )
-from peopleboy.sim.cameras.electronics.gain import Gain, compress, sharpen
-from peopleboy.sim.cameras.noise import Drift, random_words, skip_gaussian
+from peopleboy.sim.cameras.imaging.electronics import Gain, compress, sharpen
+from peopleboy.sim.cameras.imaging.noise import Drift, random_words, skip_gaussian
+from peopleboy.sim.cameras.imaging.surfaces import MaterialTable
 from peopleboy.sim.cameras.panoramic import finer, panorama_image, roll_up, unroll
-from peopleboy.sim.cameras.surfaces import MaterialTable
 from peopleboy.sim.cameras.thermal import Detector, detect, make_detector, surface_image
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import Panorama

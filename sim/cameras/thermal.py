@@ -14,12 +14,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.cameras.blur import optics_blur, rotation_blur
 from peopleboy.sim.cameras.camera_config import ThermalConfig
-from peopleboy.sim.cameras.light.mirroring import add_reflections
-from peopleboy.sim.cameras.noise import gaussian
-from peopleboy.sim.cameras.paintings import KELVIN_STEP, paint_run
-from peopleboy.sim.cameras.surfaces import (
+from peopleboy.sim.cameras.imaging.blur import optics_blur, rotation_blur
+from peopleboy.sim.cameras.imaging.lighting import add_reflections
+from peopleboy.sim.cameras.imaging.noise import gaussian
+from peopleboy.sim.cameras.imaging.paint_table import KELVIN_STEP, paint_run
+from peopleboy.sim.cameras.imaging.surfaces import (
     MaterialTable,
     finish_run,
     part_from_pixel,

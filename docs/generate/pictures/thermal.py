@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from docs.generate.pictures.moments import world_at
 from docs.generate.pictures.paper import panels, plot, show
 from peopleboy.sim.cameras.camera_config import ColourConfig, ThermalConfig
-from peopleboy.sim.cameras.electronics.gain import Gain, compress, encode_8bit, sharpen, show_scene
-from peopleboy.sim.cameras.noise import Drift
+from peopleboy.sim.cameras.imaging.electronics import Gain, compress, encode_8bit, sharpen, show_scene
+from peopleboy.sim.cameras.imaging.noise import Drift
 from peopleboy.sim.cameras.thermal import band_radiance, detect, make_detector, surface_image
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole

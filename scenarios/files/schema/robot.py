@@ -23,8 +23,8 @@ from peopleboy.scenarios.files.schema.values import (
     Share,
     Strict,
 )
-from peopleboy.sim.cameras.depth_presets import DEPTH_PRESETS, THERMAL_PRESETS
 from peopleboy.sim.cameras.kinds import KINDS
+from peopleboy.sim.cameras.presets import DEPTH_PRESETS, THERMAL_PRESETS
 
 Failure = Literal["camera_frozen", "camera_black", "tracker_raises", "sonar_maximum", "odometry_jumps"]
 

@@ -5,9 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from peopleboy.sim.places.furniture import furniture_pieces, household_pieces, warm_pieces
+from peopleboy.sim.places.furniture import (
+    appliances,
+    furniture_pieces,
+    household_pieces,
+    street_pieces,
+    warm_pieces,
+)
 from peopleboy.sim.places.pieces import BLACK, STEEL, WHITE, WOOD, Piece
-from peopleboy.sim.places.scenery import appliances, street_pieces
 from peopleboy.sim.shapes.materials import Rgb
 from peopleboy.sim.shapes.shapes import Vector
 

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.cameras.electronics.gain import compress
+from peopleboy.sim.cameras.imaging.electronics import compress
 from peopleboy.studies.training.people_learning.shots import PeopleShot
 
 Grey = NDArray[np.uint8]

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from peopleboy.behaviours.corridor.corridor_from_image import corridor_from_image
-from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown
+from peopleboy.behaviours.corridor.corridor_geometry import Corridor, Unknown
 from tests.helpers.images.drawn_corridors import CAMERA, drawn_corridor
 
 

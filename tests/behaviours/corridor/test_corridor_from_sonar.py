@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from peopleboy.behaviours.corridor.corridor_from_sonar import corridor_from_sonar, mounts
-from peopleboy.behaviours.corridor.corridor_pose import Corridor, Unknown, blend, drive_on
+from peopleboy.behaviours.corridor.corridor_geometry import Corridor, Unknown, blend, drive_on
 from peopleboy.behaviours.dead_reckoning import Motion
 from tests.helpers.images.drawn_corridors import percept_of, sonar_in_corridor
 from tests.helpers.percepts.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from peopleboy.behaviours.corridor.corridor_from_sonar import EndConfig, open_room, wall_ahead
-from peopleboy.behaviours.corridor.corridor_pose import Corridor, LaneConfig, best_lane
+from peopleboy.behaviours.corridor.corridor_geometry import Corridor, LaneConfig, best_lane
 from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig, FollowCorridor
 from peopleboy.behaviours.registry import make_behaviour
 from tests.helpers.images.drawn_corridors import CAMERA, drawn_corridor, percept_of, sonar_in_corridor

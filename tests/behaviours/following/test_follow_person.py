@@ -10,7 +10,7 @@ from peopleboy.behaviours.behaviour import EMERGENCY_STOP, STOP
 from peopleboy.behaviours.following.follow_person import FollowConfig, FollowPerson, FollowState, follow
 from peopleboy.behaviours.following.reidentification import recognise
 from peopleboy.behaviours.registry import make_behaviour
-from peopleboy.behaviours.safety.limits import SafetyConfig
+from peopleboy.behaviours.safety_limits import SafetyConfig
 from peopleboy.scenarios.scores.following_metrics import FollowingRun, score_following
 from tests.helpers.percepts.percepts import percept, person
 from tests.helpers.percepts.toy_world import STEP_S, Toy, drive, room, straight, wall

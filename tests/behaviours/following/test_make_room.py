@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 
 from peopleboy.behaviours.behaviour import STOP
-from peopleboy.behaviours.following.avoid import RoomConfig, is_somebody_near, is_way_out
+from peopleboy.behaviours.following.avoidance import RoomConfig, is_somebody_near, is_way_out
 from peopleboy.behaviours.following.follow_person import FollowConfig, FollowState, follow
 from tests.helpers.percepts.percepts import free, percept, person
 from tests.helpers.percepts.toy_world import STEP_S

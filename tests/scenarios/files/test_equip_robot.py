@@ -7,8 +7,8 @@ from typing import get_args
 from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.schema.robot import CameraSpec, PlainCameraSpec, RobotSpec
 from peopleboy.sim.cameras.camera_config import ColourConfig, ThermalConfig
-from peopleboy.sim.cameras.depth_presets import THERMAL_PRESETS
 from peopleboy.sim.cameras.kinds import KINDS
+from peopleboy.sim.cameras.presets import THERMAL_PRESETS
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.robot.robot_config import RobotConfig
 

@@ -3,7 +3,7 @@ import pytest
 
 from peopleboy.sim.cameras.camera_config import ColourConfig
 from peopleboy.sim.cameras.colour import colour_image, expose
-from peopleboy.sim.cameras.surfaces import make_material_table
+from peopleboy.sim.cameras.imaging.surfaces import make_material_table
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.view import View

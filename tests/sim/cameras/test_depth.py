@@ -22,8 +22,8 @@ from peopleboy.sim.cameras.depth import (
     structured_light,
     time_of_flight,
 )
-from peopleboy.sim.cameras.noise import smooth_gaussian
-from peopleboy.sim.cameras.surfaces import make_material_table
+from peopleboy.sim.cameras.imaging.noise import smooth_gaussian
+from peopleboy.sim.cameras.imaging.surfaces import make_material_table
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.robot.robot_config import RobotConfig

@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from peopleboy.sim.cameras.camera_config import ThermalConfig
-from peopleboy.sim.cameras.electronics.gain import encode_8bit
-from peopleboy.sim.cameras.surfaces import make_material_table
+from peopleboy.sim.cameras.imaging.electronics import encode_8bit
+from peopleboy.sim.cameras.imaging.surfaces import make_material_table
 from peopleboy.sim.cameras.thermal import (
     band_radiance,
     detect,

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.sim.cameras.light.mirroring import (
+from peopleboy.sim.cameras.imaging.lighting import (
     add_contact_shadows,
     light_on_floor,
     lost_light,

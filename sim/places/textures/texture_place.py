@@ -7,17 +7,17 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from peopleboy.sim.places.extent import Extent, fixture_extent
-from peopleboy.sim.places.painting.fresco import Clouds, Fresco, begin, draw_clouds
-from peopleboy.sim.places.painting.indoors import paint_ceiling, paint_flooring, paint_plaster
-from peopleboy.sim.places.painting.outdoors import (
+from peopleboy.sim.places.place import Fixture, Place
+from peopleboy.sim.places.textures.indoors import paint_ceiling, paint_flooring, paint_plaster
+from peopleboy.sim.places.textures.outdoors import (
     paint_facade,
     paint_leaves,
     paint_sky,
     paint_skyline,
     paint_street,
 )
-from peopleboy.sim.places.painting.sunlight import frame_doors, shine_on, warm_by
-from peopleboy.sim.places.place import Fixture, Place
+from peopleboy.sim.places.textures.sunlight import frame_doors, shine_on, warm_by
+from peopleboy.sim.places.textures.surface_texture import Clouds, Fresco, begin, draw_clouds
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import Covering, Material, Painting
 

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import STOP, Command
-from peopleboy.behaviours.safety.limits import SafetyConfig, limit, safe_speed
-from peopleboy.behaviours.sonar.echo_points import echoes, fill_drop_outs
+from peopleboy.behaviours.safety_limits import SafetyConfig, limit, safe_speed
+from peopleboy.behaviours.sonar_echoes import echoes, fill_drop_outs
 from tests.helpers.percepts.percepts import free, percept_of
 from tests.helpers.percepts.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 

@@ -6,7 +6,7 @@ import pytest
 
 from peopleboy.behaviours.behaviour import Command
 from peopleboy.behaviours.percept import Percept
-from peopleboy.behaviours.safety.guard import Guarded
+from peopleboy.behaviours.safety_guard import Guarded
 from peopleboy.behaviours.scripted import Scripted
 from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, WHEEL_DISTANCE_M, outline_gap

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.cameras.paintings import make_paint_table
+from peopleboy.sim.cameras.imaging.paint_table import make_paint_table
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.vectors import multiply
 from peopleboy.sim.shapes.materials import TEXEL_STEP, Finish, Material, Painting, PatternKind

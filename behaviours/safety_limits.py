@@ -9,7 +9,7 @@ import numpy as np
 
 from peopleboy.behaviours.behaviour import STOP, Command
 from peopleboy.behaviours.percept import Percept, Points
-from peopleboy.behaviours.sonar.echo_points import BESIDE_RAD, echoes
+from peopleboy.behaviours.sonar_echoes import BESIDE_RAD, echoes
 
 NOTHING_REMEMBERED: Points = np.zeros((0, 2))
 NOTHING_REMEMBERED.setflags(write=False)

@@ -9,8 +9,8 @@ import numpy as np
 
 from peopleboy.behaviours.behaviour import EMERGENCY_STOP, Behaviour, Command
 from peopleboy.behaviours.percept import Percept, Points
-from peopleboy.behaviours.safety.limits import SafetyConfig, limit
-from peopleboy.behaviours.sonar.echo_points import (
+from peopleboy.behaviours.safety_limits import SafetyConfig, limit
+from peopleboy.behaviours.sonar_echoes import (
     BESIDE_RAD,
     EchoMemory,
     EchoMemoryConfig,

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.behaviours.following.avoid import WIDELY, AvoidConfig, swerve
+from peopleboy.behaviours.following.avoidance import WIDELY, AvoidConfig, swerve
 
 CONFIG = AvoidConfig()
 points = st.lists(st.tuples(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0)), max_size=16).map(

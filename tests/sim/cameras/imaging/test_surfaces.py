@@ -6,7 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from peopleboy.sim.cameras.surfaces import (
+from peopleboy.sim.cameras.imaging.surfaces import (
     finish_at,
     finish_run,
     make_material_table,

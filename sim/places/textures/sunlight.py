@@ -10,8 +10,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.places.extent import Extent
-from peopleboy.sim.places.painting.fresco import Array, Fresco
 from peopleboy.sim.places.place import Sun
+from peopleboy.sim.places.textures.surface_texture import Array, Fresco
 from peopleboy.sim.shapes.materials import Unrolling
 
 _SOFT_TEXELS = 2

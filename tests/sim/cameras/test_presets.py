@@ -19,9 +19,9 @@ from peopleboy.sim.cameras.depth import (
     show_amplitude,
     structured_light,
 )
-from peopleboy.sim.cameras.depth_presets import DEPTH_PRESETS
+from peopleboy.sim.cameras.imaging.surfaces import make_material_table
 from peopleboy.sim.cameras.kinds import image_names
-from peopleboy.sim.cameras.surfaces import make_material_table
+from peopleboy.sim.cameras.presets import DEPTH_PRESETS
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.rendering.view import View

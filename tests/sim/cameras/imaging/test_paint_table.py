@@ -5,7 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.sim.cameras.paintings import KELVIN_STEP, LIGHT_STEP, make_paint_table, paint_run, painted
+from peopleboy.sim.cameras.imaging.paint_table import (
+    KELVIN_STEP,
+    LIGHT_STEP,
+    make_paint_table,
+    paint_run,
+    painted,
+)
 from peopleboy.sim.shapes.materials import Painting, Unrolling
 
 ROWS, COLUMNS, TEXEL_M = 5, 7, 0.1

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.behaviours.registry import make_behaviour
-from peopleboy.behaviours.sonar.echo_points import EchoMemory, EchoMemoryConfig, remember
+from peopleboy.behaviours.sonar_echoes import EchoMemory, EchoMemoryConfig, remember
 from tests.helpers.percepts.percepts import free
 from tests.helpers.percepts.toy_world import Toy, room, straight
 

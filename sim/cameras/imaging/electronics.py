@@ -15,8 +15,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.cameras.blur import optics_blur
 from peopleboy.sim.cameras.camera_config import ThermalConfig
+from peopleboy.sim.cameras.imaging.blur import optics_blur
 
 Temperatures = NDArray[np.float32]
 Grey = NDArray[np.uint8]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from peopleboy.sim.places.painting.fresco import Array, Fresco
+from peopleboy.sim.places.textures.surface_texture import Array, Fresco
 
 _STUDS_M, _SKIRTING_M = 0.6, 0.08
 _STUDDED = 0.35  # of walls are boards on studs, the others stone

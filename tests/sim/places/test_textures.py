@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
-from peopleboy.sim.places.painting.fresco import draw_clouds
-from peopleboy.sim.places.painting.paint_place import paint_place
 from peopleboy.sim.places.place import Place
+from peopleboy.sim.places.textures.sunlight import _shade
+from peopleboy.sim.places.textures.surface_texture import draw_clouds
+from peopleboy.sim.places.textures.texture_place import paint_place
 from peopleboy.sim.shapes.materials import Painting
 from peopleboy.sim.world import World
 from tests.helpers.calls.refused import refused
@@ -149,3 +150,21 @@ def test_angles_of_the_sun_are_taken_as_written(tmp_path: Any) -> None:
     sun = place(tmp_path, place=ROOM["place"] | {"sun": {"azimuth_deg": 90.0, "elevation_deg": 30.0}}).sun
     assert sun is not None
     assert (sun.azimuth_rad, sun.elevation_rad) == pytest.approx((math.pi / 2.0, math.pi / 6.0))
+
+
+def test_a_point_is_in_the_shade_of_a_box_that_its_ray_enters() -> None:
+    rng = np.random.default_rng(0)
+    points, way = rng.uniform(-2.0, 2.0, (20, 15, 3)), np.array([0.3, -0.5, 0.8])
+    low = rng.uniform(-2.0, 2.0, (6, 3))
+    boxes = np.stack([low, low + rng.uniform(0.5, 1.5, (6, 3))], axis=1)
+    lit = np.ones((20, 15), bool)
+    lit[0] = False  # where it was dark before
+    _shade(lit, points, way, boxes)
+    along = points[..., None, :] + np.linspace(0.02, 8.0, 3000)[:, None] * way
+    shaded = np.zeros((20, 15), bool)
+    for box in boxes:
+        shaded |= ((along > box[0]) & (along < box[1])).all(axis=-1).any(axis=-1)
+    assert 30 < shaded[1:].sum() < 240
+    assert (lit[1:] == ~shaded[1:]).mean() > 0.99  # of which some steps are longer than what a ray cuts off
+    assert not lit[1:][shaded[1:]].any()
+    assert not lit[0].any()

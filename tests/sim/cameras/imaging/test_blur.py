@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.sim.cameras.blur import optics_blur, optics_blur_sheet, optics_margin, rotation_blur
+from peopleboy.sim.cameras.imaging.blur import optics_blur, optics_blur_sheet, optics_margin, rotation_blur
 from peopleboy.sim.geometry.pinhole import Pinhole
 
 CAMERA = Pinhole(width=64, height=16, vertical_fov_rad=0.25)

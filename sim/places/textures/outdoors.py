@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from peopleboy.sim.places.painting.fresco import Array, Fresco
+from peopleboy.sim.places.textures.surface_texture import Array, Fresco
 
 _STOREY_M = 3.1
 _SKY_K = 15.0  # how much colder the sky seems overhead than at the horizon

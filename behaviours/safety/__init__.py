@@ -1,1 +1,0 @@
-"""Safety last: the guard that every command passes through, and its limits."""

@@ -1,1 +1,0 @@
-"""What the sonars say: echoes as points, their memory, their failure."""

@@ -1,1 +1,0 @@
-"""What a thermal camera's electronics make of temperatures: drift, shutter, gain, sharpening, compression."""

@@ -1,0 +1,1 @@
+"""Image formation: blur, light, materials, noise, and the electronics behind a detector."""

@@ -1,1 +1,0 @@
-"""What light does between surfaces, in images of full detail: mirrors, and shadows where things touch."""

@@ -1,1 +1,0 @@
-"""What stands in kitchens, workshops, garages and streets, and the street itself."""
