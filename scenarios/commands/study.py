@@ -27,7 +27,7 @@ def datasets(suites: Sequence[str], films: Path) -> None:
     SUITES are any of dataset1 to dataset4; without a name, all of them.
     """
     from peopleboy.scenarios.scores.suite_table import THESIS
-    from peopleboy.studies.reproductions.showing.show_contents import print_contents
+    from peopleboy.studies.reproductions.runner import print_contents
 
     for name in suites:
         if name not in THESIS:
@@ -175,8 +175,8 @@ def reproduce(
     was when it is given again.
     """
     from peopleboy.scenarios.running.engine.workers import chosen_workers
-    from peopleboy.studies.reproductions.measuring.workload import REPEATS
-    from peopleboy.studies.reproductions.show import list_experiments, reproduce_named
+    from peopleboy.studies.reproductions.plan import REPEATS
+    from peopleboy.studies.reproductions.runner import list_experiments, reproduce_named
 
     if quick and repeats is not None:
         raise BadInput("reproduce: --quick has its own number of repeats; give either it or --repeats")

@@ -22,12 +22,11 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.suite import SuiteRun
 from peopleboy.scenarios.running.engine.store import Store
 from peopleboy.scenarios.running.engine.workers import Workers
-from peopleboy.studies.reproductions.experiments.tracking import add_up, metric
-from peopleboy.studies.reproductions.measuring.run_units import open_store, run_units
-from peopleboy.studies.reproductions.measuring.units import FilmUnit, TrackUnit
-from peopleboy.studies.reproductions.showing.intervals import Gap, margin, paired
-from peopleboy.studies.reproductions.showing.source_page import span
+from peopleboy.studies.reproductions.experiments.tracking import add_sums, count_unit, metric, sequence_unit
+from peopleboy.studies.reproductions.page import span
+from peopleboy.studies.reproductions.statistics import Difference, margin, paired
 from peopleboy.studies.reproductions.tuned_parameters import Parameter
+from peopleboy.studies.reproductions.units import Unit, open_store, run_units
 
 # The reported data sets have seeds below 10: values chosen here must not be fitted to them.
 FIRST_SEED: Final = 100
@@ -74,10 +73,10 @@ class TrainingFilms:
         cut = whole.lasting(min(self.seconds, whole.duration_s))
         return [SuiteRun(cut, FIRST_SEED + number) for number in range(self.seeds)]
 
-    def units(self, parameter: Parameter, value: str) -> list[TrackUnit]:
+    def units(self, parameter: Parameter, value: str) -> list[Unit]:
         """List the work of one value: every clip once, each with its own random stream."""
         plays, setting = self.plays(parameter.scenario), parameter.setting(value)
-        return [TrackUnit(play, self.cache, setting, number) for number, play in enumerate(plays)]
+        return [sequence_unit(play, self.cache, setting, number) for number, play in enumerate(plays)]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,7 +98,7 @@ class Tuned:
         return max(self.accuracy, key=lambda value: (self.accuracy[value].mean(), value == printed))
 
     @property
-    def gain(self) -> Gap:
+    def gain(self) -> Difference:
         """By how much the best value is ahead of the printed one."""
         return paired(CRITERION, self.accuracy[self.best], self.accuracy[self.parameter.printed])
 
@@ -146,7 +145,9 @@ def tune(
     """
     store = open_store(out / RESULTS)
     plays = {one.scenario: films.plays(one.scenario) for one in parameters}
-    run_units([FilmUnit(play, films.cache) for several in plays.values() for play in several], store, workers)
+    run_units(
+        [count_unit(play, films.cache) for several in plays.values() for play in several], store, workers
+    )
     work = [unit for one in parameters for value in one.values for unit in films.units(one, value)]
     run_units(work, store, workers)
     tuned = [_tuned(one, films, store) for one in parameters]
@@ -159,7 +160,7 @@ def tune(
 def _tuned(parameter: Parameter, films: TrainingFilms, store: Store) -> Tuned:
     def accuracy(value: str) -> NDArray[np.float64]:
         results = [store[unit.key]["ignore"] for unit in films.units(parameter, value)]
-        return np.array([metric(add_up([one]), CRITERION) for one in results])
+        return np.array([metric(add_sums([one]), CRITERION) for one in results])
 
     return Tuned(parameter, {value: accuracy(value) for value in parameter.values})
 

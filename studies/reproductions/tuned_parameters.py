@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from peopleboy.bad_input import BadInput
-from peopleboy.studies.reproductions.measuring.tracker_settings import BASES, Changes, Setting
+from peopleboy.studies.reproductions.tracker_settings import BASES, Changes, Setting
 
 _SINGLE: Final = "passers_by"
 _SEVERAL: Final = "hall_visits"

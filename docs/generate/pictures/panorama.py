@@ -16,11 +16,10 @@ from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
-from peopleboy.studies.reproductions.experiments.distances import ROOMS, examples_of, walks
-from peopleboy.studies.reproductions.measuring.run_units import open_store, run_units
-from peopleboy.studies.reproductions.measuring.workload import Plan
-from peopleboy.studies.reproductions.pictures.panoramic_figures import draw_ranges
-from peopleboy.studies.reproductions.reproduce import RESULTS
+from peopleboy.studies.reproductions.experiments.panorama import ROOMS, draw_ranges, walk_units
+from peopleboy.studies.reproductions.plan import Plan
+from peopleboy.studies.reproductions.runner import RESULTS
+from peopleboy.studies.reproductions.units import Measurement, open_store, run_units
 
 PEOPLE = {"anna": (6.5, -1.2), "carl": (1.6, 0.1), "dora": (4.2, 1.9)}
 SCALE = 1.5
@@ -47,5 +46,5 @@ def errors_over_distance() -> Figure:
     """The paper's network in every room; films that `peopleboy reproduce` left are taken from there."""
     plan, folder = Plan(cache=Path("runs/films")), Path("runs/reproduce")
     store = open_store(folder / RESULTS)
-    run_units([walk for room in ROOMS for walk in walks(plan, room)], store, Workers())
-    return draw_ranges({room: examples_of(plan, store, room) for room in ROOMS})
+    run_units([walk for room in ROOMS for walk in walk_units(plan, room)], store, Workers())
+    return draw_ranges(Measurement(plan, store))

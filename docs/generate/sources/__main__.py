@@ -17,13 +17,12 @@ import click
 from docs.generate.sources.source_pages import PAGE, whole_page
 from docs.generate.sources.source_run import FOLDER, SourceRun
 from peopleboy.scenarios.running.engine.store import Store
-from peopleboy.studies.reproductions.experiments.catalogue import choose, of_paper
-from peopleboy.studies.reproductions.experiments.experiment import Outcome
-from peopleboy.studies.reproductions.measuring.workload import full_plan
-from peopleboy.studies.reproductions.reproduce import RESULTS, finished
-from peopleboy.studies.reproductions.showing.experiment_plots import draw
-from peopleboy.studies.reproductions.showing.page_head import head_of
-from peopleboy.studies.reproductions.showing.source import source_tables
+from peopleboy.studies.reproductions.catalogue import choose, of_paper
+from peopleboy.studies.reproductions.experiment import Outcome
+from peopleboy.studies.reproductions.page import head_of
+from peopleboy.studies.reproductions.plan import full_plan
+from peopleboy.studies.reproductions.plots import draw
+from peopleboy.studies.reproductions.runner import RESULTS, finished
 
 _COMMAND = "peopleboy reproduce --paper thesis; peopleboy reproduce --paper 2005"
 
@@ -66,7 +65,7 @@ def _newest_code(results: Path) -> str:
 def _with_file(outcome: Outcome) -> Outcome:
     """Put its picture, or its plot, into a file of its own."""
     number = outcome.experiment.id
-    address = outcome.picture or draw(outcome.experiment, outcome.samples, source_tables()[number])
+    address = outcome.picture or draw(outcome.experiment, outcome.samples)
     if address is None:
         return outcome
     kind, _, content = address.partition(";base64,")

@@ -6,7 +6,7 @@ from typing import Final
 
 from docs.generate.markdown import table
 from docs.generate.sources.source_run import SourceRun
-from peopleboy.studies.reproductions.showing.source_page import page_text, section
+from peopleboy.studies.reproductions.page import page_text, section
 
 PAGE: Final = "page.html"
 _WHO: Final = ("literal", "default")
@@ -23,7 +23,7 @@ def overview(run: SourceRun) -> str:
         (
             f"[{part.id}]({PAGE}#{part.id})",
             part.table.title,
-            "" if part.repeats is None else str(part.repeats),
+            "" if part.outcome.repeats is None else str(part.outcome.repeats),
             *(part.summary(who) for who in _WHO),
             *(part.standings(who) for who in _WHO),
         )

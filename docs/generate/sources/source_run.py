@@ -12,16 +12,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.studies.reproductions.experiments.catalogue import EXPERIMENTS
-from peopleboy.studies.reproductions.experiments.experiment import (
-    Effort,
-    Figures,
-    FilmFigure,
-    Line,
-    Outcome,
-    Samples,
-)
-from peopleboy.studies.reproductions.showing.source_page import PageHead
+from peopleboy.studies.reproductions.catalogue import EXPERIMENTS
+from peopleboy.studies.reproductions.experiment import Effort, Jackknife, Line, Outcome, Samples, Values
+from peopleboy.studies.reproductions.page import PageHead
 
 FOLDER: Final = Path(__file__).parents[2] / "sources"
 RUN: Final = "run.json"
@@ -89,18 +82,18 @@ def _plain(outcome: Outcome) -> dict[str, Any]:
         "samples": [
             [
                 line.group,
-                line.who,
-                {name: _plain_figures(values) for name, values in figures.items()},
+                line.method,
+                {name: _plain_values(several) for name, several in values.items()},
             ]
-            for line, figures in outcome.samples.items()
+            for line, values in outcome.samples.items()
         ],
     }
 
 
 def _outcome(number: str, plain: Mapping[str, Any]) -> Outcome:
     samples: Samples = {
-        Line(group, who): {name: _figures(values) for name, values in figures.items()}
-        for group, who, figures in plain["samples"]
+        Line(group, method): {name: _values(several) for name, several in values.items()}
+        for group, method, values in plain["samples"]
     }
     return Outcome(
         EXPERIMENTS[number],
@@ -111,21 +104,21 @@ def _outcome(number: str, plain: Mapping[str, Any]) -> Outcome:
     )
 
 
-def _plain_figures(values: Figures) -> list[float | None] | dict[str, Any]:
-    if not isinstance(values, FilmFigure):
+def _plain_values(values: Values) -> list[float | None] | dict[str, Any]:
+    if not isinstance(values, Jackknife):
         return _short(np.asarray(values))
     return {
-        "films": values.films,
+        "films": values.suites,
         "whole": _short(np.array([values.whole]))[0],
         "without": _short(values.without),
     }
 
 
-def _figures(plain: list[float | None] | Mapping[str, Any]) -> Figures:
+def _values(plain: list[float | None] | Mapping[str, Any]) -> Values:
     if isinstance(plain, list):
         return _long(plain)
     (whole,) = _long([plain["whole"]])
-    return FilmFigure(float(whole), _long(plain["without"]), tuple(plain["films"]))
+    return Jackknife(float(whole), _long(plain["without"]), tuple(plain["films"]))
 
 
 def _short(values: NDArray[np.float64]) -> list[float | None]:

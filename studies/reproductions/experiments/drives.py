@@ -1,43 +1,50 @@
-"""Tables of the thesis on situation awareness that come of drives with a depth camera."""
+"""Experiments with a depth camera, of the thesis on situation awareness: chapter 4 and appendix B."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Final
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.figure import Figure
 
-from peopleboy.studies.reproductions.evaluations.drive_scores import CLOSE_M, RADIUS_M, DriveRecord, interval
+from peopleboy.scenarios.running.engine.store import Result
+from peopleboy.studies.reproductions.evaluations.drive_scores import RADIUS_M, DriveRecord
 from peopleboy.studies.reproductions.evaluations.drive_tracking import (
     CHOICES,
     DEFAULT,
     LITERAL,
     NO_CONNECTOR,
+    NO_DEPTH,
     NO_ODOMETRY,
     SETS,
     TURNS,
     set_name,
+    watch_drive,
+    watch_legs,
 )
-from peopleboy.studies.reproductions.experiments.experiment import Chart, Done, Line, Samples, missing
-from peopleboy.studies.reproductions.measuring.drive_units import DriveUnit
-from peopleboy.studies.reproductions.measuring.units import Unit
-from peopleboy.studies.reproductions.measuring.workload import Plan
+from peopleboy.studies.reproductions.evaluations.playback import with_cameras
+from peopleboy.studies.reproductions.experiment import Floats, Line, Row, Samples, as_columns
+from peopleboy.studies.reproductions.pictures import situation_figures as figures
+from peopleboy.studies.reproductions.plan import WHOLE_S, Plan, shortened
+from peopleboy.studies.reproductions.statistics import bootstrap_interval
+from peopleboy.studies.reproductions.units import Measurement, Unit
+from peopleboy.tracker.frame import DEPTH
 
 ALL, MEASURED = "all", "measured"
 MAIN: Final = (DEFAULT, LITERAL)
 ABLATED: Final = (4, 6, 7, 10, 11, 12)
 """Numbers of the sets on which trackers are compared that differ in one thing."""
-SCALES: Final = (0.0, 1.0, 3.0)
+NOISIEST: Final = 3.0
+_FOLLOWED: Final = 2  # number of the set in which the robot follows a person
+_RANGES_M: Final = {"up to 3 m": (0.0, 3.0), "3 to 5 m": (3.0, 5.0), "5 to 10 m": (5.0, 10.0)}
 
-Floats = NDArray[np.float64]
-Row = dict[str, float]
-Measure = Callable[[DriveRecord], Row]
+Value = Callable[[DriveRecord], float]
 
 
 def tracked(record: DriveRecord) -> Row:
-    """Give table 4.1's figures."""
+    """Return table 4.1's values."""
     return {
         "images": record.frames,
         "FP per image": record.false_per_frame(),
@@ -49,7 +56,7 @@ def tracked(record: DriveRecord) -> Row:
 
 
 def compared(record: DriveRecord) -> Row:
-    """Give the figures by which trackers are compared."""
+    """Return the values by which trackers are compared."""
     return {
         "rate": record.rate(),
         "FP per image": record.false_per_frame(),
@@ -60,240 +67,77 @@ def compared(record: DriveRecord) -> Row:
     }
 
 
-@dataclass(frozen=True, slots=True)
-class SetTable:
-    """Figures of each set, and of all together, one for each seed."""
-
-    id: str
-    measure: Measure
-    chart: Chart = "none"
-    plotted: tuple[str, ...] = ()
-
-    def wants(self, plan: Plan, done: Done) -> list[Unit]:
-        """Every drive."""
-        return missing(all_drives(plan), done)
-
-    def samples(self, plan: Plan, done: Done) -> Samples:
-        """Give the figures of the default tracker and of the literal one."""
-        groups = {set_name(number): (number,) for number in plan.sets} | {ALL: plan.sets}
-        return {
-            Line(group, who): columns(self.measure(one) for one in by_seed(plan, done, who, numbers))
-            for group, numbers in groups.items()
-            for who in MAIN
-        }
-
-
-@dataclass(frozen=True, slots=True)
-class AllSets:
-    """Figures of all sets together, one for each seed, by what is measured."""
-
-    id: str
-    measures: Mapping[str, Measure]
-    chart: Chart = "none"
-    plotted: tuple[str, ...] = ()
-
-    def wants(self, plan: Plan, done: Done) -> list[Unit]:
-        """Every drive."""
-        return missing(all_drives(plan), done)
-
-    def samples(self, plan: Plan, done: Done) -> Samples:
-        """Give the figures of all sets together, by seed."""
-        return {
-            Line(group, who): columns(measure(one) for one in by_seed(plan, done, who, plan.sets))
-            for group, measure in self.measures.items()
-            for who in MAIN
-        }
-
-
-@dataclass(frozen=True, slots=True)
-class Ablations:
-    """Trackers that differ in one thing, on the same films."""
-
-    id: str = "situation-ablations"
-    chart: Chart = "none"
-    plotted: tuple[str, ...] = ()
-
-    def wants(self, plan: Plan, done: Done) -> list[Unit]:
-        """Some of the sets, seen by all trackers."""
-        return missing(noisy_drives(plan, 1.0), done)
-
-    def samples(self, plan: Plan, done: Done) -> Samples:
-        """Give the figures by seed."""
-        units = noisy_drives(plan, 1.0)
-        return {
-            Line(name, MEASURED): columns(compared(one) for one in _seeds(units, done, name))
-            for name in CHOICES
-        }
-
-
-@dataclass(frozen=True, slots=True)
-class Noise:
-    """The default tracker, and without its connector, with less and more noise of the sensor."""
-
-    id: str = "situation-noise"
-    chart: Chart = "none"
-    plotted: tuple[str, ...] = ()
-
-    def wants(self, plan: Plan, done: Done) -> list[Unit]:
-        """Some of the sets at every scale."""
-        return missing([unit for scale in SCALES for unit in noisy_drives(plan, scale)], done)
-
-    def samples(self, plan: Plan, done: Done) -> Samples:
-        """Give the figures by seed."""
-        return {
-            Line(f"noise x {scale:g}{name}", MEASURED): columns(
-                compared(one) for one in _seeds(noisy_drives(plan, scale), done, who)
-            )
-            for scale in SCALES
-            for name, who in (("", DEFAULT), (f", {NO_CONNECTOR}", NO_CONNECTOR))
-        }
-
-
-@dataclass(frozen=True, slots=True)
-class Turning:
-    """What odometry is worth where the robot turns: pairs of the same films."""
-
-    id: str = "situation-odometry"
-    chart: Chart = "none"
-    plotted: tuple[str, ...] = ()
-
-    def wants(self, plan: Plan, done: Done) -> list[Unit]:
-        """Drives with many turns."""
-        return missing(turning_drives(plan), done)
-
-    def samples(self, plan: Plan, done: Done) -> Samples:
-        """Give the figures by seed."""
-        names = {"with odometry": DEFAULT, "without odometry": NO_ODOMETRY}
-        return {
-            Line(group, MEASURED): columns(compared(one) for one in _seeds(turning_drives(plan), done, who))
-            for group, who in names.items()
-        }
-
-
-@dataclass(frozen=True, slots=True)
-class Goals:
-    """What this project wants of its tracker, and what it has: 95 % intervals over seeds."""
-
-    id: str = "situation-goals"
-    chart: Chart = "none"
-    plotted: tuple[str, ...] = ()
-
-    def wants(self, plan: Plan, done: Done) -> list[Unit]:
-        """All that the goals are about."""
-        units: list[Unit] = [*all_drives(plan), *noisy_drives(plan, SCALES[-1]), *turning_drives(plan)]
-        return missing(units, done)
-
-    def samples(self, plan: Plan, done: Done) -> Samples:
-        """Give one figure and its interval for each goal."""
-        return {Line(name, DEFAULT): row for name, row in self._rows(plan, done)}
-
-    def _rows(self, plan: Plan, done: Done) -> Iterator[tuple[str, dict[str, Floats]]]:
-        everything = by_seed(plan, done, DEFAULT, plan.sets)
-        for name, measure in _WANTED.items():
-            yield name, _with_interval(everything, measure)
-        sets = {number: by_seed(plan, done, DEFAULT, (number,)) for number in plan.sets}
-        seeds = [{number: of_set[k] for number, of_set in sets.items()} for k in range(plan.drives)]
-        yield "rate of the worst set", _figures(_worst_set(seeds), *interval(seeds, _worst_set))
-        noisy = _seeds(noisy_drives(plan, SCALES[-1]), done, DEFAULT)
-        yield "rate, noise x 3", _with_interval(noisy, DriveRecord.rate)
-        pairs = list(
-            zip(*(_seeds(turning_drives(plan), done, who) for who in (NO_ODOMETRY, DEFAULT)), strict=True)
-        )
-        yield "switches a run in turns, saved by odometry", _figures(_saved(pairs), *interval(pairs, _saved))
-
-
-def drive(plan: Plan, scenario: str, seed: int, names: Sequence[str], scale: float = 1.0) -> DriveUnit:
-    """Name a film, and who sees it."""
-    return DriveUnit(scenario=scenario, seed=seed, names=tuple(names), scale=scale, most_s=plan.drive_s)
-
-
-def all_drives(plan: Plan) -> list[DriveUnit]:
-    """List every set's drives, seed by seed."""
-    return [drive(plan, SETS[number - 1], seed, MAIN) for seed in range(plan.drives) for number in plan.sets]
-
-
-def noisy_drives(plan: Plan, scale: float) -> list[DriveUnit]:
-    """List the drives on which the sensor's noise is varied; all trackers see them with the usual one."""
-    names = tuple(CHOICES) if scale == 1.0 else (DEFAULT, NO_CONNECTOR)
-    sets = [number for number in plan.sets if number in ABLATED]
-    return [drive(plan, SETS[n - 1], seed, names, scale) for n in sets for seed in range(plan.ablated)]
-
-
-def turning_drives(plan: Plan) -> list[DriveUnit]:
-    """List the drives with many turns."""
-    return [drive(plan, TURNS, seed, (DEFAULT, NO_ODOMETRY)) for seed in range(2 * plan.drives)]
-
-
-def by_seed(plan: Plan, done: Done, who: str, numbers: Sequence[int]) -> list[DriveRecord]:
-    """Give what a tracker did on some sets together, by seed."""
-    units = [drive(plan, SETS[n - 1], seed, MAIN) for n in numbers for seed in range(plan.drives)]
-    return _seeds(units, done, who)
-
-
-def columns(rows: Iterable[Row]) -> dict[str, Floats]:
-    """Turn rows of figures into columns (R,)."""
-    listed = list(rows)
-    return {name: np.array([row[name] for row in listed], dtype=np.float64) for name in listed[0]}
-
-
-def _seeds(units: Sequence[DriveUnit], done: Done, who: str) -> list[DriveRecord]:
-    seeds: dict[int, list[DriveRecord]] = {}
-    for unit in units:
-        seeds.setdefault(unit.seed, []).append(DriveRecord.of_plain(done[unit.key][who]))
-    return [DriveRecord.joined(records) for _, records in sorted(seeds.items())]
-
-
-def _mean(errors: Floats) -> float:
-    return float(errors.mean()) if errors.size else float("nan")
-
-
-def _median(errors: Floats) -> float:
-    return float(np.median(errors)) if errors.size else float("nan")
-
-
 def errors_along(record: DriveRecord) -> Row:
-    """Give table B.1's errors, sideways (x) and along the robot's axis (z), against the surface."""
+    """Return table B.1's errors, sideways (x) and along the robot's axis (z), against the surface."""
     off = np.abs(record.hits[:, 5:7])
     z, x = off[np.isfinite(off).all(axis=1)].T
     return {"x [m]": _mean(x), "z [m]": _mean(z), "sd x [m]": float(x.std()), "sd z [m]": float(z.std())}
 
 
-def _truth(radius_m: float, errors: Callable[[DriveRecord], Floats]) -> Measure:
-    def measure(record: DriveRecord) -> Row:
-        off = errors(record)
-        off = off[off <= radius_m]
-        return {
-            "rate": record.rate(radius_m),
-            "FP per image": record.false_per_frame(radius_m),
-            "mean [m]": _mean(off),
-            "median [m]": _median(off),
-        }
-
-    return measure
+def position(record: DriveRecord, *, place: str, radius_m: float) -> Row:
+    """Return how well positions are found within a radius of the body's middle, or of the surface seen."""
+    off = record.error_m if place == "body" else record.surface_error_m
+    off = off[off <= radius_m]
+    return {
+        "rate": record.rate(radius_m),
+        "FP per image": record.false_per_frame(radius_m),
+        "mean [m]": _mean(off),
+        "median [m]": _median(off),
+    }
 
 
-_TRUTHS: Final = {
-    f"{place}, within {radius_m:g} m": _truth(radius_m, errors)
-    for radius_m in (RADIUS_M, CLOSE_M)
-    for place, errors in (
-        ("middle of the body", lambda record: record.error_m),
-        ("surface that is seen", lambda record: record.surface_error_m),
-    )
+def recall(record: DriveRecord, *, band: int) -> Row:
+    """Return the pre-detection's recall of people by how much of them is hidden."""
+    return {"recall": float(record.size_recall[band])}
+
+
+def false_sizes(record: DriveRecord) -> Row:
+    """Return the pre-detection's false alarms."""
+    return {"false sizes per image": record.false_sizes / record.frames}
+
+
+COLUMNS: Final[Mapping[str, Callable[..., Row]]] = {
+    one.__name__: one for one in (tracked, compared, errors_along, position, recall, false_sizes)
 }
 
-_BANDS: Final = ("hidden < .1", "hidden < .4", "hidden < .7", "hidden more")
+
+def drives(
+    using: Measurement,
+    *,
+    groups: Mapping[str, Mapping[str, Any]] | None = None,
+    columns: str = "",
+    drives: str = "sets",
+    by_set: bool = False,
+) -> Samples:
+    """Score trackers on drives, one value a seed.
+
+    Args:
+        using: how much is measured, and what is there.
+        groups: `tracker`, if it is not the default and the literal one, `scale` of the depth's noise, and
+            `columns` with what these take.
+        columns: one of `COLUMNS`.
+        drives: "sets", or those that are "ablated", or those with many "turns".
+        by_set: whether there is a group for each set, and one for all of them.
+    """
+    plan = using.plan
+    declared = {name: {"columns": columns, **own} for name, own in (groups or {}).items()}
+    if by_set:
+        sets = {set_name(number): (number,) for number in plan.sets} | {ALL: plan.sets}
+        declared = {name: {"columns": columns, "numbers": numbers} for name, numbers in sets.items()}
+    units = {name: drive_units(plan, drives, own.get("scale", 1.0)) for name, own in declared.items()}
+    using.results(unit for several in units.values() for unit in several)
+    found = {}
+    for name, own in declared.items():
+        rest = {key: one for key, one in own.items() if key not in ("columns", "tracker", "scale", "numbers")}
+        measure = partial(COLUMNS[own["columns"]], **rest)
+        scenarios = [SETS[number - 1] for number in own.get("numbers", ())] or None
+        for tracker in (own["tracker"],) if "tracker" in own else MAIN:
+            records = by_seed(using, units[name], tracker, scenarios)
+            found[Line(name, MEASURED if "tracker" in own else tracker)] = as_columns(map(measure, records))
+    return found
 
 
-def _recall(band: int) -> Measure:
-    return lambda record: {"recall": float(record.size_recall[band])}
-
-
-_BY_SIZE: Final[Mapping[str, Measure]] = {
-    **{name: _recall(band) for band, name in enumerate(_BANDS)},
-    "nobody": lambda record: {"false sizes per image": record.false_sizes / record.frames},
-}
-
-_WANTED: Final[Mapping[str, Callable[[DriveRecord], float]]] = {
+_WANTED: Final[Mapping[str, Value]] = {
     "rate": DriveRecord.rate,
     "FP per image": DriveRecord.false_per_frame,
     "error, mean [m]": lambda record: _mean(record.error_m),
@@ -303,36 +147,146 @@ _WANTED: Final[Mapping[str, Callable[[DriveRecord], float]]] = {
 }
 
 
-def _with_interval(
-    records: Sequence[DriveRecord], measure: Callable[[DriveRecord], float]
-) -> dict[str, Floats]:
-    def together(parts: Sequence[DriveRecord]) -> float:
-        return measure(DriveRecord.joined(parts))
+def goals(using: Measurement) -> Samples:
+    """Estimate what this project wants of its tracker: values with 95 % intervals over seeds."""
+    plan = using.plan
+    sets, noisy, turns = (
+        drive_units(plan, kind, scale)
+        for kind, scale in (("sets", 1.0), ("ablated", NOISIEST), ("turns", 1.0))
+    )
+    using.results([*sets, *noisy, *turns])
+    everything = by_seed(using, sets, DEFAULT)
+    rows = {name: _with_interval(everything, _joined(value)) for name, value in _WANTED.items()}
+    by_set = [by_seed(using, sets, DEFAULT, [SETS[number - 1]]) for number in plan.sets]
+    rows["rate of the worst set"] = _with_interval(list(zip(*by_set, strict=True)), _worst_rate)
+    rows["rate, noise x 3"] = _with_interval(by_seed(using, noisy, DEFAULT), _joined(DriveRecord.rate))
+    pairs = zip(*(by_seed(using, turns, name) for name in (NO_ODOMETRY, DEFAULT)), strict=True)
+    rows["switches a run in turns, saved by odometry"] = _with_interval(list(pairs), _saved_switches)
+    return {Line(name, DEFAULT): row for name, row in rows.items()}
 
-    return _figures(together(records), *interval(records, together))
+
+def _joined(value: Value) -> Callable[[Sequence[DriveRecord]], float]:
+    return lambda records: value(DriveRecord.joined(records))
 
 
-def _figures(figure: float, low: float, high: float) -> dict[str, Floats]:
-    return {"figure": np.array([figure]), "from": np.array([low]), "to": np.array([high])}
+def _worst_rate(seeds: Sequence[Sequence[DriveRecord]]) -> float:
+    return float(np.nanmin([DriveRecord.joined(records).rate() for records in zip(*seeds, strict=True)]))
 
 
-def _worst_set(seeds: Sequence[Mapping[int, DriveRecord]]) -> float:
-    rates = [DriveRecord.joined(seed[number] for seed in seeds).rate() for number in seeds[0]]
-    return float(np.nanmin(rates))
-
-
-def _saved(pairs: Sequence[tuple[DriveRecord, DriveRecord]]) -> float:
+def _saved_switches(pairs: Sequence[Sequence[DriveRecord]]) -> float:
     return sum(without.switches - with_it.switches for without, with_it in pairs) / len(pairs)
 
 
-DRIVES = (
-    SetTable("situation-table-4.1", tracked),
-    SetTable("situation-table-B.1", errors_along),
-    AllSets("situation-positions", _TRUTHS),
-    Ablations(),
-    Noise(),
-    Turning(),
-    AllSets("situation-pre-detection", _BY_SIZE),
-    Goals(),
-)
-"""Experiments of chapter 4 and appendix B of that thesis."""
+def _with_interval(parts: Sequence[Any], value: Callable[[Sequence[Any]], float]) -> dict[str, Floats]:
+    numbers = (value(parts), *bootstrap_interval(parts, value))
+    return {name: np.array([number]) for name, number in zip(("figure", "from", "to"), numbers, strict=True)}
+
+
+def draw_drives(using: Measurement, *, figure: str, sets: Sequence[int]) -> Figure | None:
+    """Draw some sets, each played with seed 0; None where a plan leaves out all of them."""
+    names = tuple(CHOICES) if figure == "crossing" else MAIN
+    units = {set_name(n): drive_unit(using.plan, SETS[n - 1], 0, names) for n in sets if n in using.plan.sets}
+    runs = dict(zip(units, using.results(units.values()), strict=True))
+    return _FIGURES[figure](runs) if runs else None
+
+
+def _only(runs: Mapping[str, Result]) -> Result:
+    (run,) = runs.values()
+    return run
+
+
+_FIGURES: Final[Mapping[str, Callable[[Mapping[str, Result]], Figure]]] = {
+    "paths": lambda runs: figures.draw_ways(runs, DEFAULT),
+    "world": lambda runs: figures.draw_world(_only(runs), DEFAULT),
+    "people": lambda runs: figures.draw_people(runs, DEFAULT),
+    "errors": lambda runs: figures.draw_errors(_only(runs), DEFAULT),
+    "crossing": lambda runs: figures.draw_crossing(
+        _only(runs), {NO_DEPTH: "filters without depth", DEFAULT: "filters with depth"}
+    ),
+}
+
+
+def legs(using: Measurement) -> Samples:
+    """Find by range in which share of the images the person is found, by depth and by legs."""
+    (run,) = using.results([_legs_unit(using.plan)])
+    return {
+        Line(group, name): as_columns([{"rate": _found(run["truth"], run[key], *limits)}])
+        for group, limits in _RANGES_M.items()
+        for name, key in ((DEFAULT, "depth"), ("legs", "legs"))
+    }
+
+
+def draw_legs(using: Measurement) -> Figure:
+    """Draw the true path, and those by depth and by legs."""
+    return figures.draw_legs(*using.results([_legs_unit(using.plan)]))
+
+
+def _found(
+    truth: Sequence[Sequence[float]], tracked: Sequence[Sequence[float]], nearest_m: float, farthest_m: float
+) -> float:
+    """Return in which share of the images a person in plain view and range is placed within 1 m."""
+    places: dict[int, list[Sequence[float]]] = {}
+    for frame, _, *place in tracked:
+        places.setdefault(int(frame), []).append(place)
+    wanted = [row for row in truth if row[6] and nearest_m <= row[4] < farthest_m]
+    hits = [
+        any(np.hypot(x - row[2], y - row[3]) <= RADIUS_M for x, y in places.get(int(row[0]), []))
+        for row in wanted
+    ]
+    return float(np.mean(hits)) if hits else float("nan")
+
+
+def drive_units(plan: Plan, drives: str, scale: float = 1.0) -> list[Unit]:
+    """List drives of a kind, seed by seed; with the usual noise all trackers see those that are ablated."""
+    if drives == "sets":
+        return [drive_unit(plan, SETS[n - 1], seed, MAIN) for seed in range(plan.drives) for n in plan.sets]
+    if drives == "turns":
+        return [drive_unit(plan, TURNS, seed, (DEFAULT, NO_ODOMETRY)) for seed in range(2 * plan.drives)]
+    names = tuple(CHOICES) if scale == 1.0 else (DEFAULT, NO_CONNECTOR)
+    scenarios = [SETS[n - 1] for n in plan.sets if n in ABLATED]
+    return [drive_unit(plan, one, seed, names, scale) for one in scenarios for seed in range(plan.ablated)]
+
+
+def drive_unit(plan: Plan, scenario: str, seed: int, names: tuple[str, ...], scale: float = 1.0) -> Unit:
+    """Play a drive once for some trackers, cut where time is short, with the depth's noise scaled."""
+    cut = f" {plan.drive_s:g}s" if plan.drive_s < WHOLE_S else ""
+    key = f"drive {scenario}-{seed}{cut} noise {scale:g} | {', '.join(names)}"
+    return Unit(key, score_drive, (scenario, seed, names, scale, plan.drive_s))
+
+
+def _legs_unit(plan: Plan) -> Unit:
+    scenario = SETS[_FOLLOWED - 1]
+    return Unit(f"legs {scenario} {plan.drive_s:g}s", score_legs, (scenario, plan.drive_s))
+
+
+def score_drive(scenario: str, seed: int, names: tuple[str, ...], scale: float, most_s: float) -> Result:
+    """Play and score a drive."""
+    played = shortened(scenario, most_s)
+    if scale != 1.0:
+        played = with_cameras(played, {DEPTH: {"kind": DEPTH, "scale": scale}})
+    return watch_drive(played, seed, names)
+
+
+def score_legs(scenario: str, most_s: float) -> Result:
+    """Follow a person by legs and by depth and colour at the same time."""
+    return watch_legs(shortened(scenario, most_s), 0)
+
+
+def by_seed(
+    using: Measurement, units: Sequence[Unit], tracker: str, scenarios: Sequence[str] | None = None
+) -> list[DriveRecord]:
+    """Return what a tracker did in some scenarios, or all, taken together by seed."""
+    seeds: dict[int, list[DriveRecord]] = {}
+    for unit, result in zip(units, using.results(units), strict=True):
+        scenario, seed, *_ = unit.arguments
+        if scenarios is None or scenario in scenarios:
+            seeds.setdefault(seed, []).append(DriveRecord.of_plain(result[tracker]))
+    return [DriveRecord.joined(records) for _, records in sorted(seeds.items())]
+
+
+def _mean(errors: Floats) -> float:
+    return float(errors.mean()) if errors.size else float("nan")
+
+
+def _median(errors: Floats) -> float:
+    return float(np.median(errors)) if errors.size else float("nan")

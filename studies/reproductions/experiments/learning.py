@@ -1,23 +1,30 @@
-"""Experiments on telling who is in front: the thesis's tables 7.1 to 7.4."""
+"""Experiments on learning which of two people is in front: the thesis's tables 7.1 to 7.4."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, Final
 
 import numpy as np
 
-from peopleboy.studies.reproductions.experiments.experiment import Chart, Done, Line, Samples, missing
-from peopleboy.studies.reproductions.measuring.learn_units import LearnUnit, PairUnit, examples
-from peopleboy.studies.reproductions.measuring.tracker_settings import Setting
-from peopleboy.studies.reproductions.measuring.units import Unit
-from peopleboy.studies.reproductions.measuring.workload import Plan
-from peopleboy.studies.training.occlusion_learning.train_occlusion import SCENARIOS
-from peopleboy.tracker.contour.occlusion.pair_features import FEATURES
-from peopleboy.tracker.contour.occlusion.weak_classifiers import weighted_sums
+from peopleboy.scenarios.running.engine.store import Result
+from peopleboy.sim.random_streams import stream
+from peopleboy.studies.reproductions.experiment import Line, Samples
+from peopleboy.studies.reproductions.plan import Plan
+from peopleboy.studies.reproductions.statistics import SHARE
+from peopleboy.studies.reproductions.tracker_settings import Setting
+from peopleboy.studies.reproductions.units import Measurement, Unit
+from peopleboy.studies.training.occlusion_learning.example_splits import learn_split
+from peopleboy.studies.training.occlusion_learning.occlusion_pairs import PairExample, collect
+from peopleboy.studies.training.occlusion_learning.pair_task import examples_of, plain_pairs
+from peopleboy.studies.training.occlusion_learning.train_occlusion import LEAST, SCENARIOS
+from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES
+from peopleboy.tracker.thermal.occlusion.weak_classifiers import weighted_sums
 
-SHARE = "right [%]"
 CLASSIFIERS, PAIRS = "weak classifiers", "pairs"
-SCENES = (
+SCENES: Final = (
     *SCENARIOS,
     "dark_crossing",
     "crowd_8",
@@ -26,107 +33,126 @@ SCENES = (
     "hall_visits",
     "corridor_patrol",
 )
-"""Where examples come from: those of the shipped tables, harder ones, and the films of data sets 3 and 4."""
-TESTS = ("held out", "unseen scenarios")
-TRACKERS = {"literal": Setting("thesis-occlusion"), "default": Setting("contour")}
-"""Who measures the examples; the thesis says nothing of tests on other scenes than those it learned from."""
+"""Where examples come from: those of the shipped tables, harder ones, and the runs of data sets 3 and 4."""
+TESTS: Final = ("held out", "unseen scenarios")
+TRACKERS: Final = {"literal": Setting("thesis-occlusion"), "default": Setting("contour")}
+"""Who measures the examples; the thesis does not test on other scenes than those it learned from."""
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
-    """A way to build weak classifiers.
+class Classifiers:
+    """How weak classifiers are built.
 
     Attributes:
-        name: as in the source's table.
-        uses: names of the features.
+        features: names of those that they use.
         most: how many of them are added up.
     """
 
-    name: str
-    uses: tuple[str, ...] = FEATURES
+    features: Sequence[str] = FEATURES
     most: int = 2
 
-    def unit(self, plan: Plan, done: Done, split: int, whose: Setting) -> LearnUnit:
-        """Give the work of one split; the examples must have been collected."""
-        found = (example for unit in pair_units(plan, whose) for example in examples(unit, done[unit.key]))
-        return LearnUnit(self.uses, self.most, plan.rounds, split, tuple(found), whose)
+
+def learning(using: Measurement, *, groups: Mapping[str, Mapping[str, Any] | None]) -> Samples:
+    """Compare ways to build weak classifiers by the share of right answers, split by split.
+
+    Args:
+        using: how much is measured, and what is there.
+        groups: fields of `Classifiers` by name.
+    """
+    most = 3 if using.plan.triplets else 2
+    ways = {name: Classifiers(**(fields or {})) for name, fields in groups.items()}
+    pairs, learned = _learned(using, {name: way for name, way in ways.items() if way.most <= most})
+    return {
+        Line(name, f"{tracker}, {test}"): {
+            CLASSIFIERS: np.array([float(len(weighted_sums(len(ways[name].features), ways[name].most)))]),
+            PAIRS: np.array([float(pairs[tracker])]),
+            SHARE: np.array([split[test] for split in splits]),
+        }
+        for (name, tracker), splits in learned.items()
+        for test in TESTS
+    }
 
 
-@dataclass(frozen=True, slots=True)
-class Learning:
-    """Ways to build weak classifiers, side by side."""
+def best_classifiers(using: Measurement) -> Samples:
+    """List the weights of those chosen first, of the first split; NaN for features that one does not use."""
+    _, learned = _learned(using, {"both": Classifiers()})
+    return {
+        Line(str(place), tracker): {name: np.array([weights.get(name, np.nan)]) for name in FEATURES}
+        for (_, tracker), (first, *_) in learned.items()
+        for place, weights in enumerate(first["best"], 1)
+    }
 
-    id: str
-    ways: tuple[Way, ...]
-    chart: Chart = "bars"
-    plotted: tuple[str, ...] = (SHARE,)
 
-    @property
-    def groups(self) -> list[str]:
-        """Names of all ways, whether or not a quick run tries them."""
-        return [way.name for way in self.ways]
-
-    def wants(self, plan: Plan, done: Done) -> list[Unit]:
-        """Examples first, then what is learned from them."""
-        pairs = [unit for whose in TRACKERS.values() for unit in pair_units(plan, whose)]
-        lessons = (
-            unit
-            for whose in TRACKERS.values()
-            for way in self._ways(plan)
-            for unit in _splits(way, plan, done, whose)
+def _learned(
+    using: Measurement, ways: Mapping[str, Classifiers]
+) -> tuple[dict[str, int], dict[tuple[str, str], list[Result]]]:
+    """Collect the examples, then learn from them: their number by tracker, and each way's splits."""
+    plan = using.plan
+    collected = {name: _pair_units(plan, setting) for name, setting in TRACKERS.items()}
+    examples = {
+        name: tuple(
+            example
+            for (scenario, seed, _), result in zip(
+                (unit.arguments for unit in collected[name]), results, strict=True
+            )
+            for example in examples_of(scenario, seed, result["pairs"])
         )
-        return missing(pairs, done) or missing(lessons, done)
-
-    def samples(self, plan: Plan, done: Done) -> Samples:
-        """Give the share of right answers, split by split, and how many classifiers and pairs there are."""
-        return {
-            Line(way.name, f"{who}, {test}"): {
-                CLASSIFIERS: np.array([float(len(weighted_sums(len(way.uses), way.most)))]),
-                PAIRS: np.array(
-                    [float(sum(len(done[unit.key]["pairs"]) for unit in pair_units(plan, whose)))]
-                ),
-                SHARE: np.array([done[unit.key][test] for unit in _splits(way, plan, done, whose)]),
-            }
-            for way in self._ways(plan)
-            for who, whose in TRACKERS.items()
-            for test in TESTS
-        }
-
-    def _ways(self, plan: Plan) -> list[Way]:
-        return [way for way in self.ways if way.most <= (3 if plan.triplets else 2)]
+        for name, results in using.grouped(collected).items()
+    }
+    units = {
+        (name, tracker): [
+            learn_unit(way, plan, examples[tracker], tracker, split) for split in range(plan.splits)
+        ]
+        for name, way in ways.items()
+        for tracker in TRACKERS
+    }
+    return {tracker: len(found) for tracker, found in examples.items()}, using.grouped(units)
 
 
-@dataclass(frozen=True, slots=True)
-class BestClassifiers:
-    """The ten weak classifiers that are chosen first, with their weights."""
-
-    id: str = "table-7.4"
-    chart: Chart = "none"
-    plotted: tuple[str, ...] = ()
-    way: Way = Way("both")
-
-    def wants(self, plan: Plan, done: Done) -> list[Unit]:
-        """The same work as for table 7.1."""
-        return Learning(self.id, (self.way,)).wants(plan, done)
-
-    def samples(self, plan: Plan, done: Done) -> Samples:
-        """Give the weights of the first split; NaN for features that a classifier does not use."""
-        best = {who: done[self.way.unit(plan, done, 0, whose).key]["best"] for who, whose in TRACKERS.items()}
-        return {
-            Line(str(place), who): {name: np.array([weights.get(name, np.nan)]) for name in FEATURES}
-            for who, chosen in best.items()
-            for place, weights in enumerate(chosen, 1)
-        }
+def _pair_units(plan: Plan, setting: Setting) -> list[Unit]:
+    """List the runs in which a tracker measures people who overlap."""
+    return [
+        Unit(f"pairs {name}-{seed} | {setting.key}", collect_pairs, (name, seed, setting))
+        for seed in range(plan.pair_seeds)
+        for name in SCENES
+    ]
 
 
-def pair_units(plan: Plan, whose: Setting) -> list[PairUnit]:
-    """List where a tracker's examples come from."""
-    return [PairUnit(name, seed, whose) for seed in range(plan.pair_seeds) for name in SCENES]
+def learn_unit(
+    way: Classifiers, plan: Plan, examples: tuple[PairExample, ...], tracker: str, split: int
+) -> Unit:
+    """Learn from one split of a tracker's examples."""
+    key = (
+        f"learn {','.join(way.features)} by {way.most} | {len(examples)} pairs of {TRACKERS[tracker].key}, "
+        f"{plan.rounds} rounds | {split}"
+    )
+    return Unit(key, learn_pairs, (tuple(way.features), way.most, plan.rounds, split, examples))
 
 
-def _pair_count(plan: Plan, done: Done, whose: Setting) -> int:
-    return sum(len(done[unit.key]["pairs"]) for unit in pair_units(plan, whose))
+def collect_pairs(scenario: str, seed: int, setting: Setting) -> Result:
+    """Run a tracker through a scenario, and keep what it measured of people who overlap."""
+    return {"pairs": plain_pairs(collect(scenario, seed, setting.config()))}
 
 
-def _splits(way: Way, plan: Plan, done: Done, whose: Setting) -> list[LearnUnit]:
-    return [way.unit(plan, done, split, whose) for split in range(plan.splits)]
+def learn_pairs(
+    features: tuple[str, ...], most: int, rounds: int, split: int, examples: tuple[PairExample, ...]
+) -> Result:
+    """Learn from examples that are split at random, and scenario by scenario, and test on the rest.
+
+    Source: thesis, section 7.4.
+
+    Args:
+        features: names of those that are used.
+        most: how many of them a weak classifier may add up.
+        rounds: of boosting.
+        split: number of the splits, from 0.
+        examples: to split.
+    """
+    if len(examples) < LEAST:
+        return {"held out": math.nan, "unseen scenarios": math.nan, "best": []}
+    found = learn_split(examples, features, most, rounds, stream(split, "occlusion.split"))
+    return {
+        "held out": found.held_out,
+        "unseen scenarios": found.unseen,
+        "best": [weak.weights for weak in found.table.classifiers[:10]],
+    }

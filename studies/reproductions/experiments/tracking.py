@@ -1,146 +1,284 @@
-"""Experiments in which trackers see films: each line is a tracker on some data sets."""
+"""Experiments in which trackers see the sequences of data sets, repeated with other random numbers."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, fields, is_dataclass
+from pathlib import Path
+from typing import Any, Final, TypeVar, get_type_hints
 
 import numpy as np
 
-from peopleboy.studies.reproductions.experiments.experiment import (
-    Chart,
-    Done,
-    Figures,
-    FilmFigure,
-    Line,
-    Samples,
-    missing,
-)
-from peopleboy.studies.reproductions.measuring.tracker_settings import Changes, Setting
-from peopleboy.studies.reproductions.measuring.units import (
+from peopleboy.scenarios.files.suite import SuiteRun
+from peopleboy.scenarios.running.engine.store import Result
+from peopleboy.scenarios.scores.suite_table import Content, add_up
+from peopleboy.studies.reproductions.evaluations.sequence_scores import (
+    CAUSES,
     RECORDS,
-    Count,
-    FilmUnit,
-    TrackUnit,
-    Unit,
-    restored,
+    STRICT,
+    count_sequence,
+    measure_delay,
+    score_causes,
+    score_sequence,
 )
-from peopleboy.studies.reproductions.measuring.workload import Plan
+from peopleboy.studies.reproductions.experiment import Jackknife, Line, Samples, Values
+from peopleboy.studies.reproductions.plan import Plan
+from peopleboy.studies.reproductions.statistics import PAPER, THESIS
+from peopleboy.studies.reproductions.tracker_settings import Changes, Setting, Value
+from peopleboy.studies.reproductions.units import Measurement, Unit
+from peopleboy.tracker.evaluation.mot_metrics import Sums
 
-THESIS = ("CR", "CP", "CA", "AR", "AP", "AA")
-PAPER = ("OC", "DC", "OCR", "OCP", "OCA", "OAR", "BAP", "ADC")
+METRICS: Final = {"thesis": THESIS, "paper": PAPER}
+RULES: Final = {
+    "": "ignore",
+    ", strict": "absent",
+    ", strict, own range": "own range",
+    ", half in view": "half in view",
+}
+"""Ways to deal with uncounted people, by what they add to a tracker's name."""
+RATE_HZ: Final = 15
+WORK: Final[Mapping[str, Callable[..., Result]]] = {
+    "track": score_sequence,
+    "delay": measure_delay,
+    "causes": score_causes,
+}
+"""What a tracker does on a sequence, by the word in the unit's key."""
+
+CONTENTS: Final = {
+    "frames_with_persons": "frames with persons",
+    "frames": "frames",
+    "tracks": "tracks",
+    "detections": "detections",
+    "occlusions": "occlusions",
+    "at_once": "persons at once",
+}
+"""Columns of the thesis's table 3.1."""
+
+Row = Callable[[Sequence[Result]], Sequence[float]]
+Record = TypeVar("Record", bound=Sums)
 
 
 @dataclass(frozen=True, slots=True)
 class TrackerTrial:
-    """A tracker on some data sets.
+    """A line of the table: a tracker on some data sets.
 
     Attributes:
-        line: where its figures go.
+        line: group and name.
         setting: the tracker.
         suites: names of the data sets, taken together.
-        rule: for people who are not counted.
-        is_quick: whether it is tried as well when time is short.
-        quick_changes: further changes of the tracker when time is short.
+        rule: which part of the results counts.
     """
 
     line: Line
     setting: Setting
     suites: tuple[str, ...]
-    rule: Count = "ignore"
-    is_quick: bool = True
-    quick_changes: Changes = ()
-
-    def setting_in(self, plan: Plan) -> Setting:
-        """Give the tracker as the plan wants it."""
-        changes = self.quick_changes if plan.is_quick else ()
-        return replace(self.setting, changes=self.setting.changes + changes)
+    rule: str
 
 
-@dataclass(frozen=True, slots=True)
-class Tracking:
-    """Trackers on data sets, repeated with other random numbers.
+def trials(
+    *,
+    is_quick: bool,
+    groups: Mapping[str, Any],
+    trackers: Mapping[str, Any] | None = None,
+    suites: Sequence[str] = (),
+    sweep: Sequence[str] | Mapping[str, float] = (),
+    rules: Mapping[str, str] | None = None,
+    quick: Sequence[str] | None = None,
+    quick_changes: Mapping[str, Any] | None = None,
+) -> Iterator[TrackerTrial]:
+    """Yield the lines of a declaration, group by group, tracker by tracker, rule by rule.
 
-    Attributes:
-        id: as `experiment.Experiment` says, like `chart` and `plotted`.
-        metrics: names of the columns.
-        trials: one a line.
+    Args:
+        is_quick: whether time is short.
+        groups: a value of `sweep`, or what the group has otherwise: `suites`, `trackers`, `changes`.
+        trackers: base by name, or `base` and `suites`.
+        suites: names of the data sets, unless a group or tracker has its own.
+        sweep: settings that have a group's value, or how far each is from it.
+        rules: which part of the results counts, by what is added to a tracker's name.
+        quick: groups that are tried when time is short; all if left out.
+        quick_changes: further changes of the trackers then.
     """
-
-    id: str
-    metrics: tuple[str, ...]
-    trials: tuple[TrackerTrial, ...]
-    chart: Chart = "bars"
-    plotted: tuple[str, ...] = ()
-
-    @property
-    def groups(self) -> list[str]:
-        """What is varied, whether or not a quick run has it."""
-        return [trial.line.group for trial in self.trials]
-
-    def wants(self, plan: Plan, done: Done) -> list[Unit]:
-        """Films first, then who sees them."""
-        films = [
-            FilmUnit(play, plan.cache)
-            for trial in self._trials(plan)
-            for name in trial.suites
-            for play in plan.plays(name)
-        ]
-        return missing(films, done) or missing(self._units(plan), done)
-
-    def samples(self, plan: Plan, done: Done) -> Samples:
-        """Add up the runs of each repeat, and take the metrics of the sums."""
-        return {trial.line: self._figures(trial, plan, done) for trial in self._trials(plan)}
-
-    def _trials(self, plan: Plan) -> list[TrackerTrial]:
-        return [trial for trial in self.trials if trial.is_quick or not plan.is_quick]
-
-    def _units(self, plan: Plan) -> Iterator[TrackUnit]:
-        for repeat in range(plan.repeats):
-            for trial in self._trials(plan):
-                yield from units_of(trial, plan, repeat)
-
-    def _figures(self, trial: TrackerTrial, plan: Plan, done: Done) -> dict[str, Figures]:
-        first, *others = (
-            [done[unit.key][trial.rule] for unit in units_of(trial, plan, repeat)]
-            for repeat in range(plan.repeats)
+    offsets = sweep if isinstance(sweep, Mapping) else dict.fromkeys(sweep, 0)
+    for group, declared in groups.items():
+        if is_quick and quick is not None and group not in quick:
+            continue
+        own = declared if isinstance(declared, Mapping) else {}
+        values = own.get("changes") or (
+            {} if own else {path: declared + more for path, more in offsets.items()}
         )
-        if not others and len(first) > 1:
-            return self._by_films(first, trial.suites)
-        rows = np.array([self._row(films) for films in (first, *others)])
-        return dict(zip(self.metrics, rows.T, strict=True))
+        changes = _changes(values) + (_changes(quick_changes or {}) if is_quick else ())
+        for name, base in (own.get("trackers") or trackers or {}).items():
+            tracker = base if isinstance(base, Mapping) else {"base": base}
+            seen = tuple(tracker.get("suites") or own.get("suites") or suites)
+            for more, rule in (rules or {"": "ignore"}).items():
+                yield TrackerTrial(Line(group, name + more), Setting(tracker["base"], changes), seen, rule)
 
-    def _by_films(self, films: list[dict[str, Any]], names: tuple[str, ...]) -> dict[str, Figures]:
-        without = np.array([self._row(films[:film] + films[film + 1 :]) for film in range(len(films))])
-        return {
-            metric: FilmFigure(whole, rest, names)
-            for metric, whole, rest in zip(self.metrics, self._row(films), without.T, strict=True)
+
+def _changes(values: Mapping[str, Any]) -> Changes:
+    """Return settings with their values; a list is a tuple there."""
+    plain: dict[str, Value] = {path: tuple(v) if isinstance(v, list) else v for path, v in values.items()}
+    return tuple(plain.items())
+
+
+def contents(using: Measurement) -> Samples:
+    """Count frames, tracks, detections and occlusions, data set by data set (thesis, table 3.1)."""
+    using.results(count_unit(run, using.plan.cache) for run in using.plan.runs(using.plan.suites))
+    result = {}
+    for name in using.plan.suites:
+        counted = using.results(count_unit(run, using.plan.cache) for run in using.plan.runs([name]))
+        total = asdict(add_up(Content(**one) for one in counted))
+        result[Line(name, "simulated")] = {
+            shown: np.array([float(total[key])]) for key, shown in CONTENTS.items()
         }
-
-    def _row(self, films: list[dict[str, Any]]) -> list[float]:
-        sums = add_up(films)
-        return [metric(sums, name) for name in self.metrics]
+    return result
 
 
-def units_of(trial: TrackerTrial, plan: Plan, repeat: int) -> list[TrackUnit]:
-    """List the work of one repeat of a trial."""
-    return [
-        TrackUnit(play, plan.cache, trial.setting_in(plan), repeat)
-        for name in trial.suites
-        for play in plan.plays(name)
-    ]
+def tracking(
+    using: Measurement, *, metrics: str | Sequence[str], rules: str = "usual", **declared: Any
+) -> Samples:
+    """Score trackers by the thesis's or the paper's metrics [%].
+
+    Args:
+        using: how much is measured, and what is there.
+        metrics: "thesis", "paper", or names.
+        rules: "usual", or "all" ways to deal with uncounted people.
+        declared: as `trials` takes it.
+    """
+    names = METRICS[metrics] if isinstance(metrics, str) else tuple(metrics)
+    listed = list(trials(is_quick=using.plan.is_quick, rules=RULES if rules == "all" else None, **declared))
+
+    def row(trial: TrackerTrial) -> Row:
+        return lambda results: [
+            metric(add_sums([one[trial.rule] for one in results]), name) for name in names
+        ]
+
+    return _measured(using, listed, "track", names, row)
 
 
-def add_up(results: list[dict[str, Any]]) -> dict[str, Any]:
-    """Take the runs' sums of numerators and denominators together, record by record."""
+def delay(using: Measurement, **declared: Any) -> Samples:
+    """Measure how many frames trackers need to find a person in plain view, once they are started."""
+
+    def row(_: TrackerTrial) -> Row:
+        return _delays
+
+    listed = list(trials(is_quick=using.plan.is_quick, **declared))
+    return _measured(using, listed, "delay", ("frames", "s", "found in 2 s [%]"), row)
+
+
+def _delays(results: Sequence[Result]) -> list[float]:
+    needed = [frames for result in results for frames in result["needed"]]
+    starts = sum(result["starts"] for result in results)
+    frames = float(np.mean(needed)) if needed else float("nan")
+    return [frames, frames / RATE_HZ, 100 * len(needed) / max(starts, 1)]
+
+
+BOXES, PEOPLE = "boxes aside [%]", "people aside [%]"
+_OF_CAUSES: Final = ("DC", "OCR", "OCP", "OCA", "BAP", "CP")
+
+
+def causes(using: Measurement, **declared: Any) -> Samples:
+    """Score trackers with one cause of their errors after the other set aside.
+
+    The first columns say how much that is, as a share of what strictly counts.
+    """
+    rules = {f", {way}" if way else "": way for way in CAUSES}
+    listed = list(trials(is_quick=using.plan.is_quick, rules=rules, **declared))
+
+    def row(trial: TrackerTrial) -> Row:
+        def shares_and_metrics(results: Sequence[Result]) -> list[float]:
+            strict, counted = ([result[name] for result in results] for name in (STRICT, trial.rule))
+            sums = add_sums(counted)
+            kinds = (
+                100 * (1 - sum(one[kind] for one in counted) / max(sum(one[kind] for one in strict), 1))
+                for kind in ("boxes", "people")
+            )
+            return [*kinds, *(metric(sums, name) for name in _OF_CAUSES)]
+
+        return shares_and_metrics
+
+    return _measured(using, listed, "causes", (BOXES, PEOPLE, *_OF_CAUSES), row)
+
+
+def _measured(
+    using: Measurement,
+    listed: Sequence[TrackerTrial],
+    work: str,
+    names: Sequence[str],
+    row: Callable[[TrackerTrial], Row],
+) -> Samples:
+    """Render the sequences, then run all trackers on them, and take each repeat's sequences together."""
+    plan = using.plan
+    using.results(count_unit(run, plan.cache) for trial in listed for run in plan.runs(trial.suites))
+    units = {
+        (repeat, trial): sequence_units(trial, plan, repeat, work)
+        for repeat in range(plan.repeats)
+        for trial in listed
+    }
+    found = using.grouped(units)
+    return {
+        trial.line: _values(
+            [found[repeat, trial] for repeat in range(plan.repeats)], trial.suites, names, row(trial)
+        )
+        for trial in listed
+    }
+
+
+def _values(
+    repeats: Sequence[Sequence[Result]], suites: tuple[str, ...], names: Sequence[str], row: Row
+) -> dict[str, Values]:
+    """Return each column's value per repeat; of a single repeat also those without each sequence."""
+    first, *others = repeats
+    if others or len(first) == 1:
+        return dict(zip(names, np.array([row(results) for results in repeats]).T, strict=True))
+    without = np.array([row([*first[:k], *first[k + 1 :]]) for k in range(len(first))])
+    return {
+        name: Jackknife(float(whole), rest, suites)
+        for name, whole, rest in zip(names, row(first), without.T, strict=True)
+    }
+
+
+def count_unit(run: SuiteRun, cache: Path) -> Unit:
+    """Render a run and count what it holds."""
+    return Unit(f"film {_run_key(run)}", count_sequence, (run, cache))
+
+
+def sequence_units(trial: TrackerTrial, plan: Plan, repeat: int, work: str = "track") -> list[Unit]:
+    """List a repeat's work of a trial: a tracker on each sequence, with one random stream."""
+    return [sequence_unit(run, plan.cache, trial.setting, repeat, work) for run in plan.runs(trial.suites)]
+
+
+def sequence_unit(run: SuiteRun, cache: Path, setting: Setting, repeat: int, work: str = "track") -> Unit:
+    """Run a tracker on one sequence, for one kind of `WORK`."""
+    key = f"{work} {_run_key(run)} | {setting.key} | {repeat}"
+    return Unit(key, WORK[work], (run, cache, setting, repeat))
+
+
+def _run_key(run: SuiteRun) -> str:
+    """Name a run with its length, which is cut where there is little time."""
+    return f"{run.name} {run.scenario.duration_s:g}s"
+
+
+def add_sums(results: Sequence[Result]) -> dict[str, Any]:
+    """Add the sequences' sums of numerators and denominators, record by record."""
     totals: dict[str, Any] = {}
     for name, kind in RECORDS.items():
-        first, *others = [restored(kind, result[name]) for result in results]
-        totals[name] = sum(others, start=first)
+        if name in results[0]:
+            first, *others = [restored(kind, result[name]) for result in results]
+            totals[name] = sum(others, start=first)
     return totals
 
 
-def metric(sums: dict[str, Any], name: str) -> float:
+def metric(sums: Mapping[str, Any], name: str) -> float:
     """Read a metric off the sums [%]."""
     return float(getattr(sums["thesis" if name in THESIS else "paper"], name.lower()))
+
+
+def restored(kind: type[Record], data: Mapping[str, Any]) -> Record:
+    """Make a record of sums out of the plain data that `asdict` made of it."""
+    hints = get_type_hints(kind)
+    nested = {
+        field.name: restored(hints[field.name], data[field.name])
+        for field in fields(kind)
+        if is_dataclass(hints[field.name])
+    }
+    return kind(**(dict(data) | nested))

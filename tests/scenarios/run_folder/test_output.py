@@ -15,7 +15,7 @@ from peopleboy.scenarios.run_folder.folder import claim_folder
 from peopleboy.scenarios.run_folder.output import whole, whole_folder
 from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.frame_cache import film
-from peopleboy.studies.reproductions.measuring.run_units import open_store
+from peopleboy.studies.reproductions.units import open_store
 from peopleboy.studies.training.distance_learning.distance_lesson import give_distance_lesson
 from peopleboy.studies.training.foreground_learning.foreground_lesson import (
     ForegroundLessons,

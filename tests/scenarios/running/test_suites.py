@@ -16,7 +16,7 @@ from peopleboy.scenarios.running.engine.workers import Workers
 from peopleboy.scenarios.running.run import RunOptions
 from peopleboy.scenarios.running.run_suite import run_suite
 from peopleboy.scenarios.scores.suite_table import THESIS, Content, add_up, count
-from peopleboy.studies.reproductions.showing.show_contents import count_suite
+from peopleboy.studies.reproductions.runner import count_suite
 from tests.helpers.calls.refused import refused
 
 TINY = SuiteSpec(

@@ -5,8 +5,7 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.running.engine.workers import Workers
-from peopleboy.studies.reproductions.measuring.learn_units import LearnUnit
-from peopleboy.studies.reproductions.measuring.tracker_settings import Setting
+from peopleboy.studies.reproductions.experiments.learning import learn_pairs
 from peopleboy.studies.training.occlusion_learning.example_splits import (
     learn_split,
     random_split,
@@ -175,13 +174,10 @@ def test_a_file_that_is_no_table_of_examples_is_refused(tmp_path, text):
         read_pairs(tmp_path / "nothing.csv")
 
 
-def test_too_few_pairs_of_a_tracker_teach_nothing_and_say_so():
-    def lesson(count: int) -> LearnUnit:
-        given = tuple(examples(count, 1))
-        return LearnUnit(("top", "bottom"), 2, 5, 0, given, Setting("thesis-occlusion"))
-
-    few, enough = lesson(LEAST - 1).run(), lesson(LEAST).run()
+def test_too_few_pairs_of_a_tracker_teach_nothing():
+    few, enough = (
+        learn_pairs(("top", "bottom"), 2, 5, 0, tuple(examples(count, 1))) for count in (LEAST - 1, LEAST)
+    )
     assert np.isnan([few["held out"], few["unseen scenarios"]]).all()
     assert few["best"] == []
     assert enough["held out"] > 60
-    assert "thesis-occlusion" in lesson(1).key

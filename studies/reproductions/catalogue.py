@@ -1,0 +1,203 @@
+"""Every table and figure of the sources, read from the files in `sources`, in the order of the page."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache, partial
+from importlib import import_module
+from pathlib import Path
+from typing import Annotated, Any, Final
+
+from pydantic import Field, ValidationError, model_validator
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.read_yaml import read_yaml
+from peopleboy.scenarios.files.schema.values import Strict
+from peopleboy.scenarios.running.engine.store import Result
+from peopleboy.studies.reproductions import pictures
+from peopleboy.studies.reproductions.experiment import Experiment, Texts
+from peopleboy.studies.reproductions.experiments import (
+    drives,
+    learning,
+    panorama,
+    situation,
+    timing,
+    tracking,
+    windows,
+)
+from peopleboy.studies.reproductions.pictures.canvas import png_address
+from peopleboy.studies.reproductions.units import Measurement, Unit
+
+SOURCES: Final[Mapping[str, str]] = {
+    "thesis": "thesis_2007",
+    "2005": "paper_2005",
+    "panoramic": "panoramic_2003",
+    "situation": "situation_awareness",
+}
+"""Files of the sources by name, as `--paper` has it."""
+FOLDER: Final = Path(__file__).with_name("sources")
+
+
+def picture(using: Measurement, *, name: str) -> str:
+    """Draw a picture that needs runs of its own, such as "panoramic_figures.draw_set_up"."""
+    (found,) = using.results([Unit(f"picture {name}", draw_picture, (name,))])
+    address: str = found["picture"]
+    return address
+
+
+def draw_picture(name: str) -> Result:
+    """Draw a figure of the folder `pictures`, and return it as an address."""
+    module, _, function = name.partition(".")
+    # Imported here, as these need PyBullet, and the catalogue is listed without it.
+    return {"picture": png_address(getattr(import_module(f"{pictures.__name__}.{module}"), function)())}
+
+
+KINDS: Final[Mapping[str, Callable[..., Any]]] = {
+    kind.__name__: kind
+    for kind in (
+        picture,
+        *(tracking.contents, tracking.tracking, tracking.delay, tracking.causes),
+        timing.timing,
+        *(learning.learning, learning.best_classifiers),
+        *(panorama.distances, panorama.correlations, panorama.webcams, panorama.angles),
+        *(panorama.draw_ranges, panorama.draw_correlations, panorama.draw_path),
+        *(drives.drives, drives.goals, drives.legs, drives.draw_drives, drives.draw_legs),
+        *(windows.loop_times, windows.sliding_windows, windows.windows_by_size),
+        *(windows.parameters, windows.window_models),
+        *(situation.static_scenes, situation.scene_models, situation.scene_maps),
+        *(situation.focus, situation.focus_variants, situation.absences, situation.followers),
+    )
+}
+"""What measures or draws an experiment, by the name that files have for it."""
+
+
+class Item(Strict):
+    """A table or figure of a source, or a passage with values."""
+
+    what: str
+    """its number there"""
+    shows: str
+    """what it is about"""
+    here: Texts = ()
+    """ids of our experiments"""
+    why: str = ""
+    """where else it is, or why there is nothing to measure"""
+
+    @model_validator(mode="after")
+    def _stands_somewhere(self) -> Item:
+        if bool(self.here) == bool(self.why):
+            raise ValueError("give either ids of experiments or words")
+        return self
+
+
+class Source(Strict):
+    """A thesis or paper."""
+
+    about: str
+    """what it is"""
+    contents: Annotated[tuple[Item, ...], Field(strict=False)] = ()
+    """all that it has, in its order, as far as it is listed"""
+    experiments: Annotated[tuple[Experiment, ...], Field(strict=False)]
+
+
+@cache
+def read_source(path: Path) -> Source:
+    """Read the file of a source.
+
+    Raises:
+        BadInput: the file is wrong.
+    """
+    data: dict[Any, Any] = read_yaml(path)
+    try:
+        listed = [_experiment(path, str(number), one) for number, one in data.pop("experiments").items()]
+        return Source.model_validate(data | {"experiments": listed})
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(str(key) for key in first["loc"])
+        raise BadInput(f"{path}: {place}: {first['msg']}, got {first['input']!r}") from None
+
+
+def _experiment(path: Path, number: str, data: Mapping[str, Any]) -> Experiment:
+    declared = {name: data[name] for name in ("measure", "draw") if name in data}
+    functions = {name: _function(f"{path}: {number}.{name}", one) for name, one in declared.items()}
+    groups = tuple(declared.get("measure", {}).get("groups", ()))
+    return Experiment.model_validate({"id": number, "groups": groups, **data, **functions})
+
+
+def _function(place: str, declared: Mapping[str, Any]) -> Callable[[Measurement], Any]:
+    """Find a declaration's function, and give it its arguments.
+
+    Raises:
+        BadInput: there is no such function, or it takes other arguments.
+    """
+    arguments = dict(declared)
+    kind = str(arguments.pop("kind", None))
+    if kind not in KINDS:
+        raise BadInput(f"{place}.kind: {kind!r} must be one of {', '.join(KINDS)}")
+    try:
+        inspect.signature(KINDS[kind]).bind(None, **arguments)
+    except TypeError as error:
+        raise BadInput(f"{place}: {kind}: {error}") from None
+    return partial(KINDS[kind], **arguments)
+
+
+PAPERS: Final[Mapping[str, Source]] = {
+    name: read_source(FOLDER / f"{file}.yaml") for name, file in SOURCES.items()
+}
+"""The sources by name."""
+
+EXPERIMENTS: Final[Mapping[str, Experiment]] = {
+    one.id: one for source in PAPERS.values() for one in source.experiments
+}
+"""By id, in the order of the page."""
+
+_PAPER_OF: Final = {one.id: name for name, source in PAPERS.items() for one in source.experiments}
+
+
+def of_paper(paper: str) -> dict[str, Experiment]:
+    """Return one source's experiments by id.
+
+    Raises:
+        BadInput: there is no such source.
+    """
+    if paper not in PAPERS:
+        raise BadInput(f"unknown paper {paper!r}; there are: {', '.join(PAPERS)}")
+    return {one.id: one for one in PAPERS[paper].experiments}
+
+
+def paper_of(number: str) -> str:
+    """Name the source, one of `PAPERS`, that an experiment is from, by its id."""
+    return _PAPER_OF[number]
+
+
+def choose(names: Sequence[str], paper: str | None = None) -> list[Experiment]:
+    """Find experiments by id or by number: "4.9" is figures 4.9a and 4.9b, "paper" all of 2005.
+
+    Args:
+        names: ids or numbers; all there are if left out.
+        paper: one of `PAPERS`, to which they are limited.
+
+    Raises:
+        BadInput: nothing has this name.
+    """
+    among = EXPERIMENTS if paper is None else of_paper(paper)
+    if not names:
+        return list(among.values())
+    chosen = {number for name in names for number in _matching(name, among)}
+    return [experiment for number, experiment in among.items() if number in chosen]
+
+
+def _matching(name: str, among: Mapping[str, Experiment]) -> list[str]:
+    found = [number for number in among if _is_called(number, name.lower())]
+    if not found:
+        raise BadInput(f"nothing is called {name!r}; choose from {', '.join(among)}")
+    return found
+
+
+def _is_called(number: str, name: str) -> bool:
+    last = number.rsplit("-", 1)[-1]
+    names = [number, number.rstrip("ab"), number.split("-")[0]]
+    if paper_of(number) == "thesis":
+        names += [last, last.rstrip("ab")]
+    return name in names

@@ -1,0 +1,218 @@
+"""Ours beside the source's: whether its claims hold here, and how each printed value compares."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Final
+
+from peopleboy.studies.reproductions.experiment import SOURCE, Claim, Experiment, Line, Samples, Values
+from peopleboy.studies.reproductions.statistics import (
+    PAPER,
+    PERCENT,
+    THESIS,
+    Difference,
+    TTest,
+    by_stretches,
+    cohens_d,
+    margin,
+    mean_of,
+    paired,
+    paired_by_blocks,
+    to_source,
+    unpaired,
+)
+from peopleboy.studies.training.distance_learning.image_errors import ErrorSummary, ImageErrors
+
+BLIND: Final = 5.0  # [%] below which both values say only that no people are found
+MUCH: Final = 0.5  # of what the source gains, which a gain has to reach
+_SECONDS: Final = "s"
+_COMPARED: Final = (*PERCENT, _SECONDS)
+"""Columns whose values do not depend on whose computer it was."""
+
+
+class ClaimStatus(StrEnum):
+    """How a claim fares."""
+
+    HOLDS = "holds"
+    WEAKER = "holds, but weaker"
+    UNCLEAR = "undecided"
+    FAILS = "does not hold"
+    BLIND = "finds too few people to tell"
+    UNKNOWN = "not measured"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Whether a claim of the source holds for one of our trackers.
+
+    Attributes:
+        method: which tracker.
+        difference: of our values of the two groups.
+        outcome: how the claim fares.
+        tests: of errors of images, by name, in words.
+        times: the first value over the second, where the claim is about that; None elsewhere.
+    """
+
+    method: str
+    difference: Difference
+    outcome: ClaimStatus
+    tests: tuple[str, ...] = ()
+    times: float | None = None
+
+
+def judge(claim: Claim, samples: Samples) -> Iterator[Verdict]:
+    """Check a claim for every method that has values in both of its groups."""
+    first, second = claim.groups
+    for line, values in samples.items():
+        other = samples.get(Line(second, line.method))
+        if line.group == first and other is not None and claim.metric in values:
+            yield _verdict(claim, line.method, values[claim.metric], other[claim.metric])
+
+
+def _verdict(claim: Claim, method: str, one: Values, other: Values) -> Verdict:
+    if isinstance(one, ImageErrors) and isinstance(other, ImageErrors):
+        difference = by_stretches(one, other)
+        return Verdict(
+            method, difference, _outcome(claim, difference, other.all.mean), tuple(_tests(one, other))
+        )
+    assert not isinstance(one, ImageErrors)
+    assert not isinstance(other, ImageErrors)  # a column has values of one kind
+    difference, second = paired(claim.metric, one, other), mean_of(other)
+    if math.isnan(difference.by):
+        outcome = ClaimStatus.UNKNOWN
+    elif claim.metric in (*THESIS, *PAPER) and max(second, second + difference.by) < BLIND:
+        outcome = ClaimStatus.BLIND
+    else:
+        outcome = _outcome(claim, difference, second)
+    times = None if claim.times is None else mean_of(one) / second
+    return Verdict(method, difference, outcome, times=times)
+
+
+def _tests(one: ImageErrors, other: ImageErrors) -> Iterator[str]:
+    paired_test = paired_by_blocks(one, other)
+    if paired_test is not None:
+        yield _in_words("paired by stretches of time", "d_z", paired_test)
+    yield _in_words("as the source, all images of a film's splits unpaired", "d", unpaired(one, other))
+
+
+def _in_words(name: str, effect: str, test: TTest) -> str:
+    low, high = test.interval
+    size = f"{effect} = {test.effect:.2f} ({low:.2f} to {high:.2f})"
+    chance = "p < 0.001" if test.p < 0.001 else f"p = {test.p:.3f}"
+    return f"{name}: t = {test.t:.2f}, n = {test.count}, {chance}, {size}"
+
+
+def _outcome(claim: Claim, ours: Difference, second: float) -> ClaimStatus:
+    """Compare the interval of a difference with the claim; without an interval nothing is decided."""
+    if not ours.is_sure:
+        return ClaimStatus.UNCLEAR
+    if claim.expect in ("alike", "no less"):
+        return _alike(ours, margin(claim.metric, second), either_way=claim.expect == "alike")
+    least = MUCH * (abs(claim.by or 0.0) if claim.times is None else abs(claim.times - 1.0) * second)
+    if claim.expect == "differs":
+        is_far = ours.low > least or ours.high < -least
+        is_near = -least <= ours.low and ours.high <= least
+        return ClaimStatus.HOLDS if is_far else ClaimStatus.FAILS if is_near else ClaimStatus.UNCLEAR
+    low, high = (ours.low, ours.high) if claim.expect == "more" else (-ours.high, -ours.low)
+    if low > least:
+        return ClaimStatus.HOLDS
+    if high <= least:
+        return ClaimStatus.WEAKER if low > 0 else ClaimStatus.FAILS
+    return ClaimStatus.UNCLEAR
+
+
+def _alike(ours: Difference, within: float, *, either_way: bool) -> ClaimStatus:
+    """Check whether the interval is within a margin, on either side or below alone."""
+    if ours.low >= -within and (ours.high <= within or not either_way):
+        return ClaimStatus.HOLDS
+    is_apart = ours.high < -within or (either_way and ours.low > within)
+    return ClaimStatus.FAILS if is_apart else ClaimStatus.UNCLEAR
+
+
+class Standing(StrEnum):
+    """How a value of ours compares with the source's."""
+
+    BETTER = "better"
+    ALIKE = "as the source"
+    WORSE = "worse"
+    UNCLEAR = "undecided"
+    UNKNOWN = "not measured"
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """A printed value, and ours.
+
+    Attributes:
+        group, column: which of the table's.
+        method: whose ours is.
+        source, ours: the two.
+        difference: ours less the source's.
+        standing: what follows from its interval.
+    """
+
+    group: str
+    column: str
+    method: str
+    source: float
+    ours: float
+    difference: Difference
+    standing: Standing
+
+    @property
+    def is_below(self) -> bool:
+        """Whether ours is the worse of the two, for sure or not."""
+        return self.difference.by > 0 if self.column == _SECONDS else self.difference.by < 0
+
+
+def compare(samples: Samples, experiment: Experiment) -> Iterator[Compared]:
+    """Compare every printed value that does not depend on a computer with all of ours."""
+    for printed in experiment.values:
+        for column, (source, deviation) in printed.values.items():
+            if printed.method != SOURCE or column not in _COMPARED:
+                continue
+            for line, values in samples.items():
+                ours = values.get(column)
+                if line.group != printed.group or ours is None or isinstance(ours, ImageErrors):
+                    continue
+                away = to_source(column, ours, source, deviation)
+                standing = _standing(column, away, source)
+                yield Compared(line.group, column, line.method, source, mean_of(ours), away, standing)
+
+
+def _standing(column: str, away: Difference, source: float) -> Standing:
+    """Compare the interval with the margin first: within it on both sides is alike."""
+    if math.isnan(away.by):
+        return Standing.UNKNOWN
+    within = margin(column, source)
+    if -within <= away.low and away.high <= within:
+        return Standing.ALIKE
+    if away.low > 0:
+        return Standing.WORSE if column == _SECONDS else Standing.BETTER
+    if away.high < 0:
+        return Standing.BETTER if column == _SECONDS else Standing.WORSE
+    return Standing.UNCLEAR
+
+
+def effects_to_source(samples: Samples, experiment: Experiment) -> Iterator[str]:
+    """Write for each of our lines how far its errors are from the source's; empty where that is unknown."""
+    printed = {line.group: line.values for line in experiment.values}
+    for line, values in samples.items():
+        theirs = printed.get(line.group, {})
+        yield "".join(
+            _effect_to_source(errors, *theirs[name])
+            for name, errors in values.items()
+            if isinstance(errors, ImageErrors) and name in theirs
+        )
+
+
+def _effect_to_source(ours: ImageErrors, mean: float, deviation: float | None) -> str:
+    """Write Cohen's d to the source, and its 95 % interval for a split's images."""
+    if deviation is None:
+        return ""
+    count = ours.splits[0].count
+    d, (low, high) = cohens_d(ours.all, ErrorSummary(count=count, mean=mean, deviation=deviation), count)
+    return f"{d:+.2f} ({low:+.2f} to {high:+.2f})"

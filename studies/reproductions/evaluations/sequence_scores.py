@@ -1,0 +1,229 @@
+"""What a tracker does on one sequence of a data set: its metrics, its delay, and the causes of its errors.
+
+Each function is the work of a unit: it gives plain data.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import asdict, replace
+from itertools import islice
+from pathlib import Path
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.scenarios.files.suite import SuiteRun
+from peopleboy.scenarios.running.engine.store import Result
+from peopleboy.scenarios.running.frame_cache import Film, film, frames_of
+from peopleboy.scenarios.scores.suite_table import count
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.truth.truth import COUNTED_FARTHEST_M, COUNTED_NEAREST_M
+from peopleboy.studies.reproductions.tracker_settings import Setting
+from peopleboy.tracker.boxes import iou
+from peopleboy.tracker.evaluation.area_metrics import (
+    PaperMetrics,
+    ThesisMetrics,
+    measure_paper,
+    measure_thesis,
+)
+from peopleboy.tracker.evaluation.box_matching import (
+    GATE,
+    Rule,
+    associate,
+    counts,
+    ignore_uncounted,
+    pair_up,
+)
+from peopleboy.tracker.evaluation.evaluate import Counts, evaluate
+from peopleboy.tracker.evaluation.mot_metrics import Sums
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
+from peopleboy.tracker.frame import THERMAL, Frame
+from peopleboy.tracker.track import Track, confirmed
+from peopleboy.tracker.trackers import Tracker
+
+Flags = NDArray[np.bool_]
+
+Count = Literal["ignore", "absent", "own range", "half in view"]
+"""Ways to deal with people whom the sources do not count.
+
+The first two are rules of the evaluation. "own range": they are absent, and so are tracks that the tracker
+itself places where they are. "half in view": people less than half in view are ignored, too.
+"""
+RECORDS: dict[str, type[Sums]] = {"counts": Counts, "thesis": ThesisMetrics, "paper": PaperMetrics}
+
+PATIENCE: Final = 30  # frames after which a tracker has not found the person
+EVERY: Final = 15  # frames between two starts
+PLAIN: Final = 0.9  # visible fraction from which a person is in plain view
+
+STRICT, NEAR, FAR, RANGE = "strict", "strict, near aside", "strict, far aside", "strict, near and far aside"
+HALF, FOUND = "half in view", "once found"
+CAUSES: Final = ("", STRICT, NEAR, FAR, RANGE, HALF, FOUND)
+"""Ways to count with one cause of errors set aside; "" is the usual one.
+
+Strictly, people who are not counted or wholly hidden are not there. "near aside" sets aside boxes on people
+nearer than the sources count, "far aside" on those farther, by the truth's distance. "half in view" sets
+aside people less than half in view, and boxes on them; "once found" people until they are first found.
+"""
+STRETCH: Final = 15  # frames without a person after which it is a new one, who has yet to be found
+
+
+def count_sequence(run: SuiteRun, cache: Path) -> Result:
+    """Render a run's frames into the cache, unless they are there, and count as in the thesis's table 3.1."""
+    shot = film(run.scenario, run.seed, cache)
+    times = [frame.time_s for frame in islice(frames_of(shot, ()), 2)]
+    rate_hz = 1.0 / (times[1] - times[0]) if len(times) == 2 else 15.0
+    return asdict(count(shot.people(), shot.frames, rate_hz))
+
+
+def score_sequence(run: SuiteRun, cache: Path, setting: Setting, repeat: int) -> Result:
+    """Track a sequence with the repeat's random stream, and score all ways to deal with uncounted people."""
+    shot = film(run.scenario, run.seed, cache)
+    found, is_in_range = track_sequence(shot, setting.make(stream(repeat, "reproduce.tracker")))
+    ways: dict[Count, tuple[TrackBoxes, Rule, float]] = {
+        "ignore": (found, "ignore", 0.0),
+        "absent": (found, "absent", 0.0),
+        "own range": (found.take(is_in_range), "absent", 0.0),
+        "half in view": (found, "ignore", 0.5),
+    }
+    result: Result = {"frames": shot.frames}
+    for name, (tracks, rule, visible) in ways.items():
+        scores = evaluate(shot.truth(), tracks, frames=shot.frames, uncounted=rule, min_visible=visible)
+        result[name] = {record: asdict(getattr(scores, record)) for record in RECORDS}
+    return result
+
+
+def track_sequence(shot: Film, tracker: Tracker) -> tuple[TrackBoxes, Flags]:
+    """Run a tracker on a sequence; tentative tracks do not count.
+
+    Returns:
+        What it found, and (N,) whether the tracker itself places it where the sources count people.
+    """
+    rows = [
+        (number, track.id, box, track.confidence, _is_in_range(track, frame))
+        for number, frame in enumerate(frames_of(shot, tracker.cameras), 1)
+        for track, box in confirmed(tracker.update(frame), THERMAL)
+    ]
+    frame, identity, box, confidence, is_in_range = zip(*rows, strict=True) if rows else ((), (), (), (), ())
+    found = TrackBoxes(
+        frame=np.array(frame, dtype=np.int64),
+        id=np.array(identity, dtype=np.int64),
+        box=np.array(box, dtype=np.float64).reshape(-1, 4),
+        confidence=np.array(confidence, dtype=np.float64),
+    )
+    return found, np.array(is_in_range, dtype=np.bool_)
+
+
+def _is_in_range(track: Track, frame: Frame) -> bool:
+    if track.place is None:
+        return True
+    x, y, _ = frame.calibrations[THERMAL].position_m
+    distance_m = math.hypot(track.place.position_m[0] - x, track.place.position_m[1] - y)
+    return COUNTED_NEAREST_M <= distance_m <= COUNTED_FARTHEST_M
+
+
+def measure_delay(run: SuiteRun, cache: Path, setting: Setting, repeat: int) -> Result:
+    """Start a tracker many times in one sequence, each time while a person is in plain view.
+
+    Returns:
+        How many "starts" there were, and the frames "needed" by each that found the person, the one of the
+        start included.
+    """
+    shot = film(run.scenario, run.seed, cache)
+    truth = shot.truth()
+    starts = set(plain_starts(truth))
+    boxes = dict(zip(truth.frame.tolist(), truth.box, strict=True))
+    rng = stream(repeat, "reproduce.delay")
+    waiting: list[tuple[int, Tracker]] = []
+    needed: list[int] = []
+    cameras = setting.make(rng).cameras
+    for number, frame in enumerate(frames_of(shot, cameras), 1):
+        if number in starts:
+            waiting.append((number, setting.make(rng)))
+        for start, tracker in list(waiting):
+            claimed = [box for _, box in confirmed(tracker.update(frame), THERMAL)]
+            if claimed and iou(boxes[number][None], np.array(claimed)).max() > GATE:
+                needed.append(number - start + 1)
+                waiting.remove((start, tracker))
+        waiting = [(start, tracker) for start, tracker in waiting if number - start + 1 < PATIENCE]
+    return {"starts": len(starts), "needed": needed}
+
+
+def plain_starts(truth: TrueBoxes) -> Iterator[int]:
+    """Yield frames from which on exactly one person is there, counted and in plain view, for long enough."""
+    people = np.bincount(truth.frame, minlength=truth.last_frame + 1)
+    plain = np.bincount(truth.frame[truth.counted & (truth.visible > PLAIN)], minlength=len(people))
+    is_plain = (people == 1) & (plain == 1)
+    following = 0
+    for start in range(1, len(is_plain) - PATIENCE + 1):
+        if start >= following and is_plain[start : start + PATIENCE].all():
+            yield start
+            following = start + EVERY
+
+
+def score_causes(run: SuiteRun, cache: Path, setting: Setting, repeat: int) -> Result:
+    """Track a sequence as `score_sequence` does, and score it with each cause of errors set aside."""
+    shot = film(run.scenario, run.seed, cache)
+    found, _ = track_sequence(shot, setting.make(stream(repeat, "reproduce.tracker")))
+    people, truth = shot.people(), shot.truth()
+    rows = zip(*(people[name].to_pylist() for name in ("frame", "id", "distance_m")), strict=True)
+    known = {(frame, person): distance for frame, person, distance in rows}
+    keys = zip(truth.frame.tolist(), truth.id.tolist(), strict=True)
+    ways = truth_by_cause(truth, np.array([known[key] for key in keys]), found)
+    return {way: _scored(one, found) for way, one in ways.items()}
+
+
+def truth_by_cause(
+    truth: TrueBoxes, distance_m: NDArray[np.float64], found: TrackBoxes
+) -> dict[str, TrueBoxes]:
+    """Return the truth for each of `CAUSES`: rows left out are not there, uncounted rows are set aside.
+
+    Args:
+        truth: of a sequence.
+        distance_m: (N,) of each of its rows from the camera on the floor.
+        found: what a tracker found there.
+    """
+    is_target = counts(truth.counted, truth.visible)
+    usual = replace(truth, counted=is_target)
+    is_near = distance_m < COUNTED_NEAREST_M
+    is_far = distance_m > COUNTED_FARTHEST_M
+    return {
+        "": usual,
+        STRICT: usual.take(is_target),
+        NEAR: usual.take(is_target | is_near),
+        FAR: usual.take(is_target | is_far),
+        RANGE: usual.take(is_target | is_near | is_far),
+        HALF: replace(truth, counted=counts(truth.counted, truth.visible, 0.5)),
+        FOUND: replace(truth, counted=is_target & ~not_yet_found(usual, found)),
+    }
+
+
+def not_yet_found(truth: TrueBoxes, found: TrackBoxes) -> Flags:
+    """Return which rows (N,) are of counted people who have come into view and have not been found since."""
+    targets = truth.take(truth.counted)
+    pairs = pair_up(targets, found)
+    is_hit = np.zeros(len(targets), dtype=np.bool_)
+    is_hit[pairs.target[associate(pairs)]] = True
+    is_early = np.zeros(len(targets), dtype=np.bool_)
+    for person in np.unique(targets.id):
+        rows = np.flatnonzero(targets.id == person)
+        rows = rows[np.argsort(targets.frame[rows])]
+        comes = np.flatnonzero(np.diff(targets.frame[rows]) > STRETCH) + 1
+        for stretch in np.split(rows, comes):
+            is_early[stretch] = np.cumsum(is_hit[stretch]) == 0
+    early = np.zeros(len(truth), dtype=np.bool_)
+    early[np.flatnonzero(truth.counted)] = is_early
+    return early
+
+
+def _scored(truth: TrueBoxes, found: TrackBoxes) -> Result:
+    judged = ignore_uncounted(truth, found)
+    pairs = pair_up(judged.truth, judged.tracks)
+    return {
+        "paper": asdict(measure_paper(judged.truth, judged.tracks, pairs)),
+        "thesis": asdict(measure_thesis(judged.truth, judged.tracks, pairs, associate(pairs))),
+        "boxes": len(judged.tracks),
+        "people": len(judged.truth),
+    }

@@ -1,1 +1,0 @@
-"""Units of work, where their results are kept, and who works on them."""

@@ -1,0 +1,339 @@
+"""The page: every table and figure of the sources beside ours, in one file that needs nothing else."""
+
+from __future__ import annotations
+
+import math
+import os
+import platform
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import jinja2
+
+from peopleboy.scenarios.files.read_yaml import read_yaml
+from peopleboy.scenarios.run_folder.folder import versions
+from peopleboy.scenarios.running.engine.store import Store
+from peopleboy.studies.reproductions.catalogue import EXPERIMENTS, PAPERS, paper_of
+from peopleboy.studies.reproductions.comparison import (
+    MUCH,
+    ClaimStatus,
+    Compared,
+    Standing,
+    Verdict,
+    compare,
+    effects_to_source,
+    judge,
+)
+from peopleboy.studies.reproductions.experiment import Claim, Experiment, Outcome, Samples
+from peopleboy.studies.reproductions.plan import QUICK_S, Plan, full_plan
+from peopleboy.studies.reproductions.plots import draw
+from peopleboy.studies.reproductions.statistics import (
+    PAPER,
+    PART,
+    POINTS,
+    THESIS,
+    Difference,
+    mean_and_spread,
+)
+
+METRICS: Final = (*THESIS, *PAPER)
+HERE: Final = Path(__file__).parent
+MAIN: Final = {
+    "literal": ("literal", "literal, held out", "as printed", "room_long, random split", "room_long"),
+    "default": ("default", "default, held out", "measured"),
+}
+MAIN_ROWS: Final = ("default", "default, strict")
+THREE_DECIMALS: Final = ("m", "|r|", "rate", "FP per image", "recall", "figure", "from", "to")
+"""Columns that need so many, beside those that end in [m]."""
+COUNTS: Final = (
+    *("images", "TP", "FN", "FP", "people", "others"),
+    *("parameters", "pairs", "weak classifiers"),
+)
+"""Columns that need no decimals."""
+EFFECT: Final = "d to the source (95 %)"
+
+Cells = Mapping[str, tuple[float, float | None]]
+
+
+@dataclass(frozen=True, slots=True)
+class PageRow:
+    """One line of a table on the page: a group, a method, and the cells as text."""
+
+    group: str
+    method: str
+    cells: tuple[str, ...]
+    is_source: bool
+    is_first: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """A claim of the source, and how it fares by method."""
+
+    claim: Claim
+    verdicts: tuple[Verdict, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """One table or figure on the page."""
+
+    outcome: Outcome
+    columns: tuple[str, ...]
+    rows: tuple[PageRow, ...]
+    picture: str | None
+    checked: tuple[Checked, ...]
+    compared: tuple[Compared, ...]
+
+    @property
+    def id(self) -> str:
+        """The experiment's id."""
+        return self.outcome.experiment.id
+
+    @property
+    def table(self) -> Experiment:
+        """What is printed."""
+        return self.outcome.experiment
+
+    def summary(self, main: str) -> str:
+        """Count in a few words how the source's claims fare with a main tracker."""
+        verdicts = (verdict for item in self.checked for verdict in item.verdicts)
+        count = Counter(verdict.outcome for verdict in verdicts if verdict.method in MAIN[main])
+        return ", ".join(f"{outcome.value}: {count[outcome]}" for outcome in ClaimStatus if count[outcome])
+
+    def standings(self, main: str) -> str:
+        """Count in a few words how a main tracker's values compare with the printed ones."""
+        count = Counter(one.standing for one in self.compared if one.method in MAIN[main])
+        return ", ".join(f"{standing.value}: {count[standing]}" for standing in Standing if count[standing])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PageHead:
+    """What the page says of the run.
+
+    Attributes:
+        command: by which it can be repeated.
+        is_quick: whether only a little was done.
+        amount: what was done, in words.
+        facts: further lines: versions, machine, time; by a part's id, what holds for it alone.
+    """
+
+    command: str
+    is_quick: bool
+    amount: str
+    facts: Mapping[str, str]
+
+    @property
+    def lines(self) -> list[tuple[str, str]]:
+        """Return the facts as they are listed: parts with the same fact share a line."""
+        alike: dict[str, list[str]] = {}
+        for name in EXPERIMENTS:
+            if name in self.facts:
+                alike.setdefault(self.facts[name], []).append(name)
+        whole = [(name, fact) for name, fact in self.facts.items() if name not in EXPERIMENTS]
+        return [*whole, *(("Parts", f"{fact} ({', '.join(parts)})") for fact, parts in alike.items())]
+
+
+def write_page(path: Path, sections: Sequence[Section], about: PageHead) -> None:
+    """Write the page."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(page_text(sections, about), encoding="utf-8")
+
+
+def page_text(sections: Sequence[Section], about: PageHead) -> str:
+    """Return the page as HTML."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["points"] = points
+    environment.filters["span"] = span
+    papers = {paper_of(part.id) for part in sections}
+    return environment.get_template("page.html.jinja").render(
+        sections=sections,
+        about=about,
+        general=read_yaml(HERE / "page_notes.yaml"),
+        sources={name: source for name, source in PAPERS.items() if name in papers},
+        below=list(below_source(sections)),
+        margins={"points": POINTS, "part": 100 * PART, "much": 100 * MUCH},
+        papers=sorted(papers),
+        there={part.id for part in sections},
+    )
+
+
+def section(outcome: Outcome) -> Section:
+    """Lay out one table or figure."""
+    experiment, samples = outcome.experiment, outcome.samples
+    columns = tuple(dict.fromkeys(name for values in samples.values() for name in values))
+    effects = tuple(effects_to_source(samples, experiment))
+    return Section(
+        outcome=outcome,
+        columns=(*columns, *((EFFECT,) if any(effects) else ())),
+        rows=tuple(_rows(experiment, samples, columns, effects)),
+        picture=draw(experiment, samples) if outcome.picture is None else outcome.picture,
+        checked=tuple(Checked(claim, tuple(judge(claim, samples))) for claim in experiment.claims),
+        compared=tuple(compare(samples, experiment)),
+    )
+
+
+def below_source(sections: Iterable[Section]) -> Iterator[tuple[str, Compared]]:
+    """Yield every printed value that the default does not reach, strictly or not, by the part's id.
+
+    Values that several parts have are given once.
+    """
+    seen = set()
+    for part in sections:
+        for one in part.compared:
+            what = (one.group, one.column, one.method, one.source)
+            if one.method in MAIN_ROWS and one.is_below and what not in seen:
+                seen.add(what)
+                yield part.id, one
+
+
+def _rows(
+    experiment: Experiment, samples: Samples, columns: Sequence[str], effects: Sequence[str]
+) -> Iterator[PageRow]:
+    """Put the source's lines before ours, group by group; effects, if any is known, are the last cells."""
+    lines: dict[str, list[tuple[str, Cells, bool, str]]] = {}
+    for printed in experiment.values:
+        lines.setdefault(printed.group, []).append((printed.method, printed.values, True, ""))
+    for (line, values), effect in zip(samples.items(), effects, strict=True):
+        ours = {name: mean_and_spread(several) for name, several in values.items()}
+        lines.setdefault(line.group, []).append((line.method, ours, False, effect))
+    write = _writer([cells for parts in lines.values() for _, cells, _, _ in parts])
+    for group in in_order(lines):
+        for number, (method, cells, is_source, effect) in enumerate(lines[group]):
+            texts = [write(name, cells.get(name)) for name in columns]
+            yield PageRow(
+                group, method, (*texts, *((effect,) if any(effects) else ())), is_source, number == 0
+            )
+
+
+def in_order(groups: Iterable[str]) -> list[str]:
+    """Sort groups that are numbers; leave others as they come."""
+    listed = list(groups)
+    try:
+        return sorted(listed, key=lambda group: float(group.removesuffix(" %")))
+    except ValueError:
+        return listed
+
+
+def points(value: float, column: str) -> str:
+    """Write a difference: millimetres of metres, two decimals of all else."""
+    return "-" if math.isnan(value) else f"{value:+.{_digits(column)}f}"
+
+
+def span(difference: Difference, column: str) -> str:
+    """Write a difference with its 95 % interval and effect size, as far as they are known."""
+    text = points(difference.by, column)
+    if difference.is_sure:
+        text += f" ({points(difference.low, column)} to {points(difference.high, column)})"
+    return f"{text}, {difference.effect}" if difference.effect else text
+
+
+def _digits(column: str) -> int:
+    if column in COUNTS:
+        return 0
+    return 3 if column in THREE_DECIMALS or column.endswith("[m]") else 2
+
+
+def _writer(lines: Sequence[Cells]) -> Callable[[str, tuple[float, float | None] | None], str]:
+    """Choose how a table's values are written: counts, times of less than 1 ms, or two or three decimals."""
+    known = [mean for cells in lines for mean, _ in cells.values() if not math.isnan(mean)]
+    are_counts = all(mean == round(mean) for mean in known)
+
+    def write(column: str, cell: tuple[float, float | None] | None) -> str:
+        if cell is None or math.isnan(cell[0]):
+            return "-"
+        mean, spread = cell
+        if are_counts:
+            return f"{mean:.0f}"
+        digits = _digits(column)
+        text = f"{mean:#.2g}" if column == "ms" and mean < 1 else f"{mean:.{digits}f}"
+        return text if spread is None else f"{text} ± {spread:.{digits}f}"
+
+    return write
+
+
+def head_of(
+    plan: Plan, outcomes: Sequence[Outcome], store: Store, *, command: str, missing: Sequence[str]
+) -> PageHead:
+    """Describe a run: how much was done, with what, and how long it took.
+
+    Args:
+        plan: how much was wanted.
+        outcomes: what is finished.
+        store: with all results.
+        command: by which the user began it.
+        missing: ids of what is not finished.
+    """
+    papers = {paper_of(one.experiment.id) for one in outcomes}
+    scored = [one for one in outcomes if any(set(METRICS) & set(values) for values in one.samples.values())]
+    repeats = {one.repeats for one in scored if one.repeats is not None} or {plan.repeats}
+    spent = sum(store.spent_s(key) for key in store)
+    facts = {
+        "Versions": ", ".join(f"{name} {number}" for name, number in versions().items()),
+        "Python": platform.python_version(),
+        "Seeds": _seeds(plan, papers, max(repeats)),
+        "Machine": f"{os.cpu_count()} cores, {platform.machine()}, {platform.system()}",
+        "Time": f"{spent / 3600:.2f} core-hours for all results, those of earlier calls included",
+        "Results": f"{len(store)} units of work in {store.path.name}",
+    }
+    if missing:
+        facts["Not finished"] = ", ".join(missing)
+    return PageHead(
+        command=command, is_quick=plan.is_quick, amount=_amount(plan, papers, repeats), facts=facts
+    )
+
+
+def _seeds(plan: Plan, papers: Set[str], repeats: int) -> str:
+    streams = f"random streams of the trackers 0 to {repeats - 1}; data sets as in their files"
+    if papers <= {"thesis", "2005"}:
+        return streams
+    return (
+        f"{streams}; webcams 0 to {plan.repeats - 1}; people before a panoramic camera 0 to "
+        f"{plan.walks - 1}; drives with a depth camera 0 to {plan.drives - 1}"
+    )
+
+
+def _share(plan: Plan) -> str:
+    """Write how much of the data sets a quick run sees."""
+    seen, there = (
+        sum(play.scenario.duration_s for plays in suites.values() for play in plays)
+        for suites in (plan.suites, full_plan(plan.cache).suites)
+    )
+    return f"{seen:.0f} of {there:.0f} s"
+
+
+def _amount(plan: Plan, papers: Set[str], repeats: Set[int]) -> str:
+    runs = {name: len(plays) for name, plays in plan.suites.items()}
+    if plan.is_quick:
+        return (
+            f"One run per data set and of it {QUICK_S:g} s at most ({_share(plan)}), {plan.repeats} repeats "
+            "instead of 10, fewer values of each parameter (each section says which are left out), "
+            "figure 6.6 with 200 samples instead of 1000, pairs of people "
+            f"from one run per scenario, no weighted triplets, {plan.walks} panoramic films of each room, "
+            f"{plan.drive_s:g} s of {len(plan.sets)} of the 12 drives with a depth camera, "
+            f"{len(plan.scenes)} of the 17 films of things that are moved."
+        )
+    if papers == {"panoramic"}:
+        return f"{plan.walks} films of each room, and {plan.repeats} by webcams."
+    if papers == {"situation"}:
+        return (
+            f"{plan.drives} runs of each of {len(plan.sets)} drives, {plan.ablated} where trackers differ in "
+            f"one thing or the noise is varied, {2 * plan.drives} where odometry is left out; "
+            f"{plan.scene_seeds} of each of {len(plan.scenes)} films of moved things, by {len(plan.presets)} "
+            f"depth cameras. {plan.drives} runs of each film of attention, {plan.absences} of each absence, "
+            f"{plan.follows} of followers."
+        )
+    total = ", ".join(f"{name}: {count} runs" for name, count in runs.items())
+    count = (
+        f"{max(repeats)}" if len(repeats) == 1 else f"{min(repeats)} to {max(repeats)}, as each part says,"
+    )
+    return f"{count} repeats of everything with other random numbers in the trackers. {total}."

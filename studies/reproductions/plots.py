@@ -1,0 +1,184 @@
+"""Plots of experiments' values, as SVG pictures that lie inside the page."""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+
+from peopleboy.studies.reproductions.experiment import SOURCE, Experiment, Samples
+from peopleboy.studies.reproductions.statistics import mean_and_spread
+
+COLOURS = {
+    SOURCE: "#1a1a1a",
+    "literal": "#d95f02",
+    "literal, strict": "#f4a76a",
+    "literal, strict, own range": "#fad3bc",
+    "literal, half in view": "#8c3d00",
+    "default": "#1f78b4",
+    "default, strict, own range": "#c7dded",
+    "default, half in view": "#0d3c5a",
+    "default, strict": "#8fbbd9",
+    "literal, held out": "#d95f02",
+    "literal, unseen scenarios": "#f4a76a",
+    "default, held out": "#1f78b4",
+    "default, unseen scenarios": "#8fbbd9",
+}
+Points = dict[str, tuple[float, float | None]]
+Series = dict[str, Points]
+_OTHERS = ("#1f78b4", "#66a61e", "#7570b3")
+
+
+def draw(experiment: Experiment, samples: Samples) -> str | None:
+    """Draw an experiment as an SVG data address; None if there is nothing to draw."""
+    if experiment.chart == "none":
+        return None
+    if experiment.chart == "lines":
+        return _address(_lines(experiment.plotted[0], samples, experiment))
+    return _address(_bars(experiment.plotted, samples, experiment))
+
+
+def _lines(column: str, samples: Samples, experiment: Experiment) -> Figure:
+    """Draw a sweep: one curve each for the source and the trackers.
+
+    Titles of sweeps say after the comma what is varied.
+    """
+    figure, axes = _canvas(6.0)
+    groups = list(dict.fromkeys([*(line.group for line in samples), *experiment.printed(column)]))
+    groups.sort(key=_number)
+    curves = {method: _ours(samples, column, method) for method in _names(samples)}
+    curves[SOURCE] = experiment.printed(column)
+    for method, points in curves.items():
+        if not points:
+            continue
+        known = [group for group in groups if group in points]
+        axes.errorbar(
+            [groups.index(group) for group in known],
+            [points[group][0] for group in known],
+            [points[group][1] or 0.0 for group in known],
+            label=method,
+            color=_colour(method, 0),
+            marker="o",
+            markersize=4,
+            capsize=3,
+            linestyle="--" if method == SOURCE else "-",
+        )
+    axes.set_xticks(range(len(groups)), groups)
+    axes.set_xlabel(experiment.title.split(", ", 1)[-1])
+    axes.set_ylabel(f"{column} [%]")
+    axes.set_ylim(bottom=max(0.0, axes.get_ylim()[0]))
+    _finish(axes)
+    return figure
+
+
+def _bars(columns: Sequence[str], samples: Samples, experiment: Experiment) -> Figure:
+    """Draw clusters of bars: of all columns in one plot a group, or of all groups in one plot a column."""
+    groups = _groups(samples, columns, experiment)
+    by_column = {column: _series(samples, column, experiment) for column in columns}
+    plots, clusters = (groups, columns) if len(columns) > len(groups) else (columns, groups)
+    figure = Figure(figsize=(6.0, 0.7 + 2.3 * len(plots)), layout="constrained")
+    FigureCanvasSVG(figure)
+    for number, title in enumerate(plots):
+        axes = figure.add_subplot(len(plots), 1, number + 1)
+        _cluster(axes, clusters, by_column[title] if plots is columns else _of_group(by_column, title))
+        axes.set_title(title if len(plots) > 1 else "", fontsize=9, loc="left")
+        axes.set_ylabel(columns[0] if "%" in columns[0] else "%")
+        _finish(axes, with_legend=False)
+        if number == 0:
+            handles, labels = axes.get_legend_handles_labels()
+            columns_of_names = 3 if len(labels) > 4 else 4
+            figure.legend(
+                handles, labels, fontsize=8, frameon=False, ncols=columns_of_names, loc="outside upper left"
+            )
+    return figure
+
+
+def _groups(samples: Samples, columns: Sequence[str], experiment: Experiment) -> list[str]:
+    """List the groups of the source and ours, in the source's order."""
+    theirs = [group for column in columns for group in experiment.printed(column)]
+    return list(dict.fromkeys([*theirs, *(line.group for line in samples)]))
+
+
+def _series(samples: Samples, column: str, experiment: Experiment) -> Series:
+    """Return a column's values by method, then by group; the source's come first."""
+    ours = {method: _ours(samples, column, method) for method in _names(samples)}
+    return {SOURCE: experiment.printed(column)} | ours
+
+
+def _of_group(by_column: dict[str, Series], group: str) -> Series:
+    """Return a group's values by method, then by column."""
+    names = dict.fromkeys(method for series in by_column.values() for method in series)
+    return {
+        method: {
+            c: series[method][group] for c, series in by_column.items() if group in series.get(method, {})
+        }
+        for method in names
+    }
+
+
+def _cluster(axes: Axes, groups: Sequence[str], series: Series) -> None:
+    drawn = {method: points for method, points in series.items() if points}
+    width = 0.8 / max(len(drawn), 1)
+    for number, (method, points) in enumerate(drawn.items()):
+        at = [groups.index(group) for group in points]
+        axes.bar(
+            np.array(at) + width * (number - (len(drawn) - 1) / 2),
+            [mean for mean, _ in points.values()],
+            0.92 * width,
+            yerr=[spread or 0.0 for _, spread in points.values()],
+            label=method,
+            color=_colour(method, number),
+            error_kw={"linewidth": 0.8},
+        )
+    axes.set_xticks(range(len(groups)), groups)
+    axes.set_xlim(-0.6, len(groups) - 0.4)
+    axes.set_ylim(0, 105)
+
+
+def _ours(samples: Samples, column: str, method: str) -> Points:
+    return {
+        line.group: mean_and_spread(values[column])
+        for line, values in samples.items()
+        if line.method == method and column in values
+    }
+
+
+def _names(samples: Samples) -> list[str]:
+    return list(dict.fromkeys(line.method for line in samples))
+
+
+def _colour(method: str, number: int) -> str:
+    return COLOURS.get(method, _OTHERS[(number - 1) % len(_OTHERS)])
+
+
+def _number(group: str) -> float:
+    return float(group.removesuffix(" %"))
+
+
+def _canvas(width: float) -> tuple[Figure, Axes]:
+    figure = Figure(figsize=(width, 3.2), layout="constrained")
+    FigureCanvasSVG(figure)
+    return figure, figure.add_subplot()
+
+
+def _finish(axes: Axes, *, with_legend: bool = True) -> None:
+    axes.tick_params(labelsize=8)
+    axes.grid(axis="y", linewidth=0.4, alpha=0.6)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
+    if with_legend:
+        axes.legend(fontsize=8, frameon=False, ncols=4, loc="lower left", bbox_to_anchor=(0.0, 1.0))
+
+
+def _address(figure: Figure) -> str:
+    buffer = io.BytesIO()
+    # Neither date nor creator, nor names of parts drawn at random: the same figures give the same bytes.
+    with rc_context({"svg.hashsalt": "peopleboy"}):
+        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
+    return "data:image/svg+xml;base64," + base64.b64encode(buffer.getvalue()).decode()

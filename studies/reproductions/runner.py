@@ -1,0 +1,264 @@
+"""Measure the tables and figures of the sources again, print them, and write the page."""
+
+from __future__ import annotations
+
+import json
+import math
+import shlex
+import sys
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, Final
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.running.engine.store import Store
+from peopleboy.scenarios.running.engine.task import Failure, TasksFailed
+from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.run_suite import films_of
+from peopleboy.scenarios.scores.suite_table import THESIS, Content, add_up, count
+from peopleboy.studies.reproductions.catalogue import choose
+from peopleboy.studies.reproductions.experiment import Experiment, Outcome
+from peopleboy.studies.reproductions.page import Checked, Section, head_of, section, span, write_page
+from peopleboy.studies.reproductions.plan import REPEATS, Plan, full_plan, quick_plan
+from peopleboy.studies.reproductions.statistics import mean_and_spread
+from peopleboy.studies.reproductions.units import Unfinished, Unit, open_store, run_units
+
+PAGE: Final = "index.html"
+RESULTS: Final = "units.jsonl"
+MEANS: Final = "figures.json"
+_FILE_WIDTH: Final = 160  # characters of what is printed into a file
+_RATE_HZ: Final = 15.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Means:
+    """With what the work is done.
+
+    Attributes:
+        out: folder of the page and the results.
+        workers: who does it.
+        command: by which the user began it.
+    """
+
+    out: Path
+    workers: Workers = field(default_factory=Workers)
+    command: str = "peopleboy reproduce"
+
+
+def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means) -> tuple[Path, list[Section]]:
+    """Run what is missing, and write the page, and the means of all values beside it.
+
+    A killed run resumes with the same folder: results that are there are taken from there. Experiments that
+    cannot be finished, since units failed, are left off the page.
+
+    Returns:
+        The page, and what is on it.
+
+    Raises:
+        BadInput: the folder or the cluster cannot be used.
+        TasksFailed: some units failed, after all else was done.
+    """
+    store = open_store(means.out / RESULTS)
+    outcomes, failures = work_off(experiments, plan, store, means.workers)
+    shown = _write(*finished(experiments, plan, store, outcomes), plan, means, store)
+    if failures:
+        raise TasksFailed("reproduce", failures, len(store) + len(failures))
+    return shown
+
+
+def show_so_far(experiments: Sequence[Experiment], plan: Plan, means: Means) -> tuple[Path, list[Section]]:
+    """Write the page of what the folder has, each part with as many repeats as it has, and run nothing.
+
+    Raises:
+        BadInput: nothing is finished there.
+    """
+    store = open_store(means.out / RESULTS)
+    return _write(*finished(experiments, plan, store), plan, means, store)
+
+
+def work_off(
+    experiments: Sequence[Experiment], plan: Plan, store: Store, workers: Workers
+) -> tuple[dict[str, Outcome], list[Failure]]:
+    """Run what is missing, and what that makes possible, until all experiments are finished or lack a unit.
+
+    A unit that several experiments need runs once; one that fails stops no experiment that does without it.
+
+    Raises:
+        BadInput: the cluster cannot be used.
+    """
+    outcomes: dict[str, Outcome] = {}
+    failures: dict[str, Failure] = {}
+    while True:
+        wanted: dict[str, Unit] = {}
+        for one in experiments:
+            if one.id not in outcomes:
+                try:
+                    outcomes[one.id] = Outcome.of(one, plan, store)
+                except Unfinished as unfinished:
+                    wanted |= {unit.key: unit for unit in unfinished.units if unit.key not in failures}
+        if not wanted:
+            return outcomes, list(failures.values())
+        try:
+            run_units(list(wanted.values()), store, workers)
+        except TasksFailed as failed:
+            failures |= {one.name: one for one in failed.failures}
+
+
+def finished(
+    experiments: Sequence[Experiment], plan: Plan, store: Store, known: dict[str, Outcome] | None = None
+) -> tuple[list[Outcome], list[str]]:
+    """Return what is finished, each part with as many repeats as it has, and the ids of what is not.
+
+    Raises:
+        BadInput: nothing is finished.
+    """
+    found = {one.id: (known or {}).get(one.id) or Outcome.so_far(one, plan, store) for one in experiments}
+    outcomes = [one for one in found.values() if one is not None]
+    if not outcomes:
+        raise BadInput(f"{store.path}: no table or figure is finished there")
+    return outcomes, [number for number, one in found.items() if one is None]
+
+
+def _write(
+    outcomes: Sequence[Outcome], missing: Sequence[str], plan: Plan, means: Means, store: Store
+) -> tuple[Path, list[Section]]:
+    (means.out / MEANS).write_text(json.dumps(_mean_values(outcomes), indent=1) + "\n", encoding="utf-8")
+    sections, page = [section(one) for one in outcomes], means.out / PAGE
+    write_page(page, sections, head_of(plan, outcomes, store, command=means.command, missing=missing))
+    return page, sections
+
+
+def _mean_values(outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    """Return the mean of every value by experiment, group, method, and column; None for NaN."""
+    tables: dict[str, Any] = {}
+    for outcome in outcomes:
+        table = tables.setdefault(outcome.experiment.id, {})
+        for line, values in outcome.samples.items():
+            row = {name: mean_and_spread(several)[0] for name, several in values.items()}
+            plain = {name: None if math.isnan(mean) else mean for name, mean in row.items()}
+            table.setdefault(line.group, {})[line.method] = plain
+    return tables
+
+
+def reproduce_named(
+    names: Sequence[str],
+    paper: str | None,
+    out: Path,
+    films: Path,
+    workers: Workers,
+    *,
+    repeats: int | None,
+    works: bool = True,
+) -> Path:
+    """Reproduce what has these names in a source, or all, print it, and return the page.
+
+    Args:
+        names: ids or numbers; all there are if left out.
+        paper: the source to which they are limited.
+        out: folder of the page and the results.
+        films: folder of rendered frames.
+        workers: who does the work.
+        repeats: of everything; None for a quick run.
+        works: whether what is missing runs; otherwise what is there is shown.
+
+    Raises:
+        BadInput: an unknown name, or a folder or cluster that cannot be used.
+        TasksFailed: some units failed, after all else was done.
+    """
+    experiments = choose(names, paper)
+    # Workers may have another working directory.
+    cache = films.resolve()
+    plan = quick_plan(cache) if repeats is None else full_plan(cache, repeats)
+    chosen = [] if paper is None else ["--paper", paper]
+    fewer = [] if repeats == REPEATS else ["--quick"] if repeats is None else ["--repeats", str(repeats)]
+    command = shlex.join(["peopleboy", "reproduce", *chosen, *fewer, *names])
+    means = Means(out=out, workers=workers, command=command)
+    page, sections = (reproduce if works else show_so_far)(experiments, plan, means)
+    print_sections(sections)
+    return page
+
+
+def list_experiments(names: Sequence[str], paper: str | None) -> None:
+    """Print ids, where they are from, and what they are about."""
+    table = Table("id", "source", "what", box=None, header_style="bold")
+    for one in choose(names, paper):
+        table.add_row(one.id, one.source, one.title)
+    Console().print(table)
+
+
+def print_sections(sections: Iterable[Section]) -> None:
+    """Print every section: its table, and how the source's claims fare."""
+    console = Console(width=None if sys.stdout.isatty() else _FILE_WIDTH, highlight=False)
+    for part in sections:
+        console.print(
+            f"[bold]{escape(part.id)}[/bold]: {escape(part.table.title)} ({escape(part.table.source)})"
+        )
+        if part.rows:
+            console.print(_table(part))
+        if part.compared:
+            console.print(_comparison(part))
+        if part.picture is not None:
+            console.print("  a picture is on the page")
+        for item in part.checked:
+            _print_claim(console, item)
+        if part.outcome.left_out:
+            console.print(f"  left out of this run: {escape(', '.join(part.outcome.left_out))}")
+        console.print()
+
+
+def _table(part: Section) -> Table:
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for number, name in enumerate(("", "", *part.columns)):
+        table.add_column(Text(name), justify="left" if number < 2 else "right")
+    for row in part.rows:
+        cells = (row.group if row.is_first else "", row.method, *row.cells)
+        table.add_row(*map(Text, cells), style="dim" if row.is_source else "")
+    return table
+
+
+def _comparison(part: Section) -> Table:
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for name in ("", "", "", "ours less the source's (95 %), effect size", ""):
+        table.add_column(name)
+    for one in part.compared:
+        cells = (one.group, one.column, one.method, span(one.difference, one.column), one.standing.value)
+        table.add_row(*map(Text, cells))
+    return table
+
+
+def _print_claim(console: Console, item: Checked) -> None:
+    metric = item.claim.metric
+    console.print(f"  {escape(item.claim.says)}")
+    for one in item.verdicts:
+        times = "" if one.times is None else f"{one.times:.2f} times; "
+        text = f"{one.outcome.value}; {times}{metric} {span(one.difference, metric)}"
+        console.print(f"    {escape(one.method)}: {escape(text)}")
+        for test in one.tests:
+            console.print(f"      {escape(test)}")
+
+
+def count_suite(name: str, films: Path) -> Content:
+    """Count what a suite holds; frames that are not in the folder yet are rendered."""
+    return add_up(count(shot.people(), shot.frames, _RATE_HZ) for shot in films_of(name, films))
+
+
+def print_contents(names: Sequence[str], films: Path) -> None:
+    """Print what data sets hold, each beside the thesis's of the same name."""
+    table = Table(title="thesis, table 3.1: ours (theirs)", title_justify="left", box=None, pad_edge=False)
+    table.add_column("")
+    for name in names:
+        table.add_column(name, justify="right")
+    ours = [count_suite(name, films) for name in names]
+    for one in fields(Content):
+        cells = [
+            f"{getattr(content, one.name)} ({getattr(THESIS[name], one.name)})"
+            for name, content in zip(names, ours, strict=True)
+        ]
+        table.add_row(one.name.replace("_", " "), *cells)
+    (Console() if sys.stdout.isatty() else Console(width=120)).print(table)

@@ -1,1 +1,0 @@
-"""Ours beside the sources': figures, plots, the page."""

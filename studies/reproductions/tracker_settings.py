@@ -1,0 +1,89 @@
+"""Trackers that are compared: one of a few bases, with some of its settings changed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from peopleboy.bad_input import BadInput
+from peopleboy.tracker.thermal.config import (
+    DepthConfig,
+    HeightConfig,
+    InteractionConfig,
+    StayBehindConfig,
+    TrackerConfig,
+)
+from peopleboy.tracker.thermal.people_tracker import PeopleTracker
+from peopleboy.tracker.thermal.variants import PAPER, PEOPLEBOY, THESIS, THESIS_COLOUR, THESIS_OCCLUSION
+
+Value = float | int | str | bool | tuple[float, ...] | None
+Changes = tuple[tuple[str, Value], ...]
+
+_ONE_PERSON = InteractionConfig(max_persons=1)
+_OPEN = replace(PEOPLEBOY, depth=DepthConfig(), height=HeightConfig(), occlusion=StayBehindConfig())
+
+BASES: Mapping[str, TrackerConfig] = {
+    "thesis-single": replace(THESIS, interaction=_ONE_PERSON),
+    "paper-single": replace(PAPER, interaction=_ONE_PERSON),
+    "thesis-thermal": THESIS,
+    "thesis-colour": THESIS_COLOUR,
+    "thesis-occlusion": THESIS_OCCLUSION,
+    "paper-several": PAPER,
+    "contour": PEOPLEBOY,
+    "contour-thermal": replace(_OPEN, colour=None, appearance=None),
+    "contour-colour": _OPEN,
+    # The contour tracker with the thesis's colour model, whose descriptions can be exchanged.
+    "contour-moments": replace(_OPEN, colour=THESIS_COLOUR.colour, appearance=None),
+}
+"""Every tracker that the sources report on, and the contour tracker with as much as each of them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """A base, and settings of it that are changed.
+
+    Attributes:
+        base: one of `BASES`.
+        changes: (path, value) such as ("person.count", 300).
+    """
+
+    base: str
+    changes: Changes = ()
+
+    @property
+    def key(self) -> str:
+        """Return the setting in one line."""
+        return " ".join([self.base, *(f"{path}={value}" for path, value in self.changes)])
+
+    def config(self) -> TrackerConfig:
+        """Return the tracker's settings.
+
+        Raises:
+            BadInput: there is no such base or setting.
+        """
+        if self.base not in BASES:
+            raise BadInput(f"unknown base {self.base!r}; there are: {', '.join(BASES)}")
+        config = BASES[self.base]
+        for path, value in self.changes:
+            config = changed(config, path, value)
+        return config
+
+    def make(self, rng: np.random.Generator) -> PeopleTracker:
+        """Make the tracker."""
+        return PeopleTracker(self.config(), rng)
+
+
+def changed(record: Any, path: str, value: Value) -> Any:
+    """Copy nested records with the setting at a path, such as "person.count", changed.
+
+    Raises:
+        BadInput: there is no such setting.
+    """
+    head, _, rest = path.partition(".")
+    names = [field.name for field in fields(record)]
+    if head not in names:
+        raise BadInput(f"{type(record).__name__} has no {head!r}; it has: {', '.join(names)}")
+    return replace(record, **{head: changed(getattr(record, head), rest, value) if rest else value})
