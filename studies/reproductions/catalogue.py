@@ -49,7 +49,6 @@ def picture(using: Measurement, *, name: str) -> str:
 def draw_picture(name: str) -> Result:
     """Draw a figure of the folder `pictures`, and return it as an address."""
     module, _, function = name.partition(".")
-    # Imported here, as these need PyBullet, and the catalogue is listed without it.
     return {"picture": png_address(getattr(import_module(f"{pictures.__name__}.{module}"), function)())}
 
 

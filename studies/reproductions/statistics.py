@@ -131,7 +131,7 @@ def by_stretches(one: ImageErrors, other: ImageErrors) -> Difference:
 def bootstrap_interval(parts: Sequence[T], value: Callable[[Sequence[T]], float]) -> Interval:
     """Return the 95 % interval of a value of parts, such as seeds, by the percentile bootstrap.
 
-    NaN for a single part.
+    Resamples of which the value is NaN are left out. NaN for a single part.
 
     Source: B. Efron, "Bootstrap methods: another look at the jackknife", Annals of Statistics 7, 1979.
     """
@@ -145,7 +145,8 @@ def bootstrap_interval(parts: Sequence[T], value: Callable[[Sequence[T]], float]
         method="percentile",
         rng=stream(0, "depth_drives.interval"),
     )
-    return float(found.confidence_interval.low), float(found.confidence_interval.high)
+    low, high = np.nanquantile(found.bootstrap_distribution, [0.025, 0.975]).tolist()
+    return low, high
 
 
 def cohens_h(one: float, other: float) -> float:

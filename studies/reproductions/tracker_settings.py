@@ -9,21 +9,21 @@ from typing import Any
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.thermal.config import (
+from peopleboy.tracker.contour.contour_config import (
     DepthConfig,
     HeightConfig,
     InteractionConfig,
     StayBehindConfig,
     TrackerConfig,
 )
-from peopleboy.tracker.thermal.people_tracker import PeopleTracker
-from peopleboy.tracker.thermal.variants import PAPER, PEOPLEBOY, THESIS, THESIS_COLOUR, THESIS_OCCLUSION
+from peopleboy.tracker.contour.contour_tracker import ContourTracker
+from peopleboy.tracker.contour.variants import CONTOUR, PAPER, THESIS, THESIS_COLOUR, THESIS_OCCLUSION
 
 Value = float | int | str | bool | tuple[float, ...] | None
 Changes = tuple[tuple[str, Value], ...]
 
 _ONE_PERSON = InteractionConfig(max_persons=1)
-_OPEN = replace(PEOPLEBOY, depth=DepthConfig(), height=HeightConfig(), occlusion=StayBehindConfig())
+_OPEN = replace(CONTOUR, depth=DepthConfig(), height=HeightConfig(), occlusion=StayBehindConfig())
 
 BASES: Mapping[str, TrackerConfig] = {
     "thesis-single": replace(THESIS, interaction=_ONE_PERSON),
@@ -32,7 +32,7 @@ BASES: Mapping[str, TrackerConfig] = {
     "thesis-colour": THESIS_COLOUR,
     "thesis-occlusion": THESIS_OCCLUSION,
     "paper-several": PAPER,
-    "contour": PEOPLEBOY,
+    "contour": CONTOUR,
     "contour-thermal": replace(_OPEN, colour=None, appearance=None),
     "contour-colour": _OPEN,
     # The contour tracker with the thesis's colour model, whose descriptions can be exchanged.
@@ -71,9 +71,9 @@ class Setting:
             config = changed(config, path, value)
         return config
 
-    def make(self, rng: np.random.Generator) -> PeopleTracker:
+    def make(self, rng: np.random.Generator) -> ContourTracker:
         """Make the tracker."""
-        return PeopleTracker(self.config(), rng)
+        return ContourTracker(self.config(), rng)
 
 
 def changed(record: Any, path: str, value: Value) -> Any:

@@ -90,7 +90,7 @@ class MadeUp(dict[str, Result]):
             "false": [],
             "ms": 9.0,
             "pre": pre,
-            "told": told,
+            "tracks": told,
         }
         robot = [[0.1 * frame, 0.0, 0.0] for frame in range(3)]
         return dict.fromkeys(CHOICES, seen) | {"truth": truth, "robot": robot, "depth": told, "legs": told}

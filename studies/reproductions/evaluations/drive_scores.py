@@ -1,22 +1,20 @@
-"""Tracks on the floor against the people who stand there: hits, misses, false alarms, errors, intervals."""
+"""Tracks on the floor against the people who stand there: hits, misses, false alarms, errors."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Final, TypeVar
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.track import Track
 
 Floats = NDArray[np.float64]
-T = TypeVar("T")
 
 FARTHEST_M: Final = 10.0
 LEAST_PX: Final = 200  # of a person who counts; fewer are a hand or a foot
@@ -25,7 +23,6 @@ RADIUS_M: Final = 1.0
 CLOSE_M: Final = 0.3
 
 _PRIORITY_M: Final = 10.0  # by which people who count are preferred in the assignment
-_RESAMPLES: Final = 2000
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,21 +226,6 @@ class DriveRecord:
 def hit_rows(plain: Mapping[str, Any]) -> Floats:
     """Read the hits (N, 7) of a drive's plain data, NaN for None."""
     return np.array(plain["hits"], dtype=np.float64).reshape(-1, 7)
-
-
-def interval(
-    parts: Sequence[T], measure: Callable[[Sequence[T]], float], share: float = 0.95
-) -> tuple[float, float]:
-    """Give a bootstrap interval of a figure over parts such as seeds; NaN for one part.
-
-    Resamples in which the figure is NaN are left out, which `scipy.stats.bootstrap` cannot do.
-    """
-    if len(parts) < 2:
-        return float("nan"), float("nan")
-    drawn = stream(0, "depth_drives.interval").integers(0, len(parts), (_RESAMPLES, len(parts)))
-    figures = [measure([parts[k] for k in row]) for row in drawn]
-    low, high = np.nanquantile(figures, [(1.0 - share) / 2.0, (1.0 + share) / 2.0]).tolist()
-    return low, high
 
 
 def _switches(hits: Floats) -> int:

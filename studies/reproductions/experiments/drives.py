@@ -24,7 +24,6 @@ from peopleboy.studies.reproductions.evaluations.drive_tracking import (
     watch_drive,
     watch_legs,
 )
-from peopleboy.studies.reproductions.evaluations.playback import with_cameras
 from peopleboy.studies.reproductions.experiment import Floats, Line, Row, Samples, as_columns
 from peopleboy.studies.reproductions.pictures import situation_figures as figures
 from peopleboy.studies.reproductions.plan import WHOLE_S, Plan, shortened
@@ -263,7 +262,7 @@ def score_drive(scenario: str, seed: int, names: tuple[str, ...], scale: float, 
     """Play and score a drive."""
     played = shortened(scenario, most_s)
     if scale != 1.0:
-        played = with_cameras(played, {DEPTH: {"kind": DEPTH, "scale": scale}})
+        played = played.with_cameras({DEPTH: {"kind": DEPTH, "scale": scale}})
     return watch_drive(played, seed, names)
 
 

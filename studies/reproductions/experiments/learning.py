@@ -20,8 +20,8 @@ from peopleboy.studies.training.occlusion_learning.example_splits import learn_s
 from peopleboy.studies.training.occlusion_learning.occlusion_pairs import PairExample, collect
 from peopleboy.studies.training.occlusion_learning.pair_task import examples_of, plain_pairs
 from peopleboy.studies.training.occlusion_learning.train_occlusion import LEAST, SCENARIOS
-from peopleboy.tracker.thermal.occlusion.pair_features import FEATURES
-from peopleboy.tracker.thermal.occlusion.weak_classifiers import weighted_sums
+from peopleboy.tracker.contour.occlusion.pair_features import FEATURES
+from peopleboy.tracker.contour.occlusion.weak_classifiers import weighted_sums
 
 CLASSIFIERS, PAIRS = "weak classifiers", "pairs"
 SCENES: Final = (

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from peopleboy.scenarios.running.engine.store import Result
+from peopleboy.studies.reproductions.evaluations.webcam_positions import measure_webcams
 from peopleboy.studies.reproductions.experiment import Line, Samples
 from peopleboy.studies.reproductions.pictures import panoramic_figures
 from peopleboy.studies.reproductions.plan import Plan
@@ -201,7 +202,4 @@ def score_new_people(seeds: Sequence[int], trial: trials.SplitTrial, runs: Seque
 
 def score_webcams(seed: int) -> Result:
     """Play the scene with webcams, and measure their errors."""
-    # Here, as it needs PyBullet, and the catalogue is listed without it.
-    from peopleboy.studies.reproductions.evaluations.webcam_positions import measure_webcams
-
     return asdict(measure_webcams(seed))

@@ -44,8 +44,8 @@ FOCUS_SCENARIOS: Final = ("crossing_3", "same_uniform", "crowd_8", "follow_passe
 FOCUS_SETS: Final = {"A": ("follow_passers_by",), "B": ("same_uniform", "crowd_8")}
 """Scenarios for the thesis's sets: a person who leads the robot past others; people dressed alike."""
 COMPARED: Final = (PRINTED_NAME, MATCHING, DEFAULT)
-TRACKERS: Final = ("peopleboy", "attentive-printed", "attentive")
-FOLLOWERS: Final = ("attentive", "peopleboy")
+TRACKERS: Final = ("contour", "attentive-printed", "attentive")
+FOLLOWERS: Final = ("attentive", "contour")
 ABSENCES: Final = ("absence_10s", "absence_60s")
 FOLLOWED: Final = "follow_absence"
 _IN_TIME_S: Final = 1.0

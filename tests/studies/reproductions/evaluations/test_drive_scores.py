@@ -10,7 +10,6 @@ from peopleboy.studies.reproductions.evaluations.drive_scores import (
     DriveScore,
     FloorPerson,
     associate,
-    interval,
 )
 from peopleboy.tracker.track import FloorPlace, Status, Track
 from tests.helpers.runs import synthetic_ticks
@@ -96,11 +95,3 @@ def test_drives_together_have_the_sums_of_all() -> None:
     assert (both.frames, both.found(), both.missed, both.false_sizes) == (3, 1, 2, 6)
     assert both.rate() == pytest.approx(1.0 / 3.0)
     assert both.size_recall[0] == 0.75
-
-
-def test_the_interval_holds_the_figure_and_needs_two_parts() -> None:
-    values = list(np.random.default_rng(0).normal(5.0, 1.0, 30))
-    low, high = interval(values, lambda part: float(np.mean(part)))
-    assert low < np.mean(values) < high
-    assert high - low == pytest.approx(2 * 1.96 * np.std(values) / np.sqrt(30), rel=0.1)
-    assert np.isnan(interval(values[:1], lambda part: part[0])).all()
