@@ -21,6 +21,7 @@ from benchmarks import call
 from benchmarks.clips.bench import ClipsOptions, bench_clips
 from benchmarks.clips.watch import PEERS
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.scenario_file import to_data
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.track_footage import track_footage
 from peopleboy.scenarios.running.run import RunOptions, run
@@ -119,7 +120,7 @@ def _play(scene: str, temperatures: Mapping[str, float], home: Path) -> None:
         "duration_s": DURATION_S,
     }
     if temperatures:
-        place = load_scenario(scene).spec.place.model_dump(mode="json", exclude_unset=True)
+        place = to_data(load_scenario(scene).spec)["place"]
         changed["place"] = place | {"temperatures": dict(temperatures)}
     path = home.with_suffix(".yaml")
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -25,8 +25,8 @@ from benchmarks import call
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.written_controller import WrittenController
 from peopleboy.scenarios.files.load import library, load_scenario
+from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.files.schema.robot import ORACLE
 
 COMPARED_S = 20.0
 FIGURES = ("in_band", "facing", "in_band_and_facing", "followed")

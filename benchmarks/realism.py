@@ -16,8 +16,9 @@ from rich.table import Table
 
 from benchmarks import call
 from peopleboy.scenarios.files.load import LIBRARY, load_scenario, parse_scenario
+from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.files.schema.robot import ORACLE
+from peopleboy.scenarios.files.scenario_file import to_data
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import make_eyes
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
@@ -138,7 +139,7 @@ def _film(scenario: Scenario, seed: int, clip: Path) -> None:
 
 def _changed(name: str, changes: Sequence[Change]) -> Scenario:
     """A scene of the library, its first seconds, changed."""
-    data = load_scenario(name).spec.model_dump(mode="json", exclude_unset=True)
+    data = to_data(load_scenario(name).spec)
     early = [person for person in data["people"] if person.get("enter_s", 0.0) < SCENE_S]
     data |= {"duration_s": SCENE_S, "people": early}
     for change in changes:

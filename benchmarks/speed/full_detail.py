@@ -20,8 +20,9 @@ from benchmarks import call
 from benchmarks.timing import Turns, spent_ms
 from peopleboy.behaviours.behaviour import Command
 from peopleboy.scenarios.files.load import LIBRARY, library, load_scenario, parse_scenario
+from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.files.schema.robot import ORACLE
+from peopleboy.scenarios.files.scenario_file import to_data
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import make_eyes
 from peopleboy.sim.cameras.presets import THERMAL_PRESETS
@@ -101,7 +102,7 @@ def _all_images(world: World) -> dict[str, Any]:
 
 def in_detail(name: str, detail: str) -> Scenario:
     """Load a scenario of the library in a detail, the thermal camera's electronics with it."""
-    data: dict[str, Any] = load_scenario(name).spec.model_dump(mode="json", exclude_unset=True)
+    data: dict[str, Any] = to_data(load_scenario(name).spec)
     robot = data.get("robot", {})
     cameras = robot.get("cameras", {})
     electronics = {"preset": PRESET} | cameras.get("thermal", {}) if detail == FULL else {}

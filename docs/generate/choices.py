@@ -5,25 +5,26 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from docs.generate.markdown import table
-from peopleboy.scenarios.files.build_place import make_floor_plan
-from peopleboy.scenarios.files.schema.place import (
-    CorridorSpec,
-    LCorridorSpec,
-    PlaceSpec,
-    RoomSpec,
-    StreetSpec,
-    TCorridorSpec,
-)
-from peopleboy.sim.people.body.clothes import BOTTOMS, COLOURS, HAIR, SHOES, TOPS, Garment
+from peopleboy.sim.people.body.clothes import BOTTOMS, HAIR, SHOES, TOPS, Garment
 from peopleboy.sim.places.furniture.thing_kinds import KINDS, Kind
+from peopleboy.sim.places.place_config import (
+    CorridorConfig,
+    LCorridorConfig,
+    PlaceConfig,
+    RoomConfig,
+    StreetConfig,
+    TCorridorConfig,
+    lay_out,
+)
+from peopleboy.sim.shapes.colours import COLOURS
 from peopleboy.sim.shapes.materials import Rgb
 
-_PLACES: Mapping[str, PlaceSpec] = {
-    "room": RoomSpec(kind="room", length_m=8.0, width_m=5.0),
-    "corridor": CorridorSpec(kind="corridor", length_m=20.0, width_m=2.4),
-    "l_corridor": LCorridorSpec(kind="l_corridor", first_m=12.0, second_m=8.0, width_m=2.4),
-    "t_corridor": TCorridorSpec(kind="t_corridor", stem_m=12.0, bar_m=16.0, width_m=2.4),
-    "street": StreetSpec(kind="street", length_m=30.0, width_m=12.0),
+_PLACES: Mapping[str, PlaceConfig] = {
+    "room": RoomConfig(kind="room", length_m=8.0, width_m=5.0),
+    "corridor": CorridorConfig(kind="corridor", length_m=20.0, width_m=2.4),
+    "l_corridor": LCorridorConfig(kind="l_corridor", first_m=12.0, second_m=8.0, width_m=2.4),
+    "t_corridor": TCorridorConfig(kind="t_corridor", stem_m=12.0, bar_m=16.0, width_m=2.4),
+    "street": StreetConfig(kind="street", length_m=30.0, width_m=12.0),
 }
 
 
@@ -52,8 +53,8 @@ def things() -> str:
     return table(head, [_thing(name, kind) for name, kind in KINDS.items()])
 
 
-def _walls(place: PlaceSpec) -> str:
-    return ", ".join(f"`{wall.name}`" for wall in make_floor_plan(place).walls())
+def _walls(place: PlaceConfig) -> str:
+    return ", ".join(f"`{wall.name}`" for wall in lay_out(place).walls())
 
 
 def _garment(key: str, name: str, worn: Garment) -> tuple[str, ...]:

@@ -7,14 +7,14 @@ from collections.abc import Iterator
 from typing import Any
 
 from docs.generate.markdown import words
-from peopleboy.sim.people.body.clothes import COLOURS
+from peopleboy.sim.shapes.colours import COLOURS
 
 Schema = dict[str, Any]
 
 
 def title(part: str) -> str:
     """Turn a class of the schema into a heading: LCorridorSpec becomes L corridor."""
-    return re.sub(r"(?<!^)([A-Z])", r" \1", part.removesuffix("Spec")).capitalize()
+    return re.sub(r"(?<!^)([A-Z])", r" \1", part.removesuffix("Spec").removesuffix("Config")).capitalize()
 
 
 def type_text(field: Schema) -> str:
@@ -25,6 +25,8 @@ def type_text(field: Schema) -> str:
 
 def default_text(field: Schema) -> str:
     """Say what a field is when it is left out."""
+    if "$ref" in field and "default" not in field:
+        return "as below"
     default = field.get("default")
     if default is None:
         return ""
@@ -33,7 +35,7 @@ def default_text(field: Schema) -> str:
     if isinstance(default, dict):
         return "as below" if default else "none"
     if isinstance(default, list):
-        return "none"
+        return f"`{', '.join(map(str, default))}`" if default else "none"
     return f"`{default}`"
 
 

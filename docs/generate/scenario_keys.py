@@ -8,7 +8,7 @@ from typing import Any
 
 from docs.generate.json_types import default_text, models_in, title, type_text
 from docs.generate.markdown import sentence, table
-from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
+from peopleboy.scenarios.files.scenario_file import json_schema
 from peopleboy.settings import unit_of
 
 
@@ -46,7 +46,8 @@ def keys_of(parts: Mapping[str, dict[str, Any]]) -> Iterator[Key]:
 
 def parts_of_a_file() -> Mapping[str, dict[str, Any]]:
     """Find the parts of a scenario file by class name, each after the one that it is first used in."""
-    whole = ScenarioSpec.model_json_schema()
+    whole = json_schema()
+    whole["required"] = whole["anyOf"][0]["required"]
     parts = {"ScenarioSpec": whole}
     waiting = ["ScenarioSpec"]
     while waiting:

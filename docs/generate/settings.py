@@ -21,7 +21,7 @@ COLUMNS: Mapping[str, TrackerConfig] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Setting:
+class CommentedSetting:
     """One field of a settings class: its name, default and the comment beside or above it."""
 
     name: str
@@ -40,16 +40,18 @@ def settings() -> str:
             if kind.__module__ == source.__name__:
                 own = {name: value if isinstance(value, kind) else None for name, value in given.items()}
                 title = f"`{part.name}`" if len(kinds) == 1 else f"`{part.name}`: `{kind.__name__}`"
-                parts.append(_section(title, kind, settings_of(text, kind.__name__), own))
+                parts.append(_section(title, kind, commented_settings(text, kind.__name__), own))
         if kind is FilterConfig:
             limits = {name: config.limits for name, config in given.items()}
             parts.append(
-                _section(f"`{part.name}.limits`", LimitsConfig, settings_of(text, "LimitsConfig"), limits)
+                _section(
+                    f"`{part.name}.limits`", LimitsConfig, commented_settings(text, "LimitsConfig"), limits
+                )
             )
     return "\n".join(parts)
 
 
-def settings_of(text: str, kind: str) -> list[Setting]:
+def commented_settings(text: str, kind: str) -> list[CommentedSetting]:
     """Read the fields of a class and their comments from its source."""
     lines = text.splitlines()
     body = next(
@@ -59,11 +61,11 @@ def settings_of(text: str, kind: str) -> list[Setting]:
     for node in body:
         if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
             default = "" if node.value is None else ast.unparse(node.value)
-            found.append(Setting(node.target.id, default, _comment(lines, node)))
+            found.append(CommentedSetting(node.target.id, default, _comment(lines, node)))
     return found
 
 
-def _section(title: str, kind: type[Any], found: list[Setting], given: Mapping[str, Any]) -> str:
+def _section(title: str, kind: type[Any], found: list[CommentedSetting], given: Mapping[str, Any]) -> str:
     rows = []
     for setting in found:
         values = [_value(config, setting.name, kind) for config in given.values()]

@@ -45,6 +45,6 @@ def schema() -> None:
     """Print the JSON schema of scenario files, for editors."""
     import json
 
-    from peopleboy.scenarios.files.schema.scenario_file import json_schema
+    from peopleboy.scenarios.files.scenario_file import json_schema
 
     click.echo(json.dumps(json_schema(), indent=2))

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.drawing.plan_sheet import Labels
 from peopleboy.scenarios.files.check_people import ROBOT_M
+from peopleboy.scenarios.files.robot import CommandSpec
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.files.schema.robot import CommandSpec
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.robot.robot_config import RobotConfig

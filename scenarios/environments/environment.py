@@ -29,10 +29,9 @@ from peopleboy.scenarios.environments.observations import (
 from peopleboy.scenarios.environments.randomise import check_options, vary, world_of
 from peopleboy.scenarios.environments.scene_picture import ScenePicture
 from peopleboy.scenarios.environments.teller import Teller
-from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.files.schema.robot import ORACLE
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.scenarios.loop.tracker_by_name import camera_names, make_checked_eyes
@@ -349,7 +348,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     def _take(self, scenario: Scenario) -> None:
         """Play this scenario from the next episode on."""
         self._scenario = scenario.mounting(self._wanted) if self._kind == "tracks" else scenario
-        self._robot = _resize(equip_robot(self._scenario.robot), self._size)
+        self._robot = _resize(self._scenario.robot.config(), self._size)
         self._picture = ScenePicture(scenario.plan, scenario.place) if self.render_mode else None
 
     def _config(self, options: Mapping[str, Any]) -> WorldConfig:

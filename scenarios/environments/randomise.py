@@ -10,7 +10,6 @@ from typing import Any, Final
 import numpy as np
 
 from peopleboy.bad_input import BadInput, found_in
-from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.narrow import is_number, narrowed
 from peopleboy.sim.config import WorldConfig
@@ -20,6 +19,7 @@ from peopleboy.sim.people.person_config import SPEEDS_M_S, PersonConfig
 from peopleboy.sim.places.place import Fixture, Place, air_of
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Material
+from peopleboy.wording import hint
 
 LIMITS: Final[Mapping[str, tuple[float, float]]] = {
     "warmer_k": (-30.0, 30.0),

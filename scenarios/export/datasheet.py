@@ -20,7 +20,6 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.export.checks import Check
-from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.random_worlds.distribution import ODDS, RANGES, SHARES
 from peopleboy.scenarios.run_folder.finished_run import cameras_of
@@ -166,7 +165,7 @@ def write_datasheet(
     environment = jinja2.Environment(trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters |= {"span": _span, "quote": shlex.quote}
     template = environment.from_string(_TEMPLATE.read_text(encoding="utf-8"))
-    outfits = [equip_robot(scenario.spec.robot).cameras for scenario in scenarios]
+    outfits = [scenario.spec.robot.config().cameras for scenario in scenarios]
     text = template.render(
         statistics=statistics,
         checks=checks,

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput, Key, found_in
+from peopleboy.scenarios.files.check_moves import MovedThings
 from peopleboy.scenarios.files.check_people import (
     BODY_M,
     ROBOT_M,
@@ -16,23 +17,15 @@ from peopleboy.scenarios.files.check_people import (
     check_distance,
     check_person,
 )
-from peopleboy.scenarios.files.equip_robot import equip_robot
-from peopleboy.scenarios.files.moves.check_moves import MovedThings
-from peopleboy.scenarios.files.place_things import describe_floor, name_things
-from peopleboy.scenarios.files.schema.people import PersonSpec, WaypointSpec
-from peopleboy.scenarios.files.schema.robot import ORACLE, CameraSpec, RobotSpec
-from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
-from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.cameras.kinds import check_rate, colour_from_thermal
+from peopleboy.scenarios.files.people import PersonSpec
+from peopleboy.scenarios.files.robot import ORACLE, RobotSpec, check_cameras
+from peopleboy.scenarios.files.scenario_file import ScenarioSpec
 from peopleboy.sim.config import CONTROL_HZ
+from peopleboy.sim.people.person_config import Waypoint
 from peopleboy.sim.places.floor_plan import FloorPlan, Rectangle
+from peopleboy.sim.places.furniture.place_things import describe_floor, name_things
 from peopleboy.sim.places.furniture.thing_kinds import KINDS
 from peopleboy.sim.places.place import Place
-from peopleboy.sim.robot.robot_config import RobotConfig
-
-# Names that cameras must leave to other folders, entities and arrays.
-_TAKEN = ("truth", "tracks", "scene", "body", "sonar", "odometry")
-_MOST_PIXELS = 1 << 23  # that trackers sum up
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,7 +50,7 @@ class Ground:
         """Give what is wrong with a person's path, below its key; None if it can be walked."""
         return self._path_fault(person.path) or self.moved.fault(person, BODY_M)
 
-    def _path_fault(self, path: Sequence[WaypointSpec]) -> BadInput | None:
+    def _path_fault(self, path: Sequence[Waypoint]) -> BadInput | None:
         for index, waypoint in enumerate(path):
             fault = self._point_fault(waypoint)
             if fault is None and index > 0:
@@ -66,7 +59,7 @@ class Ground:
                 return BadInput(fault, key=("path", index, "at_m"))
         return None
 
-    def _point_fault(self, waypoint: WaypointSpec) -> str | None:
+    def _point_fault(self, waypoint: Waypoint) -> str | None:
         x, y = waypoint.at_m
         for box, name in self._blocking(waypoint):
             if box.contains(x, y):
@@ -75,7 +68,7 @@ class Ground:
             return f"({x:g}, {y:g}) is outside the floor; {describe_floor(self.plan)}"
         return None
 
-    def _leg_fault(self, start: WaypointSpec, end: WaypointSpec) -> str | None:
+    def _leg_fault(self, start: Waypoint, end: Waypoint) -> str | None:
         for box, name in self._blocking(start, end):
             if crosses(box, start.at_m, end.at_m):
                 (x0, y0), (x1, y1) = start.at_m, end.at_m
@@ -85,7 +78,7 @@ class Ground:
                 )
         return None
 
-    def _blocking(self, *waypoints: WaypointSpec) -> Iterator[tuple[Rectangle, str]]:
+    def _blocking(self, *waypoints: Waypoint) -> Iterator[tuple[Rectangle, str]]:
         """Everything in the way; a seat is not, for who sits down or gets up."""
         may_sit = any(waypoint.posture == "sitting" for waypoint in waypoints)
         for box, name in zip(self.boxes, self.names, strict=True):
@@ -126,7 +119,8 @@ def check_scenario(spec: ScenarioSpec, people: Sequence[tuple[Key, PersonSpec]],
     _check_duration(spec.duration_s)
     check_company(people, ground.moved.place)
     _check_robot(spec, ground)
-    _check_cameras(spec.robot)
+    with found_in("robot", "cameras"):
+        check_cameras(spec.robot)
     _check_order("at_s", [light.at_s for light in spec.lights], ("lights",))
     _check_faults(spec)
     for key, person in people:
@@ -184,8 +178,11 @@ def _check_behaviour(robot: RobotSpec) -> None:
     if robot.commands and robot.behaviour != "scripted":
         raise BadInput(f"a robot that is to {robot.behaviour} takes none; use 'scripted'", key=("commands",))
     if robot.behaviour == "scripted" and not robot.commands:
-        told = "tell at least one, such as '{from_s: 0.0, linear_m_s: 0.5}', or let the robot 'stand'"
-        raise BadInput(f"a scripted robot has none; {told}", key=("commands",))
+        example = "'{from_s: 0.0, linear_m_s: 0.5}'"
+        raise BadInput(
+            f"a scripted robot has none; give at least one, such as {example}, or let the robot 'stand'",
+            key=("commands",),
+        )
     if robot.keep_height is not None and robot.behaviour != "follow_person":
         raise BadInput("only a robot that is to 'follow_person' takes it", key=("keep_height",))
     if robot.walls_by is not None and robot.behaviour != "follow_corridor":
@@ -208,35 +205,6 @@ def _check_faults(spec: ScenarioSpec) -> None:
             raise BadInput(
                 f"{fault.from_s:g} must be before the end, duration_s {spec.duration_s:g}",
                 key=("faults", index, "from_s"),
-            )
-
-
-def _check_cameras(robot: RobotSpec) -> None:
-    with found_in("robot", "cameras"):
-        for name, camera in robot.cameras.items():
-            with found_in(name):
-                _check_camera(name, camera)
-        _check_views(equip_robot(robot).cameras)
-
-
-def _check_camera(name: str, camera: CameraSpec) -> None:
-    if name in _TAKEN:
-        raise BadInput("the name is taken in what a run leaves; choose another")
-    if name in RobotConfig().cameras and camera.kind != name:
-        raise BadInput(f"must be {name!r}, as the tracker wants it; choose another name", key=("kind",))
-    if name in RobotConfig().cameras and camera.rate_hz not in (None, CONTROL_HZ):
-        raise BadInput(f"must be {CONTROL_HZ}, as the tracker wants it; leave it out", key=("rate_hz",))
-    check_rate(camera.rate_hz, CONTROL_HZ)
-
-
-def _check_views(cameras: Mapping[str, CameraConfig]) -> None:
-    """Refuse images that a tracker or a sheet of pictures could not take in later."""
-    colour_from_thermal(cameras)
-    for name, camera in cameras.items():
-        width, height = camera.camera.width, camera.camera.height
-        if width * height > _MOST_PIXELS:
-            raise BadInput(
-                f"{width} x {height} pixels are too many; at most {_MOST_PIXELS} in all", key=(name,)
             )
 
 

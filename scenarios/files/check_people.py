@@ -7,11 +7,11 @@ from collections import Counter
 from collections.abc import Sequence
 
 from peopleboy.bad_input import BadInput, Key, dotted
-from peopleboy.scenarios.files.schema.people import PersonSpec
-from peopleboy.scenarios.files.schema.robot import RobotSpec
-from peopleboy.scenarios.files.schema_errors import hint
+from peopleboy.scenarios.files.people import PersonSpec
+from peopleboy.scenarios.files.robot import RobotSpec
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.truth.truth import BORDER
+from peopleboy.wording import hint
 
 BODY_M = 0.2  # clearance that the middle of a person keeps from walls and things
 ROBOT_M = 0.27  # radius of the circle around the robot
@@ -40,7 +40,6 @@ def check_person(person: PersonSpec, duration_s: float, names: Sequence[str]) ->
         BadInput: with the key, below the person's.
     """
     _check_times(person, duration_s)
-    _check_lead(person)
     _check_faces(person, names)
 
 
@@ -110,8 +109,6 @@ def _check_starts(people: Sequence[tuple[Key, PersonSpec]]) -> None:
 
 
 def _check_times(person: PersonSpec, duration_s: float) -> None:
-    if person.leave_s is not None and person.leave_s <= person.enter_s:
-        raise BadInput(f"{person.leave_s:g} must be after enter_s {person.enter_s:g}", key=("leave_s",))
     if person.enter_s >= duration_s:
         raise BadInput(
             f"{person.enter_s:g} must be before the end, duration_s {duration_s:g}", key=("enter_s",)
@@ -119,13 +116,6 @@ def _check_times(person: PersonSpec, duration_s: float) -> None:
     for index in range(1, len(person.path)):
         if math.dist(person.path[index - 1].at_m, person.path[index].at_m) < 0.05:
             raise BadInput("it is the point before; use pause_s there to stay", key=("path", index, "at_m"))
-
-
-def _check_lead(person: PersonSpec) -> None:
-    if person.leads is not None and person.reacts is not None:
-        raise BadInput(
-            "who leads the robot looks out for it already; leave out reacts, or leads", key=("leads",)
-        )
 
 
 def _check_faces(person: PersonSpec, names: Sequence[str]) -> None:

@@ -8,8 +8,9 @@ from typing import Any
 from peopleboy.bad_input import BadInput, found_in
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.scenario import Scenario, make_scenario
-from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
-from peopleboy.scenarios.files.schema_errors import hint, validated
+from peopleboy.scenarios.files.scenario_file import ScenarioSpec
+from peopleboy.scenarios.files.validation import validated
+from peopleboy.wording import hint
 
 LIBRARY = Path(__file__).parents[1] / "library"
 SUITES = Path(__file__).parents[1] / "suites"
@@ -43,7 +44,7 @@ def parse_scenario(data: dict[Any, Any], *, source: str, folder: Path) -> Scenar
 def library() -> dict[str, str]:
     """Names and descriptions of the scenarios that come with PeopleBoy, by name."""
     data = [_filled_in(read_yaml(path)) for path in sorted(LIBRARY.glob("*.yaml"))]
-    specs = [ScenarioSpec.model_validate(each) for each in data]
+    specs = [validated(ScenarioSpec, each) for each in data]
     return {spec.name: " ".join(spec.description.split()) for spec in specs}
 
 

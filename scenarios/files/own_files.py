@@ -9,7 +9,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
+from peopleboy.scenarios.files.scenario_file import ScenarioSpec
 from peopleboy.sim.physics.model_files import is_in_data
 from peopleboy.sim.physics.urdf import MESH_PLACES
 

@@ -8,27 +8,25 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from peopleboy.bad_input import BadInput, Key
+from peopleboy.bad_input import BadInput, Key, found_in
 from peopleboy.behaviours.behaviour import Behaviour, Command
 from peopleboy.behaviours.corridor.corridor_from_image import CameraView
 from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig
 from peopleboy.behaviours.following.follow_person import FollowConfig
 from peopleboy.behaviours.registry import make_behaviour
-from peopleboy.scenarios.files.build_place import make_floor_plan, make_place
-from peopleboy.scenarios.files.cast_people import cast, make_config, members
 from peopleboy.scenarios.files.check import Ground, check_scenario, make_ground
 from peopleboy.scenarios.files.drives import KEPT, Repeat, pack_drive, read_drive
-from peopleboy.scenarios.files.equip_robot import equip_robot
-from peopleboy.scenarios.files.outfits import tell_apart
 from peopleboy.scenarios.files.own_files import read_own_files
-from peopleboy.scenarios.files.schema.people import PersonSpec
-from peopleboy.scenarios.files.schema.robot import RobotSpec
-from peopleboy.scenarios.files.schema.scenario_file import DrawnSpec, ScenarioSpec
+from peopleboy.scenarios.files.people import PersonSpec, cast, make_config, tell_apart
+from peopleboy.scenarios.files.robot import RobotSpec
+from peopleboy.scenarios.files.scenario_file import DrawnSpec, ScenarioSpec, to_data
 from peopleboy.sim.cameras.kinds import KINDS, flat_geometry
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.physics.physics import PHYSICS, PhysicsName
 from peopleboy.sim.places.floor_plan import FloorPlan
+from peopleboy.sim.places.make_place import make_place
 from peopleboy.sim.places.place import Place, air_of
+from peopleboy.sim.places.place_config import lay_out
 from peopleboy.sim.random_streams import stream
 
 RENDERERS = ("raycast", "bullet")
@@ -115,7 +113,7 @@ class Scenario:
         return WorldConfig(
             place=self.place,
             people=tuple(make_config(person) for person in self.people(seed)),
-            robot=equip_robot(self.spec.robot),
+            robot=self.robot.config(),
             seed=seed,
             renderer=renderer,
             physics=self.spec.physics,
@@ -131,7 +129,7 @@ class Scenario:
         Raises:
             BadInput: the robot has no camera of a name, and there is no such kind.
         """
-        lacking = [name for name in dict.fromkeys(cameras) if name not in equip_robot(self.robot).cameras]
+        lacking = [name for name in dict.fromkeys(cameras) if name not in self.robot.config().cameras]
         if not lacking:
             return self
         for name in lacking:
@@ -144,13 +142,11 @@ class Scenario:
 
     def with_cameras(self, cameras: Mapping[str, Mapping[str, object]]) -> Scenario:
         """The same scenario, but its robot carries these cameras, in place of any that have their names."""
-        data = self.robot.model_dump(exclude_unset=True)
-        robot = RobotSpec.model_validate(data | {"cameras": {**data.get("cameras", {}), **cameras}})
-        return replace(self, spec=self.spec.model_copy(update={"robot": robot}))
+        return replace(self, spec=replace(self.spec, robot=self.robot.with_cameras(cameras)))
 
     def lasting(self, duration_s: float) -> Scenario:
         """The same scenario, but shorter or longer."""
-        return replace(self, spec=self.spec.model_copy(update={"duration_s": duration_s}))
+        return replace(self, spec=replace(self.spec, duration_s=duration_s))
 
     def driven(self, drive: Sequence[Command]) -> Scenario:
         """The same scenario, but the robot repeats recorded commands."""
@@ -167,10 +163,8 @@ class Scenario:
         make_behaviour(behaviour)  # refuses an unknown name
         if ":" in behaviour:
             return replace(self, drive=None, own_behaviour=behaviour)
-        robot = self.robot.model_copy(update={"behaviour": behaviour})
-        return replace(
-            self, spec=self.spec.model_copy(update={"robot": robot}), drive=None, own_behaviour=None
-        )
+        robot = replace(self.robot, behaviour=behaviour)  # type: ignore[arg-type]  # it was made above
+        return replace(self, spec=replace(self.spec, robot=robot), drive=None, own_behaviour=None)
 
     def moved_by(self, physics: PhysicsName | str) -> Scenario:
         """The same scenario, but other physics move the robot.
@@ -180,7 +174,7 @@ class Scenario:
         """
         if physics not in PHYSICS:
             raise BadInput(f"physics {physics!r}: there is no such; choose from {', '.join(PHYSICS)}")
-        return replace(self, spec=self.spec.model_copy(update={"physics": physics}))
+        return replace(self, spec=replace(self.spec, physics=physics))
 
     def make_behaviour(self) -> Behaviour:
         """What drives the robot, fresh from the start."""
@@ -204,7 +198,7 @@ class Scenario:
 
     def corridor_config(self) -> CorridorConfig:
         """The sense that tells a robot the walls of a corridor, and its colour camera."""
-        camera = flat_geometry(equip_robot(self.robot).cameras, "colour")
+        camera = flat_geometry(self.robot.config().cameras, "colour")
         view = CameraView(focal_px=camera.focal_px, position_m=camera.position_m)
         return CorridorConfig(sense=self.robot.walls_by or "sonar", camera=view)
 
@@ -220,9 +214,7 @@ class Scenario:
             versions={} if versions is None else versions,
             drive=None if self.drive is None else KEPT,
         )
-        resolved = self.spec.model_copy(update={"people": self.people(seed), "groups": (), "drawn": drawn})
-        data: dict[str, Any] = resolved.model_dump(mode="json", exclude_none=True)
-        return data
+        return to_data(replace(self.spec, people=self.people(seed), groups=(), drawn=drawn))
 
     def kept_files(self) -> dict[str, bytes]:
         """Contents of all files that must lie beside the resolved scenario, by path from it."""
@@ -239,10 +231,20 @@ def make_scenario(spec: ScenarioSpec, folder: Path) -> Scenario:
     Raises:
         BadInput: something cannot be; the message begins with the key, or is about a file beside.
     """
-    plan = make_floor_plan(spec.place)
-    place = make_place(spec, folder)
+    with found_in("place"):
+        plan = lay_out(spec.place)
+    everybody = _everybody(spec)
+    place = make_place(
+        spec.place,
+        plan,
+        spec.things,
+        lights=[(step.at_s, step.level) for step in spec.lights],
+        people=[person.name for _, person in everybody],
+        duration_s=spec.duration_s,
+        folder=folder,
+    )
     ground = make_ground(spec, plan, place)
-    check_scenario(spec, _everybody(spec), ground)
+    check_scenario(spec, everybody, ground)
     is_driven = spec.drawn is not None and spec.drawn.drive is not None
     return Scenario(
         spec=spec,
@@ -260,5 +262,5 @@ def _everybody(spec: ScenarioSpec) -> tuple[tuple[Key, PersonSpec], ...]:
         (("people", index), person) for index, person in enumerate(spec.people)
     ]
     for index, group in enumerate(spec.groups):
-        found += [(("groups", index), person) for person in members(group)]
+        found += [(("groups", index), person) for person in group.members()]
     return tuple(found)

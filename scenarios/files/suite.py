@@ -7,41 +7,45 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, with_config
 
 from peopleboy.bad_input import BadInput, found_in
 from peopleboy.scenarios.files.drives import read_drive
 from peopleboy.scenarios.files.load import SUITES, load_scenario
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.files.schema.values import Key, Strict
-from peopleboy.scenarios.files.schema_errors import hint, validated
+from peopleboy.scenarios.files.validation import STRICT, validated
+from peopleboy.settings import Word
+from peopleboy.wording import hint
 
 DRIVES = SUITES / "drives"
 
 
-class EntrySpec(Strict):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EntrySpec:
     """A scenario of a suite, played once with each seed."""
 
-    scenario: Key = Field(description="name in the library")
-    seeds: tuple[Annotated[int, Field(ge=0)], ...] = Field(
-        strict=False, min_length=1, description="of the runs"
-    )
-    duration_s: float | None = Field(
-        default=None, gt=0.0, le=36000.0, description="where the scenario's own will not do"
-    )
-    repeats_drive: bool = Field(
-        default=False,
-        description="whether the robot repeats the drive that is kept for this suite, scenario and seed",
-    )
+    scenario: Annotated[Word, Field(description="name in the library")]
+    seeds: Annotated[
+        tuple[Annotated[int, Field(ge=0)], ...], Field(strict=False, min_length=1, description="of the runs")
+    ]
+    duration_s: Annotated[
+        float | None, Field(gt=0.0, le=36000.0, description="where the scenario's own will not do")
+    ] = None
+    repeats_drive: Annotated[
+        bool,
+        Field(description="whether the robot repeats the drive kept for this suite, scenario and seed"),
+    ] = False
 
 
-class SuiteSpec(Strict):
+@with_config(STRICT)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SuiteSpec:
     """A suite file."""
 
-    name: Key = Field(description="one word, for folders")
-    description: str = Field(min_length=1, max_length=1000, description="what it is for")
-    runs: tuple[EntrySpec, ...] = Field(strict=False, min_length=1, description="what is played")
+    name: Annotated[Word, Field(description="one word, for folders")]
+    description: Annotated[str, Field(min_length=1, max_length=1000, description="what it is for")]
+    runs: Annotated[tuple[EntrySpec, ...], Field(strict=False, min_length=1, description="what is played")]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -12,7 +12,7 @@ from typing import Any
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.export.replay import replay
 from peopleboy.scenarios.files.own_files import keep_own_files
-from peopleboy.scenarios.files.schema.robot import ORACLE
+from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.import_tracks.foreign_tracks import UNKNOWN, foreign_tracks
 from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_whole_runs, read_run

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.scenarios.files.schema.robot import FaultSpec
+from peopleboy.scenarios.files.scenario_file import FaultSpec
 from peopleboy.scenarios.loop.loop import Stage, TrackerDown
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.observation import Observation

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Self
 
-from peopleboy.scenarios.files.schema.robot import FaultSpec
+from peopleboy.scenarios.files.scenario_file import FaultSpec
 from peopleboy.scenarios.loop.faults import active
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.track_events import TrackEvents

@@ -11,7 +11,7 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import parse_scenario
-from peopleboy.sim.people.body.clothes import COLOURS
+from peopleboy.sim.shapes.colours import COLOURS
 
 Data = dict[str, Any]
 

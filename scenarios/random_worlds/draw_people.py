@@ -6,7 +6,8 @@ import math
 from typing import Final
 
 from peopleboy.scenarios.files.check import Ground
-from peopleboy.scenarios.files.schema.people import PersonSpec
+from peopleboy.scenarios.files.people import PersonSpec
+from peopleboy.scenarios.files.validation import validated
 from peopleboy.scenarios.random_worlds.attempts import Data, rounded
 from peopleboy.scenarios.random_worlds.distribution import Draws
 from peopleboy.scenarios.random_worlds.draw_place import draw_point
@@ -42,7 +43,7 @@ def _longer(draws: Draws, scene: Data, ground: Ground, person: Data, is_in_view:
     path: list[Data] = person["path"]
     for _ in range(_TRIES):
         longer = [*path, _waypoint(draws, scene, is_in_view and not path)]
-        if ground.fault(PersonSpec.model_validate(person | {"path": longer})) is None:
+        if ground.fault(validated(PersonSpec, person | {"path": longer})) is None:
             return longer
     return path or longer
 

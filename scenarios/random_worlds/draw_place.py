@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from pydantic import TypeAdapter
 
-from peopleboy.scenarios.files.build_place import make_floor_plan
-from peopleboy.scenarios.files.schema.place import PlaceSpec
+from peopleboy.scenarios.files.validation import validated
 from peopleboy.scenarios.random_worlds.attempts import Data, colour, rounded
 from peopleboy.scenarios.random_worlds.distribution import Draws
 from peopleboy.sim.places.floor_plan import FloorPlan
+from peopleboy.sim.places.place_config import PlaceConfig, lay_out
 
-_PLACE: Final[TypeAdapter[PlaceSpec]] = TypeAdapter(PlaceSpec)
 _LENGTHS: Final = {
     "room": ("length_m",), "street": ("length_m",), "corridor": ("length_m",),
     "l_corridor": ("first_m", "second_m"), "t_corridor": ("stem_m", "bar_m"),
@@ -78,7 +76,8 @@ def draw_door(draws: Draws, place: Data) -> Data:
 
 def plan_of(place: Data) -> FloorPlan:
     """Lay out the floor of a place."""
-    return make_floor_plan(_PLACE.validate_python(place))
+    config: PlaceConfig = validated(PlaceConfig, place)  # type: ignore[arg-type]
+    return lay_out(config)
 
 
 def air_of(place: Data) -> float:

@@ -9,8 +9,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from peopleboy.scenarios.files.cast_people import make_config
-from peopleboy.scenarios.files.schema.people import PersonSpec
+from peopleboy.scenarios.files.people import PersonSpec, make_config
+from peopleboy.scenarios.files.validation import validated
 from peopleboy.scenarios.random_worlds.distribution import RANGES, SHARES, Range
 from peopleboy.sim.people.appearance.finisher import draw_bearing, looks_stream
 
@@ -95,7 +95,7 @@ def drawn_values(played: Mapping[str, Any]) -> Values:
 
 def _bearings(people: Sequence[Mapping[str, Any]], seed: int) -> dict[str, list[str]]:
     """Draw again what a world of this seed draws beside its scenario: what people carry, and wear how."""
-    configs = [make_config(PersonSpec.model_validate(person)) for person in people]
+    configs = [make_config(validated(PersonSpec, person)) for person in people]
     drawn = [draw_bearing(config, looks_stream(seed, config.name)) for config in configs]
     return {
         "carried": [outfit.carried for outfit, _ in drawn],

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from peopleboy.bad_input import BadInput, found_in
-from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.scenarios.random_worlds.distribution import ODDS, RANGES, SHARES, Distribution, Range
+from peopleboy.wording import hint
 
 
 def narrowed(given: object) -> Distribution:

@@ -12,11 +12,10 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.files.equip_robot import equip_robot
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.files.schema_errors import validated
+from peopleboy.scenarios.files.validation import validated
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.scenarios.run_folder.run_files import RunFiles, read_files
 from peopleboy.scenarios.run_folder.tables import ROBOT, TRUTH
@@ -249,4 +248,4 @@ def cameras_of(folder: Path) -> Mapping[str, CameraConfig]:
     Raises:
         BadInput: there is no scenario of a run.
     """
-    return equip_robot(load_scenario(folder / "scenario.yaml").robot).cameras
+    return load_scenario(folder / "scenario.yaml").robot.config().cameras

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from peopleboy.scenarios.drawing.contact_sheet import ContactSheet
-from peopleboy.scenarios.files.schema.robot import FaultSpec
+from peopleboy.scenarios.files.scenario_file import FaultSpec
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine, RunEvents
 from peopleboy.scenarios.recording.recorder import Recorder

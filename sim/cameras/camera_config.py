@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import ClassVar, Final, Literal, Self, get_args
+from typing import Annotated, ClassVar, Final, Literal, Self, get_args
+
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
+from peopleboy.settings import Share
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
@@ -22,6 +25,7 @@ FARTHEST_M: Final = 65.0  # that 16 bits of millimetres hold
 
 DepthSensorName = Literal["kinect", "tof"]
 GainName = Literal["fixed", "percentile", "plateau"]
+Exposure = Annotated[float, Field(ge=0.0, le=1.0, description="time over which rotation blurs the image")]
 
 
 def _colour_camera() -> Pinhole:
@@ -39,18 +43,21 @@ def _depth_camera() -> Pinhole:
 class CameraConfig:
     """One camera of the robot; each kind adds what forms its images.
 
-    Attributes:
-        kind: its name in `peopleboy.sim.cameras.kinds.KINDS`.
-        camera: geometry.
-        rate_hz: [Hz] of its images, which divides the control rate; None for that rate.
-        exposure_s: [s] time over which rotation blurs the image.
+    `kind` is its name in `peopleboy.sim.cameras.kinds.KINDS`, `camera` its geometry.
     """
 
     kind: ClassVar[str]
 
     camera: CameraGeometry = field(default_factory=Pinhole)
-    rate_hz: int | None = None
-    exposure_s: float = 0.0
+    rate_hz: Annotated[
+        int | None,
+        Field(
+            ge=1,
+            le=15,
+            description="images a second: 1, 3, 5 or 15; left out, 15, as `thermal` and `colour` always have",
+        ),
+    ] = None
+    exposure_s: Exposure = 0.0
 
     @property
     def remembers(self) -> bool:
@@ -68,34 +75,7 @@ class CameraConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThermalConfig(CameraConfig):
-    """A thermal camera and its image formation.
-
-    Attributes:
-        exposure_s: [s] thermal time constant over which rotation blurs the image.
-        blur_px: [px] standard deviation of the optics' point spread.
-        netd_k: [K] temporal noise, noise-equivalent temperature difference.
-        fixed_pattern_k: [K] standard deviation of the offsets between pixels, constant over a run.
-        dead_pixels: share of pixels that read one constant value over a run.
-        gain: how 8-bit grey comes from temperature: "fixed", linear over `lowest_c` to `highest_c`;
-            "percentile", linear over the image's own span; or "plateau", its histogram equalised.
-        lowest_c, highest_c: [degC] span of a fixed gain (T ch. 3).
-        gain_follows_s: [s] time constant with which an automatic gain follows the images; 0 for at once. A
-            span grows at once.
-        tail_percent: [%] of the pixels that may lie outside an automatic gain's span, at either end.
-        least_span_k: [K] that an automatic gain spreads over all greys at least.
-        plateau_percent: [%] of the pixels, the most that a bin of 0.05 K counts for in a plateau gain.
-        linear_share: of the greys that a plateau gain shares out linearly over its span.
-        column_noise_k: [K] standard deviation of the offsets between columns, until the next calibration.
-        vignetting_k: [K] by which corners seem warmer than the middle.
-        offset_drift_k_per_min: [K/min] standard deviation of the common offset's drift since a calibration;
-            that of the pattern is in proportion.
-        shutter_every_s: [s] from one calibration, before a shutter, to the next; 0 for none.
-        shutter_lasts_s: [s] for which the image stands still then.
-        sharpening: amount of the unsharp mask in 8 bits; 0 for none.
-        sharpening_px: [px] standard deviation of its blur.
-        coring_k: [K] that a pixel of 8 bits must differ from its blurred neighbourhood to be more than noise,
-            which is evened out; 0 for none.
-        jpeg_quality: 1..100, of the compression that the 8-bit image went through; None for none.
+    """A camera that sees heat; by the name `thermal` it is the one that the tracker looks through.
 
     Raises:
         BadInput: no such gain, an empty span, or a shutter that never opens.
@@ -104,28 +84,123 @@ class ThermalConfig(CameraConfig):
     kind: ClassVar[str] = "thermal"
 
     camera: Pinhole = field(default_factory=Pinhole)
-    exposure_s: float = 0.012
-    blur_px: float = 0.7
-    netd_k: float = 0.08
-    fixed_pattern_k: float = 0.03
-    dead_pixels: float = 0.0001
-    gain: GainName = "fixed"
-    lowest_c: float = 24.0
-    highest_c: float = 36.0
-    gain_follows_s: float = 1.0
-    tail_percent: float = 0.3
-    least_span_k: float = 5.0
-    plateau_percent: float = 0.5
-    linear_share: float = 0.3
-    column_noise_k: float = 0.0
-    vignetting_k: float = 0.0
-    offset_drift_k_per_min: float = 0.0
-    shutter_every_s: float = 0.0
-    shutter_lasts_s: float = 0.4
-    sharpening: float = 0.0
-    sharpening_px: float = 1.5
-    coring_k: float = 0.0
-    jpeg_quality: int | None = None
+    exposure_s: Exposure = 0.012
+    gain: Annotated[
+        GainName,
+        Field(
+            description="how 8-bit grey comes from temperature: `fixed`, linear over `lowest_c` to "
+            "`highest_c`; `percentile`, linear over the span of the image; `plateau`, its histogram "
+            "equalised as far as a plateau allows"
+        ),
+    ] = "fixed"
+    # The span of a fixed gain: T ch. 3.
+    lowest_c: Annotated[float, Field(ge=-40.0, le=160.0, description="of gain `fixed`: what is black")] = 24.0
+    highest_c: Annotated[float, Field(ge=-40.0, le=160.0, description="of gain `fixed`: what is white")] = (
+        36.0
+    )
+    gain_follows_s: Annotated[
+        float,
+        Field(
+            ge=0.0,
+            le=60.0,
+            description="time constant with which an automatic gain follows the images; 0 for at once; a "
+            "span grows at once",
+        ),
+    ] = 1.0
+    tail_percent: Annotated[
+        float,
+        Field(
+            ge=0.0,
+            le=0.45,
+            description="share of the pixels that may lie outside an automatic gain's span, at either end",
+        ),
+    ] = 0.3
+    least_span_k: Annotated[
+        float, Field(ge=0.5, le=200.0, description="what an automatic gain spreads over all greys at least")
+    ] = 5.0
+    plateau_percent: Annotated[
+        float,
+        Field(
+            ge=0.01,
+            le=100.0,
+            description="of gain `plateau`: share of the pixels that 0.05 K count for at most; 100 equalises "
+            "fully",
+        ),
+    ] = 0.5
+    linear_share: Annotated[
+        Share, Field(description="of gain `plateau`: share of the greys that are linear over its span")
+    ] = 0.3
+    blur_px: Annotated[
+        float, Field(ge=0.0, le=20.0, description="blur of the optics, a standard deviation")
+    ] = 0.7
+    netd_k: Annotated[
+        float, Field(ge=0.0, le=5.0, description="noise that is new in every image, a standard deviation")
+    ] = 0.08
+    fixed_pattern_k: Annotated[
+        float, Field(ge=0.0, le=5.0, description="offsets between pixels that stay, a standard deviation")
+    ] = 0.03
+    dead_pixels: Annotated[
+        Share, Field(description="share of the pixels that read one value all the time")
+    ] = 0.0001
+    column_noise_k: Annotated[
+        float,
+        Field(
+            ge=0.0,
+            le=5.0,
+            description="offsets between columns that stay until the next calibration, a standard deviation",
+        ),
+    ] = 0.0
+    vignetting_k: Annotated[
+        float, Field(ge=0.0, le=10.0, description="how much warmer corners seem than the middle")
+    ] = 0.0
+    offset_drift_k_per_min: Annotated[
+        float,
+        Field(
+            ge=0.0,
+            le=20.0,
+            description="how fast all of the image drifts away after a calibration, a standard deviation; "
+            "its patches by half of that, its pixels by a tenth",
+        ),
+    ] = 0.0
+    shutter_every_s: Annotated[
+        float,
+        Field(
+            ge=0.0,
+            le=3600.0,
+            description="time from one calibration, before a shutter, to the next; 0 for none",
+        ),
+    ] = 0.0
+    shutter_lasts_s: Annotated[
+        float, Field(ge=0.0, le=5.0, description="for how long the image stands still then")
+    ] = 0.4
+    sharpening: Annotated[
+        float,
+        Field(
+            ge=0.0,
+            le=5.0,
+            description="how much of what blur would take away is added in 8 bits; halos come with it",
+        ),
+    ] = 0.0
+    sharpening_px: Annotated[
+        float, Field(gt=0.0, le=20.0, description="of that blur, a standard deviation")
+    ] = 1.5
+    coring_k: Annotated[
+        float,
+        Field(
+            ge=0.0,
+            le=5.0,
+            description="details of 8 bits that differ by less from what is about them are taken for noise "
+            "and evened out",
+        ),
+    ] = 0.0
+    jpeg_quality: Annotated[
+        int | None,
+        Field(
+            ge=1,
+            le=100,
+            description="of the compression that the 8-bit image went through; left out, none",
+        ),
+    ] = None
 
     def __post_init__(self) -> None:
         """Refuse what no camera does."""
@@ -176,18 +251,23 @@ class ThermalConfig(CameraConfig):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LightConfig(CameraConfig):
-    """A camera that sees light, and its image formation.
+    """A camera that sees light, and its image formation."""
 
-    Attributes:
-        gain: share of full scale that a white surface facing the light has at light level 1.
-        read_noise: standard deviation of the noise of a black pixel, share of full scale.
-        shot_noise: standard deviation of the noise of a white pixel, share of full scale.
-    """
-
-    exposure_s: float = 0.015
-    gain: float = 0.95
-    read_noise: float = 0.004
-    shot_noise: float = 0.012
+    exposure_s: Exposure = 0.015
+    gain: Annotated[
+        float,
+        Field(
+            gt=0.0,
+            le=10.0,
+            description="share of full scale that a white surface facing the light has in full light",
+        ),
+    ] = 0.95
+    read_noise: Annotated[
+        Share, Field(description="noise of a black pixel, a standard deviation, share of full scale")
+    ] = 0.004
+    shot_noise: Annotated[
+        Share, Field(description="noise of a white pixel, a standard deviation, share of full scale")
+    ] = 0.012
 
     def noisier(self, factor: float) -> Self:
         """The same camera with so many times the noise."""
@@ -196,7 +276,7 @@ class LightConfig(CameraConfig):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ColourConfig(LightConfig):
-    """A colour camera whose image is flat."""
+    """A camera that sees colours; by the name `colour` it is the one that the tracker looks through."""
 
     kind: ClassVar[str] = "colour"
 
@@ -205,30 +285,23 @@ class ColourConfig(LightConfig):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PanoramaConfig(LightConfig):
-    """A panoramic colour camera.
-
-    Attributes:
-        raw: whether the panorama is unrolled from the round image of the lens, which is given, too: coarse
-            where it looks down steeply, as it is there; otherwise each of its pixels is seen by itself.
-    """
+    """A colour camera that sees all round, by a mirror over the robot's axis; its image is unrolled."""
 
     kind: ClassVar[str] = "panorama"
 
     camera: Panorama = field(default_factory=Panorama)
-    raw: bool = False
+    raw: Annotated[
+        bool,
+        Field(
+            description="whether the image is unrolled from the round one that the lens sees, coarse where "
+            "it looks down steeply, and that one is kept, too; otherwise each pixel is seen by itself"
+        ),
+    ] = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DepthConfig(LightConfig):
-    """A camera that measures depth, and sees colours through the same lens: an RGB-D camera.
-
-    Attributes:
-        sensor: "kinect", structured light, whose noise is in disparity; or "tof", time of flight.
-        scale: of the noise: 0 for exact depth without holes, 1 as it usually is.
-        nearest_m, farthest_m: [m] depths that it can measure.
-        colour: whether it gives colour, too.
-        amplitude: whether it gives the strength of the light that came back, too, as time of flight can.
-        offset_m: [m] largest error of a pixel that is the same in all images.
+    """A camera that measures depth, and sees colours by the same lens.
 
     Raises:
         BadInput: no such sensor, one that knows no amplitude, a negative scale, or no depths that it can
@@ -238,13 +311,38 @@ class DepthConfig(LightConfig):
     kind: ClassVar[str] = "depth"
 
     camera: Pinhole = field(default_factory=_depth_camera)
-    sensor: DepthSensorName = "kinect"
-    scale: float = 1.0
-    nearest_m: float = 0.5
-    farthest_m: float = 10.0
-    colour: bool = True
-    amplitude: bool = False
-    offset_m: float = 0.0
+    sensor: Annotated[
+        DepthSensorName,
+        Field(
+            description="how it measures: `kinect` by a pattern of light, with noise and steps in disparity, "
+            "shadows, frayed edges and holes; `tof` by the time that light takes, with depths between two "
+            "surfaces at edges"
+        ),
+    ] = "kinect"
+    scale: Annotated[
+        float,
+        Field(
+            ge=0.0,
+            le=100.0,
+            description="of the noise of its depth; 0 gives exact depth, without holes but beyond its range",
+        ),
+    ] = 1.0
+    nearest_m: Annotated[
+        float, Field(ge=0.0, le=FARTHEST_M, description="depth from which on it measures")
+    ] = 0.5
+    farthest_m: Annotated[
+        float, Field(gt=0.0, le=FARTHEST_M, description="depth up to which it measures")
+    ] = 10.0
+    colour: Annotated[
+        bool, Field(description="whether it gives colour, pixel for pixel beside the depth")
+    ] = True
+    amplitude: Annotated[
+        bool,
+        Field(description="of sensor `tof`: whether it gives the strength of its light that comes back, too"),
+    ] = False
+    offset_m: Annotated[
+        float, Field(ge=0.0, le=0.1, description="largest error of a pixel that is the same in all images")
+    ] = 0.0
 
     def __post_init__(self) -> None:
         """Refuse what no sensor does."""

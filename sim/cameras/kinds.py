@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.settings import with_keys
 from peopleboy.sim.cameras.camera_config import (
     CameraConfig,
     ColourConfig,
@@ -20,6 +21,7 @@ from peopleboy.sim.cameras.camera_config import (
 )
 from peopleboy.sim.cameras.depth import show_amplitude, show_depth
 from peopleboy.sim.cameras.imaging.electronics import show_scene
+from peopleboy.sim.cameras.presets import DEPTH_PRESETS, THERMAL_PRESETS
 from peopleboy.sim.cameras.sensors import (
     ColourSensor,
     DepthSensor,
@@ -102,12 +104,15 @@ def _beside_depth(config: DepthConfig) -> tuple[Layer, ...]:
     return (*((colour,) if config.colour else ()), *((amplitude,) if config.amplitude else ()))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CameraKind:
     """A kind of camera.
 
     Attributes:
-        config: class of its settings.
+        config: class of its settings, from which its keys in scenario files come.
+        what: it sees, in words.
+        presets: settings by name that may stand in for the usual ones.
+        presets_are: what each of them is like.
         sensor: opens a camera by settings, name and seed; the name is that of its streams of noise, too.
         sight: draws what it sees, and tells the outlines of the truth's boxes; by default as a pinhole does.
         layers: its images; the first of all, without suffixes, is what controllers are shown.
@@ -119,6 +124,9 @@ class CameraKind:
     """
 
     config: type[CameraConfig]
+    what: str = ""
+    presets: Mapping[str, CameraConfig] = field(default_factory=dict)
+    presets_are: str = ""
     sensor: Callable[[Any, str, int], Sensor]
     sight: Sight = FLAT
     layers: tuple[Layer, ...] = (Layer(),)
@@ -133,16 +141,25 @@ class CameraKind:
 KINDS: Final[dict[str, CameraKind]] = {
     "thermal": CameraKind(
         config=ThermalConfig,
+        what="heat, in 8 bits and in hundredths of a kelvin",
+        presets=THERMAL_PRESETS,
+        presets_are="`uncooled`, with a plateau gain, sharpened edges, columns, warm corners, drift and a "
+        "shutter; `uncooled_film`, that by way of JPEG",
         sensor=ThermalSensor,
         layers=(),
         more_layers=_thermal_images,
         shown=SCENE,
     ),
     "colour": CameraKind(
-        config=ColourConfig, sensor=ColourSensor, layers=(Layer(what="8-bit colour"),), channels=3
+        config=ColourConfig,
+        what="light",
+        sensor=ColourSensor,
+        layers=(Layer(what="8-bit colour"),),
+        channels=3,
     ),
     "panorama": CameraKind(
         config=PanoramaConfig,
+        what="light, all round",
         sensor=PanoramaSensor,
         sight=PanoramicSight(),
         layers=(Layer(what="8-bit colour all round, from the robot's back by its left, front and right"),),
@@ -151,6 +168,10 @@ KINDS: Final[dict[str, CameraKind]] = {
     ),
     "depth": CameraKind(
         config=DepthConfig,
+        what="how far everything is, and light",
+        presets=DEPTH_PRESETS,
+        presets_are="`tof`, 176x144 by time of flight, pitched down by 12 degrees, with amplitude instead of "
+        "colour; `kinect`, 320x240; `kinect_rough`, that with four times the noise",
         sensor=DepthSensor,
         layers=(Layer(what="16-bit, depth in millimetres, 0 where none is read", show=show_depth),),
         more_layers=_beside_depth,
@@ -158,6 +179,20 @@ KINDS: Final[dict[str, CameraKind]] = {
         unit="mm",
     ),
 }
+
+
+def configure_camera(given: Mapping[str, Any]) -> CameraConfig:
+    """Return the settings of a camera: those of its preset or usual for its kind, but for what is given.
+
+    Args:
+        given: `kind`, and perhaps `preset`; values by the keys of the settings and of the geometry.
+
+    Raises:
+        BadInput: with the key of a value that does not fit the others.
+    """
+    kind = KINDS[given["kind"]]
+    usual = kind.presets[given["preset"]] if "preset" in given else kind.config()
+    return with_keys(replace(usual, camera=with_keys(usual.camera, given)), given)
 
 
 def kind_of(config: CameraConfig) -> CameraKind:

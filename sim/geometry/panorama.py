@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
+from peopleboy.settings import IN_DEGREES, ByName
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 
@@ -17,7 +20,7 @@ from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mirror:
-    """A cone, apex down, over a camera that looks straight up.
+    """The mirror of a panoramic camera: a cone, apex down, over a lens that looks straight up.
 
     In each direction the mirror's line is straight, so it shows what a camera without a mirror would see from
     the lens's mirror image. These images form a ring, whose cameras look outwards and down by `axis_rad`; the
@@ -26,20 +29,26 @@ class Mirror:
     Source: Baker and Nayar, A theory of single-viewpoint catadioptric image formation, IJCV 35, 175 (1999),
     section 3.1.1; their ring has another radius, which the law of reflection does not give.
 
-    Attributes:
-        half_apex_rad: [rad] between the cone's axis and its side.
-        lens_half_angle_rad: [rad] between the lens's axis and its image's rim, where the view is highest.
-        lens_m: [m] from the lens up to the apex.
-        apex_m: [m] height of the apex above the floor.
-
     Raises:
         BadInput: the lens sees past the mirror, or the mirror shows no floor or something that is no number.
     """
 
-    half_apex_rad: float = math.radians(72.5)
-    lens_half_angle_rad: float = math.radians(47.0)
-    lens_m: float = 0.04
-    apex_m: float = 1.68
+    half_apex_rad: Annotated[
+        float, IN_DEGREES, Field(gt=45.0, le=89.0, description="between the cone's axis and its side")
+    ] = math.radians(72.5)
+    lens_half_angle_rad: Annotated[
+        float,
+        IN_DEGREES,
+        Field(
+            gt=0.0,
+            le=85.0,
+            description="between the lens's axis and its image's rim, where the view is highest",
+        ),
+    ] = math.radians(47.0)
+    lens_m: Annotated[float, Field(gt=0.0, le=1.0, description="from the lens up to the cone's tip")] = 0.04
+    apex_m: Annotated[
+        float, Field(gt=0.0, le=10.0, description="height of the cone's tip above the floor")
+    ] = 1.68
 
     def __post_init__(self) -> None:
         """Refuse a mirror that cannot be used."""
@@ -86,16 +95,28 @@ class Panorama:
     by its left, front and right to its back again; rows are the rings of the lens's image, its middle at the
     bottom, and the bottom is the lowest view. Optical frame: the middle of the ring of `Mirror`, x to the
     robot's right, y down, z to its front.
-
-    Attributes:
-        width: [px] round the lens's image.
-        height: [px] from its middle to its rim.
-        mirror: what it sees by.
     """
 
-    width: int = 480
-    height: int = 120
-    mirror: Mirror = field(default_factory=Mirror)
+    width: Annotated[
+        int, Field(ge=16, le=4096, alias="width_px", description="columns of the image, all round")
+    ] = 480
+    height: Annotated[
+        int,
+        Field(
+            ge=16,
+            le=4096,
+            alias="height_px",
+            description="rows of the image, from the lens's middle to its rim",
+        ),
+    ] = 120
+    mirror: Annotated[
+        Mirror,
+        ByName(MIRRORS),
+        Field(
+            description="`default` sees from 8 to 55 degrees below the horizon, `narrow` from 8 to 35; or "
+            "the values of another"
+        ),
+    ] = field(default_factory=Mirror)
 
     @property
     def focal_px(self) -> float:

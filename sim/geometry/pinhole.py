@@ -5,9 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
+
+from peopleboy.settings import IN_DEGREES, Position
 
 Matrix = NDArray[np.float64]
 
@@ -21,21 +25,26 @@ class Pinhole:
 
     Image frame: u right, v down, origin at the centre of the top-left pixel, so that the image spans
     -0.5 .. width - 0.5. Optical frame: x right, y down, z forward.
-
-    Attributes:
-        width, height: [px] size of the image.
-        vertical_fov_rad: [rad] angle between the upper and the lower edge of the image.
-        position_m: [m] optical centre in the robot's frame (x forward, y left, z up; z = 0 on the floor).
-        pitch_rad: [rad] tilt, positive looks down.
-        yaw_rad: [rad] pan, positive looks left.
     """
 
-    width: int = 320
-    height: int = 240
-    vertical_fov_rad: float = math.radians(44.0)
-    position_m: tuple[float, float, float] = (0.14, 0.0, 1.2)
-    pitch_rad: float = 0.0
-    yaw_rad: float = 0.0
+    width: Annotated[int, Field(ge=16, le=4096, alias="width_px", description="columns of the image")] = 320
+    height: Annotated[int, Field(ge=16, le=4096, alias="height_px", description="rows of the image")] = 240
+    vertical_fov_rad: Annotated[
+        float, IN_DEGREES, Field(ge=5.0, le=150.0, description="angle from upper to lower edge")
+    ] = math.radians(44.0)
+    position_m: Annotated[
+        Position,
+        Field(
+            alias="mount_m",
+            description="optical centre in the robot's frame: forward, left, up from the floor",
+        ),
+    ] = (0.14, 0.0, 1.2)
+    pitch_rad: Annotated[
+        float, IN_DEGREES, Field(ge=-90.0, le=90.0, description="tilt; positive looks down")
+    ] = 0.0
+    yaw_rad: Annotated[
+        float, IN_DEGREES, Field(ge=-180.0, le=180.0, description="pan; positive looks left")
+    ] = 0.0
 
     @property
     def focal_px(self) -> float:

@@ -117,7 +117,7 @@ class MakingWay:
     """Walks round the robot in good time, steps aside for one that comes, and looks at it."""
 
     def __init__(self, reaction: Reaction) -> None:
-        self._keep_m = reaction.keep_m
+        self._keep_m = reaction.distance_m
         self._aside: Array | None = None
 
     def wish(self, dt_s: float, now: Situation) -> Wish:  # noqa: ARG002
@@ -153,7 +153,7 @@ class Wary:
     """Keeps clear of the robot, walks away from one that comes nearer, and looks back at it."""
 
     def __init__(self, reaction: Reaction) -> None:
-        self._keep_m = reaction.keep_m
+        self._keep_m = reaction.distance_m
         self._refuge: Array | None = None
 
     def wish(self, dt_s: float, now: Situation) -> Wish:  # noqa: ARG002
@@ -188,8 +188,8 @@ class Curious:
     """Walks up to the robot, looks at it for a while, and goes on."""
 
     def __init__(self, reaction: Reaction) -> None:
-        self._keep_m = reaction.keep_m
-        self._looks_s = reaction.lasts_s
+        self._keep_m = reaction.distance_m
+        self._looks_s = reaction.duration_s
         self._chases_s = _CHASE_S
 
     def wish(self, dt_s: float, now: Situation) -> Wish:
@@ -211,8 +211,8 @@ class Blocking:
     """Steps into the robot's way, stands before it for a while, and goes on."""
 
     def __init__(self, reaction: Reaction) -> None:
-        self._keep_m = reaction.keep_m
-        self._stands_s = reaction.lasts_s
+        self._keep_m = reaction.distance_m
+        self._stands_s = reaction.duration_s
         self._chases_s = _CHASE_S
 
     def wish(self, dt_s: float, now: Situation) -> Wish:
@@ -237,7 +237,7 @@ class Surprised:
     """Stops and looks at the robot for a while, and goes on."""
 
     def __init__(self, reaction: Reaction) -> None:
-        self._stands_s = reaction.lasts_s
+        self._stands_s = reaction.duration_s
 
     def wish(self, dt_s: float, now: Situation) -> Wish:
         """Tell what the person would rather do than its script."""

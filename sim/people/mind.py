@@ -77,7 +77,7 @@ class Mind:
         self._points = tuple(points)
         self._reaction = reacts
         self._leading = None if leads is None else Leading(leads)
-        self._encounter = None if reacts is None else Encounter(reacts.from_m)
+        self._encounter = None if reacts is None else Encounter(reacts.begins_m)
         self._conduct: Conduct | None = None
 
     def wish(self, dt_s: float, now: Situation | None, progress: float, company: Iterable[float]) -> Wish:

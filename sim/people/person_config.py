@@ -1,141 +1,177 @@
-"""What describes one person and its script, and what is refused."""
+"""The settings of one person: its path, what it does on the way, and its body."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Literal, get_args
+from typing import Annotated, Final, Literal
 
-from peopleboy.bad_input import BadInput
+from pydantic import Discriminator, Field, Tag
+
+from peopleboy.bad_input import BadInput, found_in
+from peopleboy.settings import Name, Point, Seconds, check_limits, word_or_list
 from peopleboy.sim.people.body.anthropometry import Build, Sex
 from peopleboy.sim.people.body.clothes import Clothes
 from peopleboy.sim.people.body.postures import Posture
-from peopleboy.sim.people.reaction import FROM_M, Lead, Reaction
+from peopleboy.sim.people.reaction import Lead, Meeting, Reaction
 
 Arms = Literal["swinging", "crossed", "raised"]
+PostureName = Literal[*Posture]  # type: ignore[valid-type]
+Face = Annotated[Annotated[Name, Tag("word")] | Annotated[Point, Tag("list")], Discriminator(word_or_list)]
 
-HEIGHTS_M = (1.5, 2.0)
-SPEEDS_M_S = (0.1, 2.5)
+SPEEDS_M_S: Final = (0.1, 2.5)
+_SAME_POINT_M: Final = 0.01
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Waypoint:
-    """A place to go to.
+    """A point of a person's path."""
 
-    Attributes:
-        at_m: (x, y) [m] in the world frame.
-        speed_m_s: [m/s] on the way to it.
-        pause_s: [s] waits there.
-        face: while pausing, turn to a point, to "robot", or to a person by name; None keeps the direction.
-        posture: while pausing.
-        until_robot_within_m: [m] the pause lasts until the robot is so near, too; None does not wait for it.
-        waits_at_most_s: [s] after the pause, for the robot.
-    """
-
-    at_m: tuple[float, float]
-    speed_m_s: float = 1.2
-    pause_s: float = 0.0
-    face: tuple[float, float] | str | None = None
-    posture: Posture = Posture.STANDING
-    until_robot_within_m: float | None = None
-    waits_at_most_s: float = 60.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PersonConfig:
-    """One person and its script.
-
-    Attributes:
-        name: unique in its world.
-        height_m: [m] stature, 1.5 .. 2.0.
-        sex, build: decide breadths, depths and girths.
-        clothes: what it wears.
-        path: where it goes; it enters at the first waypoint.
-        enter_s: [s] when it enters.
-        leave_s: [s] when it leaves; None stays at the end of the path.
-        yields: whether it gives way to robot and people; others walk their script exactly, and wait for a
-            robot in their way.
-        bag: whether it carries a bag.
-        arms: what the arms do while it walks.
-        reacts: how it takes to the robot; None for no way in particular.
-        leads: how it leads the robot along its path; None if it does not.
-        group: with whom it keeps together: those of the same word, whose paths have as many points.
-    """
-
-    name: str
-    path: tuple[Waypoint, ...]
-    height_m: float = 1.75
-    sex: Sex = "male"
-    build: Build = "average"
-    clothes: Clothes = field(default_factory=Clothes)
-    enter_s: float = 0.0
-    leave_s: float | None = None
-    yields: bool = False
-    bag: bool = False
-    arms: Arms = "swinging"
-    reacts: Reaction | None = None
-    leads: Lead | None = None
-    group: str | None = None
+    at_m: Annotated[Point, Field(description="where it is")]
+    speed_m_s: Annotated[
+        float, Field(ge=SPEEDS_M_S[0], le=SPEEDS_M_S[1], description="walking speed on the way there")
+    ] = 1.2
+    pause_s: Annotated[Seconds, Field(description="how long the person stays there")] = 0.0
+    face: Annotated[
+        Face | None,
+        Field(
+            description="what the person turns to meanwhile: robot, another person's name, or a point; left "
+            "out, the direction stays"
+        ),
+    ] = None
+    until_robot_within_m: Annotated[
+        Meeting | None,
+        Field(
+            description="the pause lasts until the robot is so near, too, to which the person turns if "
+            "`face` says nothing else; left out, it does not wait for the robot"
+        ),
+    ] = None
+    waits_at_most_s: Annotated[
+        float, Field(gt=0.0, le=3600.0, description="longest wait for the robot, after `pause_s`")
+    ] = 60.0
+    posture: Annotated[
+        PostureName,
+        Field(
+            description="posture during the pause: `standing` upright, arms at the sides; `sitting` as on a "
+            "chair, which may stand at that point; `bending` forward; `arms_raised`, both of them; "
+            "`arms_crossed` in front of the chest; `calling` with one arm raised, which waves, until the "
+            "robot is as near as `until_robot_within_m` says"
+        ),
+    ] = Posture.STANDING
 
     def __post_init__(self) -> None:
-        check_person(self)
+        """Refuse values beyond their limits."""
+        check_limits(self)
+        for key in ("at_m", "face"):
+            point = getattr(self, key)
+            if isinstance(point, tuple) and not all(math.isfinite(c) for c in point):
+                raise BadInput(f"{point!r} must be finite", key=(key,))
 
 
-def check_person(config: PersonConfig) -> None:
-    """Refuse a person that cannot be.
+@dataclass(frozen=True, kw_only=True)
+class WalkConfig:
+    """A path, and how people walk it."""
 
-    Raises:
-        BadInput: names the person, the key, the value and what would be right.
-    """
-    if not config.name:
-        raise BadInput("person: name must not be empty")
-    who = f"person {config.name!r}"
-    if not HEIGHTS_M[0] <= config.height_m <= HEIGHTS_M[1]:
-        raise BadInput(f"{who}: height_m {config.height_m!r} must be {HEIGHTS_M[0]} .. {HEIGHTS_M[1]}")
-    for key, known in (("sex", get_args(Sex)), ("build", get_args(Build)), ("arms", get_args(Arms))):
-        if getattr(config, key) not in known:
-            raise BadInput(f"{who}: {key} {getattr(config, key)!r} must be one of {', '.join(known)}")
-    if config.reacts is not None and config.leads is not None:
-        raise BadInput(f"{who}: who leads the robot looks out for it; leave out reacts, or leads")
-    _check_times(who, config.enter_s, config.leave_s)
-    _check_path(who, config.path)
+    path: Annotated[
+        tuple[Waypoint, ...],
+        Field(
+            strict=False,
+            min_length=1,
+            max_length=500,
+            description="the points that they walk to, one after the other",
+        ),
+    ]
+    enter_s: Annotated[Seconds, Field(description="when they appear, at the first point")] = 0.0
+    leave_s: Annotated[
+        Seconds | None, Field(description="when they vanish; left out, they stay at the last point")
+    ] = None
+    yields: Annotated[
+        bool,
+        Field(
+            description="whether they make way for the robot and for each other; others walk their path "
+            "exactly, and wait for a robot that is in their way"
+        ),
+    ] = False
+    group: Annotated[
+        Name | None,
+        Field(
+            description="word for people who keep together: the one ahead slows for those behind, and waits; "
+            "all of one word have paths of as many points"
+        ),
+    ] = None
+    reacts: Annotated[
+        Reaction | None,
+        Field(description="how they react to the robot; left out, they take no note of it in particular"),
+    ] = None
+
+    def __post_init__(self) -> None:
+        """Refuse times that contradict each other.
+
+        Raises:
+            BadInput: with the key of the value.
+        """
+        check_limits(self)
+        if self.leave_s is not None and not self.enter_s < self.leave_s:
+            raise BadInput(f"{self.leave_s:g} must be after enter_s {self.enter_s:g}", key=("leave_s",))
 
 
-def _check_times(who: str, enter_s: float, leave_s: float | None) -> None:
-    if not 0.0 <= enter_s < math.inf:
-        raise BadInput(f"{who}: enter_s {enter_s!r} must be 0 or more")
-    if leave_s is not None and not enter_s < leave_s < math.inf:
-        raise BadInput(f"{who}: leave_s {leave_s!r} must be after enter_s {enter_s!r}")
+@dataclass(frozen=True, kw_only=True)
+class ActorConfig(WalkConfig):
+    """A person whose body is not decided yet."""
 
+    name: Annotated[Name, Field(description="unlike all other names in the scenario")]
+    bag: Annotated[bool, Field(description="whether the person carries a bag")] = False
+    arms: Annotated[Arms, Field(description="what the arms do while walking")] = "swinging"
+    leads: Annotated[
+        Lead | None,
+        Field(description="how the person leads the robot along its path; left out, it does not"),
+    ] = None
 
-def _check_path(who: str, path: tuple[Waypoint, ...]) -> None:
-    if not path:
-        raise BadInput(f"{who}: path must have at least one waypoint")
-    for i, waypoint in enumerate(path):
-        _check_waypoint(f"{who}: path[{i}]", waypoint)
-    for i, (a, b) in enumerate(pairwise(path), start=1):
-        if math.dist(a.at_m, b.at_m) < 0.01:
+    def __post_init__(self) -> None:
+        """Refuse a person who leads the robot and reacts to it."""
+        super().__post_init__()
+        if self.leads is not None and self.reacts is not None:
             raise BadInput(
-                f"{who}: path[{i}]: at_m {b.at_m!r} is where path[{i - 1}] is; move it or remove it"
+                "a person who leads the robot looks out for it already; leave out reacts, or leads",
+                key=("leads",),
             )
 
 
-def _check_waypoint(where: str, waypoint: Waypoint) -> None:
-    if not all(math.isfinite(c) for c in waypoint.at_m):
-        raise BadInput(f"{where}: at_m {waypoint.at_m!r} must be finite")
-    if not SPEEDS_M_S[0] <= waypoint.speed_m_s <= SPEEDS_M_S[1]:
-        raise BadInput(
-            f"{where}: speed_m_s {waypoint.speed_m_s!r} must be {SPEEDS_M_S[0]} .. {SPEEDS_M_S[1]}"
-        )
-    if not 0.0 <= waypoint.pause_s < math.inf:
-        raise BadInput(f"{where}: pause_s {waypoint.pause_s!r} must be 0 or more")
-    within_m = waypoint.until_robot_within_m
-    if within_m is not None and not FROM_M[0] <= within_m <= FROM_M[1]:
-        raise BadInput(f"{where}: until_robot_within_m {within_m!r} must be {FROM_M[0]} .. {FROM_M[1]}")
-    if not 0.0 < waypoint.waits_at_most_s < math.inf:
-        raise BadInput(f"{where}: waits_at_most_s {waypoint.waits_at_most_s!r} must be more than 0")
-    if isinstance(waypoint.face, tuple) and not all(math.isfinite(c) for c in waypoint.face):
-        raise BadInput(f"{where}: face {waypoint.face!r} must be finite")
-    if waypoint.posture not in set(Posture):
-        raise BadInput(f"{where}: posture {waypoint.posture!r} must be one of {', '.join(Posture)}")
+@dataclass(frozen=True, kw_only=True)
+class PersonConfig(ActorConfig):
+    """One person with its body.
+
+    Raises:
+        BadInput: a value beyond its limits, or one that contradicts another; with the person's name.
+    """
+
+    height_m: Annotated[float, Field(ge=1.5, le=2.0, description="from the floor to the top of the head")] = (
+        1.75
+    )
+    sex: Annotated[Sex, Field(description="decides proportions and usual height")] = "male"
+    build: Annotated[Build, Field(description="how wide the body is for its height")] = "average"
+    clothes: Annotated[Clothes, Field(description="what the person wears")] = field(default_factory=Clothes)
+
+    def __post_init__(self) -> None:
+        """Refuse a person that cannot be."""
+        if not self.name:
+            raise BadInput("person: name must not be empty")
+        with found_in(f"person {self.name!r}"):
+            super().__post_init__()
+            if not self.path:
+                raise BadInput("must have at least 1 entries, got ()", key=("path",))
+            for index, (a, b) in enumerate(pairwise(self.path), start=1):
+                if math.dist(a.at_m, b.at_m) < _SAME_POINT_M:
+                    raise BadInput(
+                        f"{b.at_m!r} is the point before; use pause_s there to stay",
+                        key=("path", index, "at_m"),
+                    )
+            if not self.path:
+                raise BadInput("must have at least 1 entries, got ()", key=("path",))
+            for index, (a, b) in enumerate(pairwise(self.path), start=1):
+                if math.dist(a.at_m, b.at_m) < _SAME_POINT_M:
+                    raise BadInput(
+                        f"{b.at_m!r} is the point before; use pause_s there to stay",
+                        key=("path", index, "at_m"),
+                    )

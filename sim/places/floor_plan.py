@@ -6,8 +6,12 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 from functools import lru_cache
+from typing import Annotated
+
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
+from peopleboy.settings import Coordinate, Word
 
 # Upright rectangles on the floor: what they share, and what one leaves of another.
 
@@ -152,22 +156,30 @@ class Wall:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Door:
-    """An opening in a wall, with a small lobby behind it in which people wait unseen.
+    """A door in a wall. An open one leads to a small lobby, in which people wait out of sight."""
 
-    Attributes:
-        wall: name of the wall.
-        along_m: world x of the middle in a north or south wall, world y in an east or west wall.
-        width_m, height_m: [m] of the opening.
-        is_open: a closed door is only a leaf on the wall, with nothing behind.
-        lobby_m: [m] depth of the lobby.
-    """
-
-    wall: str
-    along_m: float
-    width_m: float = 0.95
-    height_m: float = 2.05
-    is_open: bool = True
-    lobby_m: float = 1.5
+    wall: Annotated[
+        Word,
+        Field(
+            description="name of the wall: north, south, east or west; in L and T corridors after the leg, "
+            "as in first_north"
+        ),
+    ]
+    along_m: Annotated[
+        Coordinate,
+        Field(
+            description="middle of the door: world x in a north or south wall, world y in an east or west "
+            "wall"
+        ),
+    ]
+    width_m: Annotated[float, Field(ge=0.7, le=4.0, description="width of the opening")] = 0.95
+    height_m: Annotated[float, Field(ge=1.9, le=3.0, description="height of the opening")] = 2.05
+    is_open: Annotated[
+        bool, Field(alias="open", description="a closed door is a leaf on the wall, with nothing behind")
+    ] = True
+    lobby_m: Annotated[float, Field(ge=1.0, le=6.0, description="depth of the lobby behind an open door")] = (
+        1.5
+    )
 
 
 LOBBY_MARGIN_M = 0.9  # room beside the opening, enough to stand out of sight

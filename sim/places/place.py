@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
+from peopleboy.settings import Degrees
 from peopleboy.sim.places.moving import Mover
 from peopleboy.sim.shapes.materials import Covering, Material
 from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Quaternion, Vector
@@ -43,19 +47,28 @@ class Fixture:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sun:
-    """The sun over a place.
+    """Where the sun stands, and what it does to floor and walls that it reaches through windows."""
 
-    Attributes:
-        azimuth_rad: [rad] where it stands, from +x towards +y.
-        elevation_rad: [rad] above the horizon.
-        warms_k: [K] how much warmer it makes what it shines on.
-        brightens: how much brighter, as a share of the light without it.
-    """
+    azimuth_deg: Annotated[Degrees, Field(description="where it stands: 0 is along x, 90 along y")]
+    elevation_deg: Annotated[
+        float, Field(ge=5.0, le=85.0, description="how high it stands above the horizon")
+    ]
+    warms_k: Annotated[
+        float, Field(ge=0.0, le=40.0, description="how much warmer it makes what it shines on")
+    ] = 8.0
+    brightens: Annotated[
+        float, Field(ge=0.0, le=5.0, description="how much brighter, as a share of the light without it")
+    ] = 0.9
 
-    azimuth_rad: float
-    elevation_rad: float
-    warms_k: float
-    brightens: float
+    @property
+    def azimuth_rad(self) -> float:
+        """[rad] where it stands, from +x towards +y."""
+        return math.radians(self.azimuth_deg)
+
+    @property
+    def elevation_rad(self) -> float:
+        """[rad] above the horizon."""
+        return math.radians(self.elevation_deg)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -17,16 +17,34 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Hashable, Iterator, Mapping
-from dataclasses import MISSING, Field, dataclass, fields
+from collections.abc import Iterator, Mapping
+from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
+from dataclasses import Field as DataclassField
 from enum import Enum
 from functools import cache
 from types import NoneType, UnionType
-from typing import Annotated, Any, Final, Literal, Union, get_args, get_origin, get_type_hints
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    Final,
+    Literal,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
+from pydantic import Field
 from pydantic.fields import FieldInfo
 
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import BadInput, found_in
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+C = TypeVar("C", bound="DataclassInstance")
 
 UNITS: Final[Mapping[str, str]] = {
     "_deg_s": "deg/s",
@@ -48,8 +66,33 @@ _KEEPS: Final = {"ge": operator.ge, "gt": operator.gt, "le": operator.le, "lt": 
 _WORDS: Final = {"ge": "at least", "gt": "greater than", "le": "at most", "lt": "less than"}
 
 
+Coordinate = Annotated[float, Field(ge=-1000.0, le=1000.0)]
+Point = Annotated[tuple[Coordinate, Coordinate], Field(strict=False)]
+Position = Annotated[tuple[Coordinate, Coordinate, Coordinate], Field(strict=False)]
+Seconds = Annotated[float, Field(ge=0.0, le=36000.0)]
+Degrees = Annotated[float, Field(ge=-720.0, le=720.0)]
+Celsius = Annotated[float, Field(ge=-40.0, le=400.0)]
+Share = Annotated[float, Field(ge=0.0, le=1.0)]
+Extent = Annotated[float, Field(ge=0.005, le=100.0)]
+Size = Annotated[tuple[Extent, Extent, Extent], Field(strict=False)]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_-]{0,39}$")]
+Word = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,59}$")]
+
+
+def word_or_list(value: Any) -> str:
+    """Tell apart the two forms of a setting that takes a word or a list of numbers, for pydantic's unions."""
+    return "word" if isinstance(value, str) else "list"
+
+
 class _InDegrees:
     """Marks an angle that code keeps in radians (`pitch_rad`) and that is set in degrees (`pitch_deg`)."""
+
+
+@dataclass(frozen=True, slots=True)
+class ByName:
+    """Marks a field that holds settings itself: its key takes one of these names, or keys of its own."""
+
+    known: Mapping[str, Any]
 
 
 IN_DEGREES: Final = _InDegrees()
@@ -89,6 +132,23 @@ class Setting:
         """Whether the key is in degrees and the field in radians."""
         return IN_DEGREES in self.metadata
 
+    def from_key(self, value: Any) -> Any:
+        """Convert a value of the key to one of the field.
+
+        Raises:
+            BadInput: the field holds settings itself, and they cannot be so.
+        """
+        if is_dataclass(self.kind):
+            known = next(entry.known for entry in self.metadata if isinstance(entry, ByName))
+            with found_in(self.key):
+                return known[value] if isinstance(value, str) else with_keys(self.default, value)
+        return math.radians(value) if self.is_in_degrees else value
+
+    def to_key(self, value: Any) -> Any:
+        """Convert a value of the field to one of the key."""
+        # Degrees that were given as a round number are round again.
+        return round(math.degrees(value), 10) if self.is_in_degrees else value
+
     @property
     def is_required(self) -> bool:
         """Whether it has no default."""
@@ -100,12 +160,31 @@ def unit_of(key: str) -> str:
     return next((unit for end, unit in UNITS.items() if key.endswith(end)), "")
 
 
-@cache
-def settings_of(config: Hashable) -> tuple[Setting, ...]:
+def settings_of(config: Any) -> tuple[Setting, ...]:
     """List the settings of a dataclass, a class, in the order of its fields."""
-    assert isinstance(config, type)
+    return _settings_of(config)
+
+
+@cache
+def _settings_of(config: Any) -> tuple[Setting, ...]:
     hints = get_type_hints(config, include_extras=True)
     return tuple(_setting(field, hints[field.name]) for field in fields(config) if field.init)
+
+
+def meaning_of(config: type[Any], field: str) -> FieldInfo:
+    """Return limits and meaning of a field, for another class that has the same setting."""
+    hint = get_type_hints(config, include_extras=True)[field]
+    return next(entry for entry in _unwrapped(hint)[1] if isinstance(entry, FieldInfo))
+
+
+def with_keys(config: C, given: Mapping[str, Any]) -> C:
+    """Return settings with those values changed whose keys are given; other keys are passed over.
+
+    Raises:
+        BadInput: the settings refuse them.
+    """
+    own = settings_of(type(config))
+    return replace(config, **{one.field: one.from_key(given[one.key]) for one in own if one.key in given})
 
 
 def check_limits(settings: Any) -> None:
@@ -117,21 +196,22 @@ def check_limits(settings: Any) -> None:
     Raises:
         BadInput: with the key of the first that is wrong.
     """
-    for setting in settings_of(type(settings)):  # type: ignore[arg-type]
+    for setting in settings_of(type(settings)):
         value = getattr(settings, setting.field)
         if value is not None or not setting.can_be_none:
             _check(setting, value)
 
 
-def _setting(field: Field[Any], hint: Any) -> Setting:
+def _setting(field: DataclassField[Any], hint: Any) -> Setting:
     kind, metadata = _unwrapped(hint)
-    about = next((entry for entry in metadata if isinstance(entry, FieldInfo)), FieldInfo())
+    about = [entry for entry in metadata if isinstance(entry, FieldInfo)]
+    alias = next((entry.alias for entry in about if entry.alias), None)
     bare, can_be_none = _without_none(kind)
     bare, inner = _unwrapped(bare)
     is_in_degrees = IN_DEGREES in metadata
-    key = about.alias or (field.name.replace("_rad", "_deg") if is_in_degrees else field.name)
+    key = alias or (field.name.replace("_rad", "_deg") if is_in_degrees else field.name)
     default = field.default if field.default_factory is MISSING else field.default_factory()
-    return Setting(
+    setting = Setting(
         field=field.name,
         key=key,
         unit=unit_of(key),
@@ -139,11 +219,11 @@ def _setting(field: Field[Any], hint: Any) -> Setting:
         can_be_none=can_be_none,
         choices=_choices(bare),
         limits=dict(_limits((*metadata, *inner))),
-        # Degrees that were given as a round number are round again.
-        default=round(math.degrees(default), 10) if is_in_degrees and default is not MISSING else default,
-        meaning=about.description or "",
-        metadata=metadata,
+        default=default,
+        meaning=next((entry.description for entry in about if entry.description), ""),
+        metadata=(*metadata, *inner),
     )
+    return setting if default is MISSING else replace(setting, default=setting.to_key(default))
 
 
 def _unwrapped(hint: Any) -> tuple[Any, tuple[Any, ...]]:

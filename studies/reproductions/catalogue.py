@@ -13,7 +13,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.read_yaml import read_yaml
-from peopleboy.scenarios.files.schema.values import Strict
+from peopleboy.scenarios.files.validation import Strict
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.studies.reproductions import pictures
 from peopleboy.studies.reproductions.experiment import Experiment, Texts

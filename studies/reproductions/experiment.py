@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from pydantic import ConfigDict, Field, model_validator
 
-from peopleboy.scenarios.files.schema.values import Strict
+from peopleboy.scenarios.files.validation import Strict
 from peopleboy.scenarios.running.engine.store import Store
 from peopleboy.studies.reproductions.pictures.canvas import png_address
 from peopleboy.studies.reproductions.plan import Plan

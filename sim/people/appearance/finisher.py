@@ -21,11 +21,12 @@ from peopleboy.sim.people.appearance.warmth import (
     wind_loss,
 )
 from peopleboy.sim.people.body.body_shapes import BAG_PART, PartGeometry
-from peopleboy.sim.people.body.clothes import COLOURS, Garment
+from peopleboy.sim.people.body.clothes import Garment
 from peopleboy.sim.people.body.manner import Manner, draw_manner
 from peopleboy.sim.people.body.outfit import Outfit, draw_outfit
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.random_streams import stream
+from peopleboy.sim.shapes.colours import COLOURS
 from peopleboy.sim.shapes.materials import Finish, Material, Rgb
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 

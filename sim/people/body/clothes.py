@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field, replace
+from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.people.body.body_shapes import BODY_PARTS, SIDES
+from peopleboy.sim.shapes.colours import COLOURS, Colour
 from peopleboy.sim.shapes.materials import Material, Pattern, PatternKind, Rgb
+from peopleboy.wording import hint
 
 
 def _both(*parts: str) -> tuple[str, ...]:
@@ -115,27 +118,6 @@ HAIR: dict[str, Garment] = {
     "cap": Garment(covers=("hair",), temperature_c=28.5, variation_k=0.3, colour="navy"),
     "bald": Garment(covers=("hair",), temperature_c=33.6, variation_k=0.3, colour="skin"),
 }
-# Linear reflectances, not sRGB values.
-COLOURS: dict[str, Rgb] = {
-    "white": (0.75, 0.75, 0.73),
-    "light_grey": (0.45, 0.45, 0.46),
-    "grey": (0.22, 0.22, 0.23),
-    "black": (0.02, 0.02, 0.022),
-    "red": (0.48, 0.035, 0.03),
-    "orange": (0.62, 0.20, 0.03),
-    "yellow": (0.68, 0.52, 0.06),
-    "green": (0.06, 0.25, 0.07),
-    "light_blue": (0.25, 0.42, 0.62),
-    "blue": (0.05, 0.11, 0.30),
-    "navy": (0.015, 0.025, 0.10),
-    "purple": (0.20, 0.04, 0.28),
-    "pink": (0.62, 0.23, 0.32),
-    "brown": (0.15, 0.07, 0.03),
-    "khaki": (0.35, 0.28, 0.15),
-    "dark_brown": (0.05, 0.03, 0.02),
-    "blond": (0.42, 0.29, 0.11),
-    "skin": (0.46, 0.27, 0.19),
-}
 # [degC] bare skin in a room: the face is warmest, the legs are coolest.
 SKIN_C = {"head": 34.2, "neck": 33.9, "hand": 32.8, "forearm": 32.6, "upper_arm": 32.6, "foot": 30.5}
 _OTHER_SKIN_C = 32.2
@@ -143,23 +125,27 @@ _EMISSIVITY = {"skin": 0.98, "cloth": 0.95}
 _KINDS = {"top": TOPS, "bottom": BOTTOMS, "shoes": SHOES, "hair": HAIR}
 
 
+TopName = Literal[*TOPS]  # type: ignore[valid-type]
+BottomName = Literal[*BOTTOMS]  # type: ignore[valid-type]
+ShoesName = Literal[*SHOES]  # type: ignore[valid-type]
+HairName = Literal[*HAIR]  # type: ignore[valid-type]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Clothes:
-    """What a person wears, by names of the catalogue.
-
-    Colours go by name or as linear reflectances 0..1; None is the garment's usual colour.
+    """What a person wears, by names of the catalogue; a colour of None is the garment's usual one.
 
     Raises:
         BadInput: a garment or colour that the catalogue lacks.
     """
 
-    top: str = "shirt"
-    bottom: str = "trousers"
-    shoes: str = "leather_shoes"
-    hair: str = "short"
-    top_colour: str | Rgb | None = None
-    bottom_colour: str | Rgb | None = None
-    hair_colour: str | Rgb | None = None
+    top: Annotated[TopName, Field(description="shirt, jumper or the like")] = "shirt"
+    bottom: Annotated[BottomName, Field(description="trousers, skirt or the like")] = "trousers"
+    shoes: Annotated[ShoesName, Field(description="shoes")] = "leather_shoes"
+    hair: Annotated[HairName, Field(description="hair, or a cap on it")] = "short"
+    top_colour: Annotated[Colour | None, Field(description="colour of the top")] = None
+    bottom_colour: Annotated[Colour | None, Field(description="colour of the bottom")] = None
+    hair_colour: Annotated[Colour | None, Field(description="colour of the hair")] = None
 
     def __post_init__(self) -> None:
         for kind, catalogue in _KINDS.items():
@@ -184,13 +170,9 @@ class Clothes:
         return {part: garment.thickness_m for garment, _ in self.garments() for part in garment.covers}
 
 
-def _check_name(key: str, name: str, known: Iterable[str]) -> None:
-    names = sorted(known)
-    if name in names:
-        return
-    close = difflib.get_close_matches(str(name), names, n=1)
-    hint = f"; did you mean {close[0]!r}?" if close else ""
-    raise BadInput(f"{key}: unknown {name!r}{hint} (known: {', '.join(names)})")
+def _check_name(key: str, name: str, known: Collection[str]) -> None:
+    if name not in known:
+        raise BadInput(f"unknown {name!r}; {hint(str(name), known)}", key=(key,))
 
 
 def _resolve_colour(key: str, colour: str | Rgb) -> Rgb:
@@ -198,7 +180,7 @@ def _resolve_colour(key: str, colour: str | Rgb) -> Rgb:
         _check_name(key, colour, COLOURS)
         return COLOURS[colour]
     if len(colour) != 3 or not all(0.0 <= channel <= 1.0 for channel in colour):
-        raise BadInput(f"{key}: {colour!r} must be a name or three linear reflectances 0..1")
+        raise BadInput(f"{colour!r} must be a name or three linear reflectances 0..1", key=(key,))
     return colour
 
 

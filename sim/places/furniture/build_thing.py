@@ -2,99 +2,82 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
+from peopleboy.sim.places.furniture.thing_config import ThingConfig
 from peopleboy.sim.places.furniture.thing_kinds import KINDS, Kind
+from peopleboy.sim.places.moving import Stance
 from peopleboy.sim.places.pieces import Piece
 from peopleboy.sim.places.place import Fixture
-from peopleboy.sim.shapes.materials import Material, Pattern, Rgb
+from peopleboy.sim.shapes.colours import rgb_of
+from peopleboy.sim.shapes.materials import Material, Pattern, PatternKind
 from peopleboy.sim.shapes.shapes import Part, Vector
 
 _USUAL_AIR_C = 21.0  # for which the kinds' temperatures are given
 _SHADE = 0.45  # brightness of a pattern's second colour, as a share of the first
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Thing:
-    """What to build and where.
+def build_thing(
+    config: ThingConfig,
+    stance: Stance,
+    *,
+    name: str | None = None,
+    size_m: Vector | None = None,
+    air_c: float | None = None,
+    urdf: str | None = None,
+) -> tuple[Fixture, ...]:
+    """Build a thing as fixtures called "name/piece"; one of a single piece keeps its bare name.
 
-    Attributes:
-        name: unique in its place.
-        kind: a key of `KINDS`, or "urdf".
-        at_m: (x, y) [m] world frame.
-        base_m: [m] height of its foot.
-        facing_rad: [rad] heading of its front.
-        size_m: depth, width, height [m]; None takes the kind's own.
-        temperature_c: [degC] of its main surface; None takes the kind's own.
-        air_c: [degC] of the air, followed by what is not heated and has no temperature of its own; None
-            leaves all as it is in a room of 21 degC.
-        emissivity: of its main surface.
-        shine: of its main surface, see `Material`; None takes the kind's own.
-        rgb: linear reflectance of its main surface; None takes the kind's own, a URDF its file's.
-        pattern: of its main surface's colour.
-        urdf, scale: the file of a "urdf", and its size.
+    Args:
+        config: what it is, and how its main surface looks.
+        stance: where it stands.
+        name: unique in its place; None for the name in the settings.
+        size_m: [m] depth, width, height; None for the kind's usual size.
+        air_c: [degC] air of the place, which things that are not heated follow; None for the usual air.
+        urdf: file of a thing of kind "urdf", as PyBullet finds it.
     """
-
-    name: str
-    kind: str
-    at_m: tuple[float, float]
-    base_m: float = 0.0
-    facing_rad: float = 0.0
-    size_m: Vector | None = None
-    temperature_c: float | None = None
-    air_c: float | None = None
-    emissivity: float = 0.93
-    shine: float | None = None
-    rgb: Rgb | None = None
-    pattern: Pattern = field(default_factory=Pattern)
-    urdf: str | None = None
-    scale: float = 1.0
-
-
-def build_thing(thing: Thing) -> tuple[Fixture, ...]:
-    """Build a thing as fixtures called "name/piece"; one of a single piece keeps its bare name."""
-    position = (*thing.at_m, thing.base_m)
-    turned = (0.0, 0.0, math.sin(thing.facing_rad / 2.0), math.cos(thing.facing_rad / 2.0))
-    if thing.kind == "urdf":
-        temperature = _given(thing.temperature_c, 21.0)
+    name = config.name or config.kind if name is None else name
+    if config.kind == "urdf":
         material = Material(
-            temperature_c=temperature, emissivity=thing.emissivity, shine=_given(thing.shine, 0.0)
+            temperature_c=_given(config.temperature_c, _USUAL_AIR_C),
+            emissivity=config.emissivity,
+            shine=_given(config.shine, 0.0),
         )
         return (
             Fixture(
-                name=thing.name,
-                urdf=thing.urdf,
+                name=name,
+                urdf=urdf,
                 material=material,
-                scale=thing.scale,
-                position=position,
-                orientation=turned,
+                scale=config.scale,
+                position=stance.position_m,
+                orientation=stance.orientation,
             ),
         )
-    pieces = _pieces(thing, KINDS[thing.kind])
+    pieces = _pieces(config, KINDS[config.kind], size_m, air_c)
     return tuple(
         Fixture(
-            name=f"{thing.name}/{piece.name}" if len(pieces) > 1 else thing.name,
+            name=f"{name}/{piece.name}" if len(pieces) > 1 else name,
             part=Part(name=piece.name, shapes=piece.shapes, material=_material(piece)),
-            position=position,
-            orientation=turned,
+            position=stance.position_m,
+            orientation=stance.orientation,
             is_solid=piece.is_solid,
         )
         for piece in pieces
     )
 
 
-def _pieces(thing: Thing, kind: Kind) -> tuple[Piece, ...]:
+def _pieces(config: ThingConfig, kind: Kind, size_m: Vector | None, air_c: float | None) -> tuple[Piece, ...]:
     """The pieces of a thing; emissivity, shine and pattern go to the first, the main one."""
-    size = kind.size_m if thing.size_m is None else thing.size_m
-    rgb = kind.rgb if thing.rgb is None else thing.rgb
-    warmer_k = 0.0 if thing.air_c is None else thing.air_c - _USUAL_AIR_C
+    rgb = kind.rgb if config.colour is None else rgb_of(config.colour)
+    warmer_k = 0.0 if air_c is None else air_c - _USUAL_AIR_C
     usual_c = kind.temperature_c if kind.is_heated else kind.temperature_c + warmer_k
-    main, *others = kind.build(size, _given(thing.temperature_c, usual_c), rgb)
+    size = kind.size_m if size_m is None else size_m
+    main, *others = kind.build(size, _given(config.temperature_c, usual_c), rgb)
     if kind.is_heated:
         others = [replace(piece, temperature_c=piece.temperature_c + warmer_k) for piece in others]
-    shine = _given(thing.shine, main.shine)
-    return (replace(main, emissivity=thing.emissivity, shine=shine, pattern=thing.pattern), *others)
+    pattern = Pattern(kind=PatternKind[config.pattern.kind.upper()], period_m=config.pattern.period_m)
+    shine = _given(config.shine, main.shine)
+    return (replace(main, emissivity=config.emissivity, shine=shine, pattern=pattern), *others)
 
 
 def _given(value: float | None, default: float) -> float:

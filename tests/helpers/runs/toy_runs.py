@@ -14,7 +14,7 @@ from typing import Any
 from uuid import uuid4
 
 from peopleboy.scenarios.drawing.contact_sheet import ContactSheet
-from peopleboy.scenarios.files.schema.robot import FaultSpec
+from peopleboy.scenarios.files.scenario_file import FaultSpec
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import RunEvents
 from peopleboy.scenarios.run_folder.folder import RunFolder

@@ -4,7 +4,6 @@ import subprocess
 import sys
 from functools import cache
 from pathlib import Path
-from typing import get_args
 
 import numpy as np
 import pytest
@@ -12,9 +11,10 @@ import yaml
 
 from peopleboy.scenarios.drawing.draw_plan import draw_plan
 from peopleboy.scenarios.files.load import LIBRARY, library, load_scenario, parse_scenario
+from peopleboy.scenarios.files.robot import RobotSpec
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.files.schema.robot import RobotSpec
-from peopleboy.scenarios.files.schema.scenario_file import json_schema
+from peopleboy.scenarios.files.scenario_file import json_schema, to_data
+from peopleboy.settings import settings_of
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.walking.walker import timetable
 from tests.helpers.calls.refused import refused
@@ -119,7 +119,7 @@ def test_worlds_are_the_same_in_a_fresh_process() -> None:
 
 def test_another_person_in_the_file_changes_nobody_else() -> None:
     alone = load_scenario("dark_room")
-    data = alone.spec.model_dump(mode="json", exclude_none=True)
+    data = to_data(alone.spec)
     data["people"].insert(0, {"name": "zoe", "path": [{"at_m": [7.0, -3.0]}]})
     more = parse_scenario(data, source="x.yaml", folder=LIBRARY)
     assert more.world(1).people[1:] == alone.world(1).people
@@ -138,7 +138,7 @@ def test_what_a_file_says_about_looks_is_kept_for_every_seed() -> None:
 
 
 def test_groups_walk_abreast() -> None:
-    data = load_scenario("empty_room").spec.model_dump(mode="json", exclude_none=True)
+    data = to_data(load_scenario("empty_room").spec)
     path = [{"at_m": [1.5, -1.0]}, {"at_m": [3.0, -1.0]}]
     data |= {"things": [], "groups": [{"names": ["a", "b", "c"], "spacing_m": 0.8, "path": path}]}
     people = parse_scenario(data, source="x.yaml", folder=LIBRARY).world(0).people
@@ -151,10 +151,11 @@ def test_nobody_at_all_is_fine() -> None:
 
 
 def test_a_following_robot_and_a_scripted_one_get_their_behaviour() -> None:
+    behaviours = next(one.choices for one in settings_of(RobotSpec) if one.key == "behaviour")
     for name in NAMES:
         scenario = loaded(name)
         assert scenario.make_behaviour() is not scenario.make_behaviour()
-        assert scenario.robot.behaviour in get_args(RobotSpec.model_fields["behaviour"].annotation)
+        assert scenario.robot.behaviour in behaviours
 
 
 @pytest.mark.parametrize(
@@ -178,8 +179,8 @@ def test_the_json_schema_knows_the_keys_and_says_what_they_mean() -> None:
 def test_people_whose_clothes_differ_share_no_colour() -> None:
     for seed in range(5):
         clothes = [person.clothes for person in load_scenario("crowd_8").people(seed)]
-        tops = {c.top_colour for c in clothes if c is not None}
-        bottoms = {c.bottom_colour for c in clothes if c is not None}
+        tops = {c["top_colour"] for c in clothes if c is not None}
+        bottoms = {c["bottom_colour"] for c in clothes if c is not None}
         assert (len(tops), len(bottoms)) == (8, 8)
 
 

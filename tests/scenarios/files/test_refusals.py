@@ -118,7 +118,7 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
     ),
     "leader who reacts": (
         lambda d: d["people"][0].update(leads={}, reacts={"as": "wary"}),
-        ("people[0].leads: who leads the robot looks out for it already",),
+        ("people[0].leads: a person who leads the robot looks out for it already",),
     ),
     "wait for a robot that would be inside": (
         lambda d: d["people"][0]["path"][0].update(until_robot_within_m=0.1),

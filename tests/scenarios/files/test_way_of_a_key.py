@@ -45,6 +45,8 @@ def modules_on_the_way(path: Path) -> set[str]:
     finally:
         sys.setprofile(None)
     world.close()
+    # The limits of all settings are checked in one module, whichever the setting is.
+    names.discard("peopleboy.settings")
     # A body is made of its height in several modules, which all are the place where it is used.
     return {"body" if ".people.body." in name else name for name in names}
 

@@ -5,7 +5,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
-from peopleboy.scenarios.files.schema.robot import FaultSpec
+from peopleboy.scenarios.files.scenario_file import FaultSpec
 from peopleboy.scenarios.loop.faults import active
 from peopleboy.scenarios.running.run import RunOptions, run
 from tests.helpers.calls.refused import refused

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.files.schema.robot import FaultSpec
+from peopleboy.scenarios.files.scenario_file import FaultSpec
 from peopleboy.scenarios.report.charts.error_curves import curve, distance_edges, samples
 from peopleboy.scenarios.report.charts.stills import Origin, show_frames
 from peopleboy.scenarios.report.charts.timeline_rows import ASIDE, hidden_words, track_row, truth_row

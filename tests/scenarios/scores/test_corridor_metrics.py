@@ -70,8 +70,8 @@ class NoTracker:
 @pytest.mark.slow
 def test_a_robot_in_a_world_follows_its_corridor_by_the_image_and_keeps_the_middle():
     scenario = load_scenario("corridor_straight")
-    robot = scenario.spec.robot.model_copy(update={"walls_by": "image"})
-    scenario = replace(scenario, spec=scenario.spec.model_copy(update={"robot": robot}))
+    robot = replace(scenario.spec.robot, walls_by="image")
+    scenario = replace(scenario, spec=replace(scenario.spec, robot=robot))
     log = CorridorLog()
     with World(scenario.world(0)) as world:
         modes = set()

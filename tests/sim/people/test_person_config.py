@@ -5,7 +5,6 @@ import pytest
 
 from peopleboy.sim.people.body.clothes import (
     BOTTOMS,
-    COLOURS,
     HAIR,
     SHOES,
     TOPS,
@@ -15,6 +14,7 @@ from peopleboy.sim.people.body.clothes import (
 )
 from peopleboy.sim.people.person import PersonConfig, Posture, Waypoint
 from peopleboy.sim.random_streams import stream
+from peopleboy.sim.shapes.colours import COLOURS
 from peopleboy.sim.shapes.materials import PatternKind
 from tests.helpers.calls.refused import refused
 from tests.helpers.worlds.walkers import make_person, settle
@@ -26,22 +26,17 @@ HERE = (Waypoint(at_m=(0.0, 0.0)),)
     ("settings", "named"),
     [
         ({"name": ""}, ("name",)),
-        ({"height_m": 1.4}, ("height_m 1.4", "1.5 .. 2.0")),
-        ({"height_m": 2.1}, ("height_m 2.1",)),
-        ({"height_m": math.nan}, ("height_m nan",)),
+        ({"height_m": 1.4}, ("person 'ann'.height_m: must be at least 1.5, got 1.4",)),
+        ({"height_m": 2.1}, ("height_m: must be at most 2, got 2.1",)),
+        ({"height_m": math.nan}, ("height_m", "nan")),
         ({"sex": "x"}, ("sex 'x'", "female, male")),
         ({"build": "tall"}, ("build 'tall'",)),
         ({"arms": "waving"}, ("arms 'waving'",)),
-        ({"enter_s": -1.0}, ("enter_s -1.0",)),
-        ({"enter_s": math.nan}, ("enter_s nan",)),
-        ({"enter_s": 5.0, "leave_s": 5.0}, ("leave_s 5.0", "enter_s 5.0")),
+        ({"enter_s": -1.0}, ("enter_s", "-1.0")),
+        ({"enter_s": math.nan}, ("enter_s", "nan")),
+        ({"enter_s": 5.0, "leave_s": 5.0}, ("leave_s: 5 must be after enter_s 5",)),
         ({"path": ()}, ("path",)),
-        ({"path": (Waypoint(at_m=(math.nan, 0.0)),)}, ("path[0]: at_m",)),
-        ({"path": (*HERE, Waypoint(at_m=(1.0, 0.0), speed_m_s=-1.0))}, ("path[1]: speed_m_s -1.0",)),
-        ({"path": (*HERE, Waypoint(at_m=(1.0, 0.0), speed_m_s=math.nan))}, ("speed_m_s nan",)),
-        ({"path": (Waypoint(at_m=(0.0, 0.0), pause_s=-1.0),)}, ("pause_s -1.0",)),
-        ({"path": (Waypoint(at_m=(0.0, 0.0), face=(math.inf, 0.0)),)}, ("face",)),
-        ({"path": (*HERE, *HERE)}, ("path[1]: at_m (0.0, 0.0)", "path[0]")),
+        ({"path": (*HERE, *HERE)}, ("path[1].at_m: (0.0, 0.0) is the point before",)),
     ],
 )
 def test_a_person_that_cannot_be_is_refused_in_one_line(settings, named):
@@ -52,8 +47,24 @@ def test_a_person_that_cannot_be_is_refused_in_one_line(settings, named):
 @pytest.mark.parametrize(
     ("settings", "named"),
     [
+        ({"at_m": (math.nan, 0.0)}, ("at_m", "nan")),
+        ({"speed_m_s": -1.0}, ("speed_m_s: must be at least 0.1, got -1.0",)),
+        ({"speed_m_s": math.nan}, ("speed_m_s", "nan")),
+        ({"pause_s": -1.0}, ("pause_s", "-1.0")),
+        ({"face": (math.inf, 0.0)}, ("face", "inf")),
+        ({"posture": "siting"}, ("posture 'siting'", "sitting")),
+    ],
+)
+def test_a_waypoint_that_cannot_be_is_refused_in_one_line(settings, named):
+    with refused(*named):
+        Waypoint(**({"at_m": (0.0, 0.0)} | settings))
+
+
+@pytest.mark.parametrize(
+    ("settings", "named"),
+    [
         ({"top": "t_shrit"}, ("'t_shrit'", "'t_shirt'")),
-        ({"bottom": "kilt"}, ("'kilt'", "jeans")),
+        ({"bottom": "kilt"}, ("'kilt'", "'skirt'")),
         ({"shoes": "clogs"}, ("'clogs'",)),
         ({"hair": "green"}, ("'green'",)),
         ({"top_colour": "bleu"}, ("'bleu'", "'blue'")),

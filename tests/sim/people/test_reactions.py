@@ -183,9 +183,9 @@ def path_end() -> Waypoint:
     ("values", "said"),
     [
         ({"way": "shy"}, "'shy' must be one of ignores, makes_way"),
-        ({"way": "ignores", "from_m": 2.0}, "from_m 2.0: a person who ignores the robot takes none"),
-        ({"way": "wary", "from_m": 2.0, "keep_m": 3.0}, "keep_m 3.0 must be at most from_m, 2.0"),
-        ({"way": "surprised", "from_m": 2.0, "lasts_s": 0.0}, "lasts_s 0.0 must be 0.2 .. 600.0"),
+        ({"way": "ignores", "from_m": 2.0}, "from_m 2: a person who ignores the robot takes none"),
+        ({"way": "wary", "from_m": 2.0, "keep_m": 3.0}, "keep_m 3 must be at most from_m, 2"),
+        ({"way": "surprised", "from_m": 2.0, "lasts_s": 0.0}, "lasts_s: must be at least 0.2, got 0.0"),
     ],
 )
 def test_a_reaction_that_cannot_be_is_refused(values, said):
@@ -194,5 +194,5 @@ def test_a_reaction_that_cannot_be_is_refused(values, said):
 
 
 def test_a_leader_that_would_never_go_on_is_refused():
-    with pytest.raises(BadInput, match=r"goes_on_within_m 3\.0 must be"):
+    with pytest.raises(BadInput, match=r"goes_on_within_m 3 must be"):
         Lead(waits_beyond_m=3.0, goes_on_within_m=3.0)

@@ -3,7 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from peopleboy.sim.places.furniture.build_thing import Thing, build_thing
+from peopleboy.sim.places.furniture.build_thing import build_thing
+from peopleboy.sim.places.furniture.thing_config import ThingConfig
 from peopleboy.sim.places.moving import Stance
 from peopleboy.sim.places.solid_boxes import Boxes, boxes_of, overlaps
 
@@ -51,7 +52,7 @@ def test_distances_are_to_the_nearest_side_of_the_nearest_box() -> None:
 
 def test_boxes_of_a_thing_move_as_it_does() -> None:
     at = Stance((2.0, 1.0, 0.3), 0.7)
-    thing = build_thing(Thing(name="x", kind="table", at_m=(2.0, 1.0), base_m=0.3, facing_rad=0.7))
+    thing = build_thing(ThingConfig(kind="table"), Stance((2.0, 1.0, 0.3), 0.7), name="x")
     there = boxes_of(thing, at).moved(at)
     world = boxes_of(thing)
     assert len(there.heading) == 5

@@ -10,13 +10,16 @@ from hypothesis import strategies as st
 
 from peopleboy.sim.physics.urdf import find_urdf
 from peopleboy.sim.places.extent import fixture_extent, urdf_extent
-from peopleboy.sim.places.furniture.build_thing import Thing, build_thing
+from peopleboy.sim.places.furniture.build_thing import build_thing
+from peopleboy.sim.places.furniture.thing_config import ThingConfig
 from peopleboy.sim.places.furniture.thing_kinds import KINDS
+from peopleboy.sim.places.moving import Stance
 from peopleboy.sim.places.pieces import SINK_M
 from peopleboy.sim.places.place import Fixture
 from tests.helpers.calls.refused import refused
 from tests.helpers.worlds.boxes import Box, fighting_faces, piece_boxes
 
+HERE = Stance((0.0, 0.0, 0.0), 0.0)
 kinds = pytest.mark.parametrize("kind", KINDS)
 
 
@@ -28,14 +31,14 @@ def around(fixtures: tuple[Fixture, ...]) -> np.ndarray:
 @kinds
 def test_a_thing_has_the_size_that_it_is_given(kind: str) -> None:
     size = KINDS[kind].size_m
-    low, high = around(build_thing(Thing(name="x", kind=kind, at_m=(0.0, 0.0))))
+    low, high = around(build_thing(ThingConfig(kind=kind), HERE, name="x"))
     assert high - low == pytest.approx(size, abs=0.09)
     assert high[2] == pytest.approx(size[2], abs=0.02)
 
 
 @kinds
 def test_what_stands_reaches_into_the_floor_and_what_hangs_into_the_wall(kind: str) -> None:
-    low, _ = around(build_thing(Thing(name="x", kind=kind, at_m=(0.0, 0.0))))
+    low, _ = around(build_thing(ThingConfig(kind=kind), HERE, name="x"))
     if KINDS[kind].is_hung:
         assert -2 * SINK_M <= low[0] <= 0.03
     elif not KINDS[kind].is_from_ceiling:
@@ -44,7 +47,7 @@ def test_what_stands_reaches_into_the_floor_and_what_hangs_into_the_wall(kind: s
 
 @kinds
 def test_no_two_visible_faces_of_a_thing_lie_in_one_plane_and_overlap(kind: str) -> None:
-    boxes = piece_boxes(build_thing(Thing(name="x", kind=kind, at_m=(0.0, 0.0))))
+    boxes = piece_boxes(build_thing(ThingConfig(kind=kind), HERE, name="x"))
     floor = Box("floor", np.array([-9.0, -9.0, -9.0]), np.array([9.0, 9.0, 0.0]))
     wall = Box("wall", np.array([-9.0, -9.0, -9.0]), np.array([0.0, 9.0, 9.0]))
     assert fighting_faces([*boxes, wall if KINDS[kind].is_hung else floor]) == []
@@ -52,7 +55,7 @@ def test_no_two_visible_faces_of_a_thing_lie_in_one_plane_and_overlap(kind: str)
 
 @kinds
 def test_a_thing_fits_into_bodies_of_sixteen_shapes_with_names_of_their_own(kind: str) -> None:
-    fixtures = build_thing(Thing(name="x", kind=kind, at_m=(0.0, 0.0)))
+    fixtures = build_thing(ThingConfig(kind=kind), HERE, name="x")
     assert len({fixture.name for fixture in fixtures}) == len(fixtures)
     for fixture in fixtures:
         assert fixture.part is not None
@@ -71,7 +74,7 @@ def test_a_thing_fits_into_bodies_of_sixteen_shapes_with_names_of_their_own(kind
     ],
 )
 def test_warm_things_are_as_warm_as_such_things_are(kind: str, low_c: float, high_c: float) -> None:
-    fixtures = build_thing(Thing(name="x", kind=kind, at_m=(0.0, 0.0)))
+    fixtures = build_thing(ThingConfig(kind=kind), HERE, name="x")
     temperatures = [f.part.material.temperature_c for f in fixtures if f.part is not None]
     assert low_c <= temperatures[0] <= high_c
     assert max(temperatures) <= high_c
@@ -85,8 +88,8 @@ def test_warm_things_are_as_warm_as_such_things_are(kind: str, low_c: float, hig
 def test_turning_and_moving_a_thing_moves_the_middle_of_its_front(
     kind: str, facing: float, at: tuple[float, float]
 ) -> None:
-    home = build_thing(Thing(name="x", kind=kind, at_m=(0.0, 0.0)))
-    away = build_thing(Thing(name="x", kind=kind, at_m=at, facing_rad=facing))
+    home = build_thing(ThingConfig(kind=kind), HERE, name="x")
+    away = build_thing(ThingConfig(kind=kind), Stance((*at, 0.0), facing), name="x")
     for a, b in zip(home, away, strict=True):
         assert a.part == b.part
         assert b.position[:2] == at

@@ -8,7 +8,8 @@ import pytest
 
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.person import PersonConfig, Waypoint
-from peopleboy.sim.places.furniture.build_thing import Thing, build_thing
+from peopleboy.sim.places.furniture.build_thing import build_thing
+from peopleboy.sim.places.furniture.thing_config import ThingConfig
 from peopleboy.sim.places.moving import Action, ActionKind, Mover, Stance
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.places.rooms import build_place, straight_corridor
@@ -21,7 +22,7 @@ from tests.helpers.calls.refused import refused
 AT = (3.5, 0.8)
 ROBOT = RobotConfig(at_m=(1.0, 0.0))
 START = Stance((*AT, 0.0), 0.0)
-BLOCK = build_thing(Thing(name="box", kind="block", at_m=AT))
+BLOCK = build_thing(ThingConfig(kind="block"), Stance((*AT, 0.0), 0.0), name="box")
 ANNA = PersonConfig(name="anna", path=(Waypoint(at_m=(4.0, 0.0), pause_s=0.4), Waypoint(at_m=(4.0, -2.0))))
 
 

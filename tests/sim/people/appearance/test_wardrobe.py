@@ -5,8 +5,9 @@ from functools import cache
 import pytest
 
 from peopleboy.sim.people.appearance.traits import usual_clothes
-from peopleboy.sim.people.body.clothes import BOTTOMS, COLOURS, HAIR, SHOES, TOPS, Clothes
+from peopleboy.sim.people.body.clothes import BOTTOMS, HAIR, SHOES, TOPS, Clothes
 from peopleboy.sim.random_streams import stream
+from peopleboy.sim.shapes.colours import COLOURS
 
 DRAWS = 1000
 WARM_TOPS = {"jacket", "fleece", "wool_jumper", "striped_jumper"}

@@ -10,8 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from peopleboy.bad_input import BadInput, Key
-from peopleboy.scenarios.files.cast_people import make_way
-from peopleboy.scenarios.files.schema.people import PersonSpec
+from peopleboy.scenarios.files.people import PersonSpec
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.walking.surroundings import ALONE
 from peopleboy.sim.people.walking.walker import Walker
@@ -190,7 +189,7 @@ def _times(action: Action) -> list[float]:
 
 def _walk(person: PersonSpec, until_s: float) -> list[tuple[float, _Spot]]:
     """Where a person whom nobody disturbs is, every tenth of a second."""
-    path = make_way(person.path)
+    path = person.path
     walker = Walker(path, yields=False, radius_m=0.0)
     end = until_s if person.leave_s is None else min(until_s, person.leave_s)
     found, time_s = [], person.enter_s

@@ -1,4 +1,4 @@
-"""Movers from the actions of a scenario file; actions that cannot be are refused."""
+"""Make movers of the actions of things; actions that cannot happen are refused."""
 
 from __future__ import annotations
 
@@ -9,15 +9,14 @@ from dataclasses import replace
 import numpy as np
 
 from peopleboy.bad_input import BadInput, found_in
-from peopleboy.scenarios.files.place_things import Built, describe_floor, name_things
-from peopleboy.scenarios.files.schema.scenario_file import ScenarioSpec
-from peopleboy.scenarios.files.schema.things import ActionSpec, ThingSpec
-from peopleboy.scenarios.files.schema_errors import hint
 from peopleboy.sim.places.extent import fixture_extent
 from peopleboy.sim.places.floor_plan import FloorPlan
+from peopleboy.sim.places.furniture.place_things import describe_floor
+from peopleboy.sim.places.furniture.thing_config import ActionConfig, ThingConfig
 from peopleboy.sim.places.moving import LASTING, Action, ActionKind, Mover, Stance
 from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.shapes.shapes import UPRIGHT
+from peopleboy.wording import hint
 
 _OFF_LINE_M = 0.02  # how far what slides may get off its own line
 _AFTER_S = 1e-6
@@ -35,28 +34,35 @@ _TAKES: Mapping[ActionKind, tuple[str, ...]] = {
 }
 
 
-def make_movers(spec: ScenarioSpec, plan: FloorPlan, built: Built) -> tuple[Mover, ...]:
+def make_movers(
+    things: Sequence[ThingConfig],
+    placed: Mapping[str, Sequence[Fixture]],
+    plan: FloorPlan,
+    people: Sequence[str],
+    duration_s: float,
+) -> tuple[Mover, ...]:
     """Collect the things to which something happens.
 
     Args:
-        spec: the scenario.
+        things: all of a place.
+        placed: their fixtures by name, in the same order.
         plan: the floor.
-        built: its things, by name.
+        people: names of all people.
+        duration_s: [s] of a run.
 
     Raises:
         BadInput: something cannot happen; with its key.
     """
-    people = [person.name for person in spec.people] + [name for group in spec.groups for name in group.names]
     movers = []
-    for index, (name, thing) in enumerate(zip(name_things(spec.things), spec.things, strict=True)):
+    for index, (name, thing) in enumerate(zip(placed, things, strict=True)):
         if thing.actions or thing.hidden_at_start:
             with found_in("things", index):
                 _check_thing(thing)
-                movers.append(_mover(name, thing, built[name], plan, people, spec.duration_s))
+                movers.append(_mover(name, thing, placed[name], plan, people, duration_s))
     return tuple(movers)
 
 
-def _check_thing(thing: ThingSpec) -> None:
+def _check_thing(thing: ThingConfig) -> None:
     if thing.name is None:
         raise BadInput("missing key 'name': a thing to which something happens needs one")
     if not thing.actions:
@@ -65,7 +71,7 @@ def _check_thing(thing: ThingSpec) -> None:
 
 def _mover(
     name: str,
-    thing: ThingSpec,
+    thing: ThingConfig,
     fixtures: Sequence[Fixture],
     plan: FloorPlan,
     people: Sequence[str],
@@ -100,7 +106,7 @@ def _own_box(fixtures: Sequence[Fixture]) -> tuple[tuple[float, float, float], t
     return (x0, y0, z0), (x1, y1, z1)
 
 
-def _check_keys(action: ActionSpec) -> None:
+def _check_keys(action: ActionConfig) -> None:
     kind = ActionKind(action.kind)
     for key in ("to_m", "base_m", "facing_deg", "takes_s", "hinge_m"):
         if getattr(action, key) is not None and key not in _TAKES[kind]:
@@ -117,7 +123,7 @@ def _check_keys(action: ActionSpec) -> None:
         raise BadInput(f"{action.takes_s:g} must be more than 0", key=("takes_s",))
 
 
-def _check_time(action: ActionSpec, mover: Mover, duration_s: float) -> None:
+def _check_time(action: ActionConfig, mover: Mover, duration_s: float) -> None:
     if action.at_s < 0.0:
         raise BadInput(f"{action.at_s:g} is before the run starts; it must be 0 or more", key=("at_s",))
     if action.at_s >= duration_s:
@@ -133,15 +139,17 @@ def _check_time(action: ActionSpec, mover: Mover, duration_s: float) -> None:
         )
 
 
-def _check_presence(action: ActionSpec, mover: Mover) -> None:
+def _check_presence(action: ActionConfig, mover: Mover) -> None:
     is_there = mover.at(action.at_s).is_there
     if (action.kind == ActionKind.APPEAR) == is_there:
         now = "there already" if is_there else "not there"
-        told = "; with hidden_at_start: true it would not be" if is_there and not mover.actions else ""
-        raise BadInput(f"'{action.kind}': {mover.name!r} is {now} at {action.at_s:g} s{told}", key=("kind",))
+        way_out = "; with hidden_at_start: true it would not be" if is_there and not mover.actions else ""
+        raise BadInput(
+            f"'{action.kind}': {mover.name!r} is {now} at {action.at_s:g} s{way_out}", key=("kind",)
+        )
 
 
-def _action(spec: ActionSpec, before: Stance) -> Action:
+def _action(spec: ActionConfig, before: Stance) -> Action:
     x, y, z = before.position_m
     heading = before.heading_rad if spec.facing_deg is None else math.radians(spec.facing_deg)
     x, y = (x, y) if spec.to_m is None else spec.to_m
@@ -159,7 +167,7 @@ def _action(spec: ActionSpec, before: Stance) -> Action:
     )
 
 
-def _check_target(spec: ActionSpec, action: Action, mover: Mover, plan: FloorPlan) -> None:
+def _check_target(spec: ActionConfig, action: Action, mover: Mover, plan: FloorPlan) -> None:
     before = mover.at(action.at_s).stance
     x, y, _ = action.target.position_m
     if not any(area.contains(x, y) for area in plan.walkable()):

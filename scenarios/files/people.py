@@ -1,0 +1,224 @@
+"""What a scenario file says about people, and what the seed decides about them: bodies, clothes, detours."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, fields, replace
+from typing import Annotated, Any, Final
+
+import numpy as np
+from pydantic import Field, with_config
+
+from peopleboy.scenarios.files.validation import STRICT, Given
+from peopleboy.settings import Name, meaning_of
+from peopleboy.sim.people.appearance.traits import usual_clothes
+from peopleboy.sim.people.body.anthropometry import Build, Sex
+from peopleboy.sim.people.body.clothes import Clothes, random_clothes
+from peopleboy.sim.people.person_config import SPEEDS_M_S, ActorConfig, PersonConfig, WalkConfig, Waypoint
+from peopleboy.sim.people.walking.path import abreast
+from peopleboy.sim.random_streams import stream
+
+# Stature of adults [m]: mean and standard deviation (NCD-RisC 2016, young adults of central Europe, rounded).
+_STATURE_M: Final = {"female": (1.66, 0.06), "male": (1.79, 0.07)}
+_SHORTEST_M, _TALLEST_M = 1.5, 2.0
+_BUILDS: Final = {"slim": 0.3, "average": 0.5, "stout": 0.2}
+_TRIES: Final = 50
+
+# Colours that differ clearly from each other in hue or brightness; a white top stays apart from yellow ones.
+_TOP_COLOURS: Final = ("white", "black", "red", "yellow", "green", "blue", "pink", "orange")
+_BOTTOM_COLOURS: Final = ("black", "khaki", "blue", "white", "red", "green", "light_grey", "purple")
+
+Path = tuple[Waypoint, ...]
+GivenClothes = Annotated[
+    dict[str, Any],
+    Given(Clothes, "What a person wears; what is left out is drawn from the seed.", shows_defaults=False),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Variations(WalkConfig):
+    """A path that the seed varies."""
+
+    jitter_m: Annotated[
+        float, Field(ge=0.0, le=2.0, description="radius within which the seed moves each point")
+    ] = 0.0
+    speed_jitter: Annotated[
+        float,
+        Field(ge=0.0, le=0.5, description="share by which the seed changes all speeds, up or down"),
+    ] = 0.0
+    enter_jitter_s: Annotated[
+        float, Field(ge=0.0, le=60.0, description="the seed delays the entry by up to this long")
+    ] = 0.0
+
+
+@with_config(STRICT)
+@dataclass(frozen=True, kw_only=True)
+class PersonSpec(ActorConfig, _Variations):
+    """A walking person; what is left out of its looks is drawn from the seed."""
+
+    height_m: Annotated[float | None, meaning_of(PersonConfig, "height_m")] = None
+    sex: Annotated[Sex | None, meaning_of(PersonConfig, "sex")] = None
+    build: Annotated[Build | None, meaning_of(PersonConfig, "build")] = None
+    clothes: Annotated[GivenClothes | None, meaning_of(PersonConfig, "clothes")] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class GroupSpec(_Variations):
+    """People who walk abreast along one path, from its right side to its left."""
+
+    path: Annotated[
+        Path,
+        Field(
+            strict=False,
+            min_length=2,
+            max_length=500,
+            description="the points that they walk to; the way between them tells which side is right",
+        ),
+    ]
+    names: Annotated[
+        tuple[Name, ...],
+        Field(
+            strict=False,
+            min_length=2,
+            max_length=6,
+            description="one for each person, from the right side to the left",
+        ),
+    ]
+    spacing_m: Annotated[float, Field(ge=0.5, le=3.0, description="distance between neighbours")] = 0.75
+
+    def members(self) -> tuple[PersonSpec, ...]:
+        """Return the people of the group, each on a path of its own, the first on the right."""
+        points = [waypoint.at_m for waypoint in self.path]
+        middle = (len(self.names) - 1) / 2.0
+        shared = {one.name: getattr(self, one.name) for one in fields(_Variations)}
+        return tuple(
+            PersonSpec(
+                **shared
+                | {
+                    "name": name,
+                    "path": _moved(self.path, abreast(points, (index - middle) * self.spacing_m)),
+                }
+            )
+            for index, name in enumerate(self.names)
+        )
+
+
+def cast(
+    person: PersonSpec,
+    seed: int,
+    can_walk: Callable[[PersonSpec], bool],
+    usual_air_c: float | None = None,
+) -> PersonSpec:
+    """Decide everything about a person that the file leaves to the seed.
+
+    Each person has random streams of its own, so that another person in the file changes nothing for it.
+    What the file says stays; the result has nothing left to draw, and casting it again returns it.
+
+    Args:
+        person: as in the file.
+        seed: of the run.
+        can_walk: whether somebody can walk the way that it has; one that the seed moves into a wall is drawn
+            again, and after many tries the file's own path is kept.
+        usual_air_c: [degC] air for which people dress as is usual; None draws from the whole catalogue.
+    """
+    looks = _draw_looks(stream(seed, f"scenario.{person.name}.looks"), person)
+    if usual_air_c is not None:
+        rng = stream(seed, f"scenario.{person.name}.clothes")
+        looks["clothes"] = _keep_given(usual_clothes(rng, looks["sex"], usual_air_c), person)
+    rng = stream(seed, f"scenario.{person.name}.walk")
+    delay = float(rng.uniform(0.0, person.enter_jitter_s)) if person.enter_jitter_s > 0.0 else 0.0
+    later = replace(
+        person,
+        enter_s=_rounded(person.enter_s + delay),
+        leave_s=None if person.leave_s is None else _rounded(person.leave_s + delay),
+    )
+    path = _vary_path(later, rng, can_walk)
+    return replace(later, **looks, path=path, jitter_m=0.0, speed_jitter=0.0, enter_jitter_s=0.0)
+
+
+def make_config(person: PersonSpec) -> PersonConfig:
+    """Return the settings of a person of whom nothing is left to draw."""
+    given = {one.name: getattr(person, one.name) for one in fields(PersonConfig)}
+    return PersonConfig(**given | {"clothes": Clothes(**person.clothes or {})})
+
+
+def tell_apart(people: Sequence[PersonSpec], rng: np.random.Generator) -> tuple[PersonSpec, ...]:
+    """Give each person a top and a bottom of colours that no other one wears, as far as there are colours.
+
+    Colours that a person has already stay, and are not avoided by others. With more than eight people the
+    colours begin again.
+    """
+    tops, bottoms = rng.permutation(_TOP_COLOURS), rng.permutation(_BOTTOM_COLOURS)
+    colours = [
+        {
+            "top_colour": str(tops[index % len(tops)]),
+            "bottom_colour": str(bottoms[index % len(bottoms)]),
+        }
+        for index in range(len(people))
+    ]
+    return tuple(
+        replace(person, clothes=_in_order(own | (person.clothes or {})))
+        for person, own in zip(people, colours, strict=True)
+    )
+
+
+def _moved(path: Path, points: Sequence[tuple[float, float]]) -> Path:
+    return tuple(
+        replace(waypoint, at_m=(_rounded(x), _rounded(y)))
+        for waypoint, (x, y) in zip(path, points, strict=True)
+    )
+
+
+def _draw_looks(rng: np.random.Generator, person: PersonSpec) -> dict[str, Any]:
+    """Sex, build, height and clothes; each is drawn even where the file gives it, so the others stay."""
+    sex = str(rng.choice(list(_STATURE_M)))
+    build = str(rng.choice(list(_BUILDS), p=list(_BUILDS.values())))
+    above = float(rng.normal())
+    clothes = random_clothes(rng)
+    sex = sex if person.sex is None else person.sex
+    mean, deviation = _STATURE_M[sex]
+    stature = min(max(mean + above * deviation, _SHORTEST_M), _TALLEST_M)
+    return {
+        "sex": sex,
+        "build": build if person.build is None else person.build,
+        "height_m": _rounded(stature) if person.height_m is None else person.height_m,
+        "clothes": _keep_given(clothes, person),
+    }
+
+
+def _keep_given(drawn: Clothes, person: PersonSpec) -> dict[str, Any]:
+    """Clothes that were drawn, but what the file says."""
+    worn = {key: value for key, value in asdict(drawn).items() if value is not None}
+    return _in_order(worn | (person.clothes or {}))
+
+
+def _in_order(clothes: dict[str, Any]) -> dict[str, Any]:
+    return {one.name: clothes[one.name] for one in fields(Clothes) if one.name in clothes}
+
+
+def _vary_path(person: PersonSpec, rng: np.random.Generator, can_walk: Callable[[PersonSpec], bool]) -> Path:
+    faster = 1.0 + float(rng.uniform(-person.speed_jitter, person.speed_jitter))
+    path = person.path
+    if person.speed_jitter > 0.0:
+        speeds = [min(max(w.speed_m_s * faster, SPEEDS_M_S[0]), SPEEDS_M_S[1]) for w in path]
+        path = tuple(replace(w, speed_m_s=_rounded(speed)) for w, speed in zip(path, speeds, strict=True))
+    if person.jitter_m == 0.0:
+        return path
+    for _ in range(_TRIES):
+        varied = _moved(path, [_near(waypoint.at_m, person.jitter_m, rng) for waypoint in path])
+        if can_walk(replace(person, path=varied)):
+            return varied
+    return path
+
+
+def _near(point: tuple[float, float], radius_m: float, rng: np.random.Generator) -> tuple[float, float]:
+    """A point drawn evenly from the disc around another."""
+    distance = radius_m * math.sqrt(rng.uniform())
+    angle = rng.uniform(0.0, 2.0 * math.pi)
+    return point[0] + distance * math.cos(angle), point[1] + distance * math.sin(angle)
+
+
+def _rounded(value: float) -> float:
+    """To a tenth of a millimetre or millisecond: a file shows it in full."""
+    return round(float(value), 4)

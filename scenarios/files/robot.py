@@ -1,0 +1,156 @@
+"""What a scenario file says about the robot: its start, its cameras, and what drives it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any, Final, Literal
+
+from pydantic import Field, model_validator
+
+from peopleboy.bad_input import BadInput, found_in
+from peopleboy.scenarios.files.validation import GivenCamera
+from peopleboy.settings import Degrees, Point, Seconds
+from peopleboy.sim.cameras.kinds import check_rate, colour_from_thermal, configure_camera
+from peopleboy.sim.config import CONTROL_HZ
+from peopleboy.sim.robot.robot_config import RobotConfig
+
+ORACLE: Final = "truth"
+"""Name of the tracker that is given the true positions."""
+
+# Names that cameras must leave to other folders, entities and arrays.
+_TAKEN: Final = ("truth", "tracks", "scene", "body", "sonar", "odometry")
+_MOST_PIXELS: Final = 1 << 23  # that trackers sum up
+
+CameraName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CommandSpec:
+    """From a time on, a scripted robot drives at this velocity, or as near to it as its drive comes.
+
+    The drive does at most 0.8 m/s and 150 deg/s, and comes to them at 0.6 m/s2 and 200 deg/s2. The guard,
+    which keeps 0.45 m to what the sonars see, stops it before walls and people as it does any robot.
+    """
+
+    from_s: Annotated[Seconds, Field(description="when the robot begins to drive so")]
+    linear_m_s: Annotated[
+        float, Field(ge=-2.0, le=2.0, description="forward speed; negative drives back")
+    ] = 0.0
+    angular_deg_s: Annotated[
+        float, Field(ge=-360.0, le=360.0, description="turn rate; positive turns left")
+    ] = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RobotSpec:
+    """The robot: where it starts and what it does."""
+
+    at_m: Annotated[Point, Field(description="where it starts")]
+    heading_deg: Annotated[Degrees, Field(description="where it looks at the start")] = 0.0
+    behaviour: Annotated[
+        Literal["stand", "follow_person", "follow_corridor", "patrol", "scripted"],
+        Field(
+            description="what drives it: `stand`, nothing does; `follow_person` finds a person and follows, "
+            "up to where that person looks as tall as `keep_height` says; `follow_corridor` keeps to the "
+            "middle of a corridor, turns at its end, and waits for people in the way; `patrol` follows a "
+            "corridor until a person turns up, follows that person for a while, and returns; `scripted` "
+            "drives as `commands` says"
+        ),
+    ] = "stand"
+    commands: Annotated[
+        tuple[CommandSpec, ...],
+        Field(strict=False, description="of a scripted robot, in the order of time"),
+    ] = ()
+    keep_height: Annotated[
+        float | None,
+        Field(
+            gt=0.05,
+            le=1.5,
+            description="of a following robot: the person's height in the image [image heights] where it "
+            "stops",
+        ),
+    ] = None
+    walls_by: Annotated[
+        Literal["sonar", "image"] | None,
+        Field(
+            description="of a robot in corridors: the sensor by which it finds the walls; left out, the sonar"
+        ),
+    ] = None
+    tracker: Annotated[
+        str | None,
+        Field(
+            pattern="^[a-z][a-z0-9_-]*$",
+            description="name of the tracker by which the robot sees people, which `--tracker` overrules; "
+            "left out, `detection`",
+        ),
+    ] = None
+    cameras: Annotated[
+        dict[CameraName, Annotated[dict[str, Any], GivenCamera()]],
+        Field(
+            description="by name; `thermal` and `colour` are there anyway, and what is said of them is what "
+            "differs from the usual; any other name is a further camera"
+        ),
+    ] = field(default_factory=dict)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _say_where_cameras_are(cls, data: Any) -> Any:
+        """Help a user who writes a camera beside `cameras`."""
+        for name in ("thermal", "colour"):
+            if isinstance(data, dict) and name in data:
+                raise ValueError(f"{name!r} is a camera: write cameras: {{{name}: {{kind: {name}, ...}}}}")
+        return data
+
+    def with_cameras(self, cameras: Mapping[str, Mapping[str, Any]]) -> RobotSpec:
+        """Return the same robot with further cameras, or others in their place."""
+        return replace(self, cameras={**self.cameras, **{name: dict(one) for name, one in cameras.items()}})
+
+    def config(self) -> RobotConfig:
+        """Return the robot's settings: the usual ones, but for what the file changes.
+
+        Raises:
+            BadInput: cameras clash, or the values of one do not fit each other.
+        """
+        usual = RobotConfig()
+        own = {}
+        for name, given in self.cameras.items():
+            with found_in(name):
+                own[name] = configure_camera(given)
+        return replace(
+            usual,
+            at_m=self.at_m,
+            heading_rad=math.radians(self.heading_deg),
+            cameras={**usual.cameras, **own},
+        )
+
+
+def check_cameras(robot: RobotSpec) -> None:
+    """Refuse cameras whose names, kinds, rates or sizes something else cannot take in later.
+
+    Raises:
+        BadInput: with the key below `robot.cameras`.
+    """
+    usual = RobotConfig().cameras
+    for name, given in robot.cameras.items():
+        with found_in(name):
+            if name in _TAKEN:
+                raise BadInput("the name is taken in what a run leaves; choose another")
+            if name in usual and given["kind"] != name:
+                raise BadInput(
+                    f"must be {name!r}, as the tracker wants it; choose another name", key=("kind",)
+                )
+            if name in usual and given.get("rate_hz", CONTROL_HZ) != CONTROL_HZ:
+                raise BadInput(
+                    f"must be {CONTROL_HZ}, as the tracker wants it; leave it out", key=("rate_hz",)
+                )
+            check_rate(given.get("rate_hz"), CONTROL_HZ)
+    cameras = robot.config().cameras
+    colour_from_thermal(cameras)
+    for name, camera in cameras.items():
+        width, height = camera.camera.width, camera.camera.height
+        if width * height > _MOST_PIXELS:
+            raise BadInput(
+                f"{width} x {height} pixels are too many; at most {_MOST_PIXELS} in all", key=(name,)
+            )

@@ -1,0 +1,201 @@
+"""Where the things of a scenario stand: on the floor, against or on a wall, under the ceiling, on a thing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+
+import numpy as np
+
+from peopleboy.bad_input import BadInput, found_in
+from peopleboy.sim.physics.model_files import is_in_data
+from peopleboy.sim.physics.urdf import find_urdf
+from peopleboy.sim.places.extent import Extent, fixture_extent, urdf_extent
+from peopleboy.sim.places.floor_plan import FloorPlan, Wall
+from peopleboy.sim.places.furniture.build_thing import build_thing
+from peopleboy.sim.places.furniture.thing_config import ThingConfig
+from peopleboy.sim.places.furniture.thing_kinds import KINDS
+from peopleboy.sim.places.moving import Stance
+from peopleboy.sim.places.place import Fixture
+from peopleboy.wording import hint
+
+_GAP_M = 0.01  # between a wall and what stands against it
+_SINK_M = 0.005  # furniture from a file reaches so far into what it stands on
+
+
+def name_things(things: Sequence[ThingConfig]) -> tuple[str, ...]:
+    """Name every thing; one without a name is called by its kind and its number among its kind.
+
+    Raises:
+        BadInput: two things have one name.
+    """
+    names: list[str] = []
+    for index, thing in enumerate(things):
+        number = sum(other.kind == thing.kind for other in things[: index + 1])
+        name = thing.name if thing.name is not None else f"{thing.kind}_{number}"
+        if name in names:
+            raise BadInput(
+                f"{name!r} is also things[{names.index(name)}]; give each its own",
+                key=("things", index, "name"),
+            )
+        names.append(name)
+    return tuple(names)
+
+
+@dataclass(frozen=True, slots=True)
+class Furnishing:
+    """A floor on which things are placed one after the other.
+
+    Attributes:
+        plan: the floor.
+        ceiling_m: height of the ceiling.
+        air_c: [degC] of the air; None for the usual one.
+        folder: where URDF files of the scenario's own lie.
+        placed: fixtures of the things so far, by name, in order.
+    """
+
+    plan: FloorPlan
+    ceiling_m: float
+    air_c: float | None
+    folder: Path
+    placed: dict[str, tuple[Fixture, ...]] = field(default_factory=dict)
+
+    def place(self, things: Sequence[ThingConfig]) -> Mapping[str, tuple[Fixture, ...]]:
+        """Build all things, each where it belongs.
+
+        Raises:
+            BadInput: an unknown wall or thing, no place or two, or a URDF that cannot be used.
+        """
+        for index, (name, thing) in enumerate(zip(name_things(things), things, strict=True)):
+            with found_in("things", index):
+                self.placed[name] = self._build(name, thing)
+        return self.placed
+
+    def _build(self, name: str, thing: ThingConfig) -> tuple[Fixture, ...]:
+        urdf = _find_urdf(thing, self.folder)
+        extent = self._usual_extent(thing) if urdf is None else _urdf_extent(urdf) * thing.scale
+        stance = self._stance(thing, extent)
+        x, y, _ = stance.position_m
+        if not any(area.grown(_GAP_M).contains(x, y) for area in self.plan.walkable()):
+            raise BadInput(f"({x:g}, {y:g}) is outside the floor; {describe_floor(self.plan)}", key=("at_m",))
+        depth, width, height = (float(side) for side in extent[1] - extent[0])
+        size = None if urdf is not None else (depth, width, height)
+        return build_thing(thing, stance, name=name, size_m=size, air_c=self.air_c, urdf=urdf)
+
+    def _usual_extent(self, thing: ThingConfig) -> Extent:
+        """The box around a thing of a known kind, in its own frame: the back of a hung one is at x = 0."""
+        kind = KINDS[thing.kind]
+        depth, width, height = kind.size_m if thing.size_m is None else thing.size_m
+        if kind.is_to_ceiling and thing.size_m is None:
+            height = self.ceiling_m + _GAP_M
+        back = 0.0 if kind.is_hung else -depth / 2.0
+        return np.array([[back, -width / 2.0, 0.0], [back + depth, width / 2.0, height]])
+
+    def _stance(self, thing: ThingConfig, extent: Extent) -> Stance:
+        x, y, facing = self._on_floor(thing, extent)
+        return Stance((x, y, self._base(thing, extent)), facing)
+
+    def _on_floor(self, thing: ThingConfig, extent: Extent) -> tuple[float, float, float]:
+        """(x, y) [m] on the floor, and the heading of the front [rad]."""
+        facing = math.radians(thing.facing_deg)
+        if thing.wall is not None:
+            return self._at_wall(thing, extent)
+        if thing.along_m is not None:
+            raise BadInput("it needs the key 'wall' beside it", key=("along_m",))
+        if thing.at_m is not None:
+            return *thing.at_m, facing
+        if thing.on_top_of is not None:
+            x, y, _ = extent_of(self._below(thing.on_top_of)).mean(axis=0)
+            return float(x), float(y), facing
+        raise BadInput("missing key 'at_m'; or give 'wall' and 'along_m', or 'on_top_of'")
+
+    def _at_wall(self, thing: ThingConfig, extent: Extent) -> tuple[float, float, float]:
+        wall = self._find_wall(str(thing.wall))
+        if thing.at_m is not None or thing.on_top_of is not None:
+            raise BadInput("give either 'wall' with 'along_m', or 'at_m', or 'on_top_of'", key=("wall",))
+        if thing.along_m is None:
+            raise BadInput("missing key 'along_m' beside 'wall'")
+        low, high = wall.side.span(wall.area)
+        half = float(extent[1, 1] - extent[0, 1]) / 2.0
+        if not low + half <= thing.along_m <= high - half:
+            raise BadInput(
+                f"{thing.along_m:g} puts it beyond the end of wall {wall.name!r}, "
+                f"which reaches from {low:g} to {high:g} m",
+                key=("along_m",),
+            )
+        x, y = wall.side.at(wall.area, thing.along_m)
+        is_hung = thing.kind in KINDS and KINDS[thing.kind].is_hung
+        offset = 0.0 if is_hung else _GAP_M - float(extent[0, 0])
+        return x - wall.side.value[0] * offset, y - wall.side.value[1] * offset, wall.side.inward_rad
+
+    def _find_wall(self, name: str) -> Wall:
+        walls = {wall.name: wall for wall in self.plan.walls()}
+        if name not in walls:
+            raise BadInput(f"unknown wall {name!r}; {hint(name, walls)}", key=("wall",))
+        return walls[name]
+
+    def _base(self, thing: ThingConfig, extent: Extent) -> float:
+        """[m] height of a thing's foot."""
+        if thing.base_m is not None:
+            return thing.base_m
+        if thing.on_top_of is not None:
+            return float(extent_of(self._below(thing.on_top_of))[1, 2])
+        if thing.kind not in KINDS:
+            return -float(extent[0, 2]) - _SINK_M
+        kind = KINDS[thing.kind]
+        return self.ceiling_m - float(extent[1, 2]) if kind.is_from_ceiling else kind.base_m
+
+    def _below(self, name: str) -> tuple[Fixture, ...]:
+        if name not in self.placed:
+            known = f"; {hint(name, self.placed)}" if self.placed else ""
+            raise BadInput(
+                f"unknown thing {name!r} (it must come earlier in the file){known}", key=("on_top_of",)
+            )
+        return self.placed[name]
+
+
+def extent_of(fixtures: Sequence[Fixture]) -> Extent:
+    """The box around all fixtures of a thing."""
+    extents = np.array([fixture_extent(fixture) for fixture in fixtures])
+    return np.array([extents[:, 0].min(axis=0), extents[:, 1].max(axis=0)])
+
+
+def describe_floor(plan: FloorPlan) -> str:
+    """Say where the floor is, for messages."""
+    parts = (
+        f"{f'{name} has ' if name else ''}x {a.min_x:g} to {a.max_x:g} and y {a.min_y:g} to {a.max_y:g}"
+        for name, a in plan.areas
+    )
+    return f"the floor: {', '.join(parts)}"
+
+
+def _urdf_extent(urdf: str) -> Extent:
+    with found_in("urdf"):
+        return urdf_extent(find_urdf(urdf))
+
+
+def _find_urdf(thing: ThingConfig, folder: Path) -> str | None:
+    """The name by which PyBullet finds the file: inside pybullet_data, or in the scenario's own folder."""
+    if thing.kind != "urdf":
+        if thing.urdf is not None:
+            raise BadInput("only a thing of kind 'urdf' takes it", key=("urdf",))
+        return None
+    if thing.urdf is None:
+        raise BadInput("missing key 'urdf': a file such as 'table/table.urdf'")
+    name = PurePosixPath(thing.urdf)
+    if name.is_absolute() or ".." in name.parts or "\\" in thing.urdf or "\0" in thing.urdf:
+        raise BadInput(
+            f"{thing.urdf!r} must be a file of pybullet_data or of the scenario's own folder: "
+            "no '..', no absolute path",
+            key=("urdf",),
+        )
+    own = folder / name
+    if is_in_data(thing.urdf):
+        return thing.urdf
+    if own.is_file() and own.resolve().is_relative_to(folder.resolve()):
+        return str(own.resolve())
+    raise BadInput(
+        f"{thing.urdf!r} is neither in pybullet_data nor in the scenario's own folder", key=("urdf",)
+    )

@@ -1,0 +1,94 @@
+"""Build a place of its settings: its shell, the things in it, and what moves them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from peopleboy.bad_input import found_in
+from peopleboy.sim.places.floor_plan import FloorPlan
+from peopleboy.sim.places.furniture.make_movers import make_movers
+from peopleboy.sim.places.furniture.place_things import Furnishing
+from peopleboy.sim.places.furniture.thing_config import ThingConfig
+from peopleboy.sim.places.place import Place
+from peopleboy.sim.places.place_config import PlaceConfig, StreetConfig, Temperatures
+from peopleboy.sim.places.rooms import Surfaces, build_place
+from peopleboy.sim.places.street import StreetLook, street_shell
+from peopleboy.sim.shapes.colours import Colour, rgb_of
+from peopleboy.sim.shapes.materials import Material
+
+_SECOND_SHADE = 0.85  # brightness of a patterned surface's second colour, as a share of the first
+_USUAL_AIR_C = 21.0
+
+
+def make_place(
+    config: PlaceConfig,
+    plan: FloorPlan,
+    things: Sequence[ThingConfig] = (),
+    *,
+    lights: Sequence[tuple[float, float]] = (),
+    people: Sequence[str] = (),
+    duration_s: float = 0.0,
+    folder: Path = Path(),
+) -> Place:
+    """Build a whole place.
+
+    Args:
+        config: the place without its things.
+        plan: its floor, as `lay_out` gives it.
+        things: what stands or hangs in it.
+        lights: time [s] and level of each step of its light; empty for full light.
+        people: names of all people, who may move things.
+        duration_s: [s] of a run.
+        folder: where URDF files of the scenario's own lie.
+
+    Raises:
+        BadInput: something does not fit; with its key.
+    """
+    placed = Furnishing(plan, config.height_m, config.temperatures.air_c, folder).place(things)
+    surfaces = _surfaces(config)
+    shell = None
+    if isinstance(config, StreetConfig):
+        with found_in("place"):
+            look = StreetLook(houses=config.house_walls(), house_m=config.house_m, sky_c=config.sky_c)
+        shell = street_shell(plan, look, surfaces)
+    return build_place(
+        plan,
+        height_m=config.height_m,
+        surfaces=surfaces,
+        shell=shell,
+        things=tuple(fixture for fixtures in placed.values() for fixture in fixtures),
+        surroundings_c=config.temperatures.surroundings_c,
+        light=tuple(lights) or ((0.0, 1.0),),
+        movers=make_movers(things, placed, plan, people, duration_s),
+        sun=config.sun,
+    )
+
+
+def _surfaces(config: PlaceConfig) -> Surfaces:
+    usual, temperatures, colours = Surfaces(), config.temperatures, config.colours
+    walls = _material(usual.walls, temperatures.walls_c, colours.walls)
+    return Surfaces(
+        floor=replace(_material(usual.floor, temperatures.floor_c, colours.floor), shine=config.floor_shine),
+        ceiling=_material(usual.ceiling, temperatures.ceiling_c, colours.ceiling),
+        walls=walls,
+        door=_material(usual.door, _door_c(temperatures), colours.doors),
+        named={
+            name: replace(walls, temperature_c=temperature)
+            for name, temperature in temperatures.single_walls_c.items()
+        },
+    )
+
+
+def _door_c(temperatures: Temperatures) -> float:
+    """How warm closed doors are: as the air [degC]."""
+    return _USUAL_AIR_C if temperatures.air_c is None else temperatures.air_c
+
+
+def _material(usual: Material, temperature_c: float, colour: Colour | None) -> Material:
+    if colour is None:
+        return replace(usual, temperature_c=temperature_c)
+    rgb = rgb_of(colour)
+    darker = (_SECOND_SHADE * rgb[0], _SECOND_SHADE * rgb[1], _SECOND_SHADE * rgb[2])
+    return replace(usual, temperature_c=temperature_c, rgb=rgb, second_rgb=darker)

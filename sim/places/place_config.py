@@ -1,0 +1,233 @@
+"""The settings of a place: its kind and size, its doors, and its surfaces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any, Final, Literal
+
+from pydantic import BeforeValidator, Field
+
+from peopleboy.bad_input import BadInput, Key
+from peopleboy.settings import Celsius, Share, Word
+from peopleboy.sim.places.floor_plan import Door, FloorPlan, check_doors
+from peopleboy.sim.places.place import Sun
+from peopleboy.sim.places.rooms import l_corridor, straight_corridor, t_corridor
+from peopleboy.sim.shapes.colours import Colour
+from peopleboy.wording import hint
+
+Length = Annotated[float, Field(ge=1.5, le=100.0)]
+
+_LINTEL_M: Final = 0.1
+
+# Surfaces of a place against its air [K], where they are left out but the air is not.
+_FROM_AIR: Final = {"floor_c": -1.0, "ceiling_c": 1.8, "walls_c": 0.5, "surroundings_c": 0.0}
+
+
+def _follow_air(given: Any) -> Any:
+    """Fill in the temperatures that follow from the air; what is no temperature is refused later."""
+    air = given.get("air_c") if isinstance(given, dict) else None
+    if not isinstance(air, int | float) or not -40.0 <= air <= 60.0:
+        return given
+    return {key: air + offset for key, offset in _FROM_AIR.items()} | given
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Temperatures:
+    """Surface temperatures of the place itself."""
+
+    air_c: Annotated[
+        Celsius | None,
+        Field(
+            description="of the air: floor, ceiling, walls, surroundings, and things that are not heated "
+            "follow it where they have no temperature of their own; left out, all is as at 21 degC"
+        ),
+    ] = None
+    floor_c: Annotated[Celsius, Field(description="of the floor")] = 20.0
+    ceiling_c: Annotated[Celsius, Field(description="of the ceiling")] = 22.8
+    walls_c: Annotated[Celsius, Field(description="of all walls that `single_walls_c` does not name")] = 21.5
+    single_walls_c: Annotated[
+        dict[Word, Celsius],
+        Field(description="walls that differ, by name, such as an outer wall in winter"),
+    ] = field(default_factory=dict)
+    surroundings_c: Annotated[Celsius, Field(description="what surfaces of low emissivity mirror")] = 21.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Colours:
+    """Colours of the place itself: names, or linear red, green and blue from 0 to 1."""
+
+    floor: Annotated[Colour | None, Field(description="colour of the floor")] = None
+    ceiling: Annotated[Colour | None, Field(description="colour of the ceiling")] = None
+    walls: Annotated[Colour | None, Field(description="colour of the walls")] = None
+    doors: Annotated[Colour | None, Field(description="colour of closed doors")] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class AnyPlaceConfig:
+    """What all places have."""
+
+    width_m: Annotated[
+        float, Field(ge=1.2, le=60.0, description="across; of L and T corridors, of both legs")
+    ]
+    height_m: Annotated[float, Field(ge=2.2, le=8.0, description="from the floor to the ceiling")] = 2.7
+    doors: Annotated[tuple[Door, ...], Field(strict=False, description="openings in its walls")] = ()
+    temperatures: Annotated[
+        Temperatures, BeforeValidator(_follow_air), Field(description="of its surfaces")
+    ] = field(default_factory=Temperatures)
+    colours: Annotated[Colours, Field(description="of its surfaces")] = field(default_factory=Colours)
+    floor_shine: Annotated[
+        Share,
+        Field(
+            description="how much of what the floor reflects it mirrors, from 0, a carpet, to 1, polished "
+            "stone; seen with `detail: full`"
+        ),
+    ] = 0.3
+    sun: Annotated[
+        Sun | None, Field(description="the sun, which only `detail: full` shows; left out, there is none")
+    ] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoomConfig(AnyPlaceConfig):
+    """A rectangular room: x from 0 to length, y to half the width on either side."""
+
+    kind: Annotated[Literal["room"], Field(description="a rectangular room")]
+    length_m: Annotated[Length, Field(description="how far it reaches along x")]
+
+    def areas(self) -> FloorPlan:
+        """Lay out the floor without doors."""
+        return straight_corridor(self.length_m, self.width_m)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CorridorConfig(AnyPlaceConfig):
+    """A straight corridor: x from 0 to length, y to half the width on either side."""
+
+    kind: Annotated[Literal["corridor"], Field(description="a straight corridor")]
+    length_m: Annotated[Length, Field(description="how far it reaches along x")]
+
+    def areas(self) -> FloorPlan:
+        """Lay out the floor without doors."""
+        return straight_corridor(self.length_m, self.width_m)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LCorridorConfig(AnyPlaceConfig):
+    """A corridor along x from 0 whose end turns aside."""
+
+    kind: Annotated[Literal["l_corridor"], Field(description="a corridor with a corner")]
+    first_m: Annotated[Length, Field(description="length of the first leg, with the corner")]
+    second_m: Annotated[Length, Field(description="length of the second leg beyond the first one's side")]
+    turn: Annotated[Literal["left", "right"], Field(description="the side to which the second leg leads")] = (
+        "left"
+    )
+
+    def areas(self) -> FloorPlan:
+        """Lay out the floor without doors.
+
+        Raises:
+            BadInput: the first leg is too short for its corner.
+        """
+        _check_longer(self.first_m, "first_m", self.width_m)
+        return l_corridor(self.first_m, self.second_m, self.width_m, self.turn)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TCorridorConfig(AnyPlaceConfig):
+    """A corridor along x from 0 that ends in the middle of a corridor along y."""
+
+    kind: Annotated[Literal["t_corridor"], Field(description="a corridor with a junction at its end")]
+    stem_m: Annotated[Length, Field(description="length of the corridor along x, up to the bar")]
+    bar_m: Annotated[Length, Field(description="length of the corridor along y in which the stem ends")]
+
+    def areas(self) -> FloorPlan:
+        """Lay out the floor without doors.
+
+        Raises:
+            BadInput: the bar is too short for the stem.
+        """
+        _check_longer(self.bar_m, "bar_m", self.width_m)
+        return t_corridor(self.stem_m, self.bar_m, self.width_m)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StreetConfig(AnyPlaceConfig):
+    """A street along x from 0, y to half the width on either side: a road between two pavements, and sky."""
+
+    kind: Annotated[Literal["street"], Field(description="a street, with houses and sky")]
+    length_m: Annotated[float, Field(ge=5.0, le=40.0, description="how far one can walk along x")]
+    houses: Annotated[
+        Literal["both", "north", "south", "none"],
+        Field(description="the sides on which fronts of houses stand; doors are in them"),
+    ] = "both"
+    house_m: Annotated[float, Field(ge=4.0, le=20.0, description="height of the houses")] = 10.0
+    sky_c: Annotated[
+        Celsius,
+        Field(
+            description="what the sky seems to have at the horizon; overhead it is 15 K colder, and clouds "
+            "are warmer"
+        ),
+    ] = 5.0
+
+    def areas(self) -> FloorPlan:
+        """Lay out the floor without doors."""
+        return straight_corridor(self.length_m, self.width_m)
+
+    def house_walls(self) -> frozenset[str]:
+        """Name the walls that are fronts of houses.
+
+        Raises:
+            BadInput: a door is where no house is.
+        """
+        walls = {"both": ("north", "south"), "none": ()}.get(self.houses, (self.houses,))
+        for index, door in enumerate(self.doors):
+            if door.wall not in walls:
+                raise BadInput(
+                    f"there is no house in the {door.wall}; houses is {self.houses!r}",
+                    key=("doors", index, "wall"),
+                )
+        return frozenset(walls)
+
+
+PlaceConfig = Annotated[
+    RoomConfig | CorridorConfig | LCorridorConfig | TCorridorConfig | StreetConfig,
+    Field(discriminator="kind"),
+]
+
+
+def lay_out(config: PlaceConfig) -> FloorPlan:
+    """Lay out the floor of a place, with its doors.
+
+    Raises:
+        BadInput: an unknown wall, or a door that does not fit.
+    """
+    plan = config.areas()
+    for index, door in enumerate(config.doors):
+        check_wall(plan, ("doors", index, "wall"), door.wall)
+        if door.height_m > config.height_m - _LINTEL_M:
+            raise BadInput(
+                f"{door.height_m:g} is too high; the ceiling is at {config.height_m:g} m "
+                f"and a lintel needs {_LINTEL_M:g} m",
+                key=("doors", index, "height_m"),
+            )
+    for name in config.temperatures.single_walls_c:
+        check_wall(plan, ("temperatures", "single_walls_c"), name)
+    plan = replace(plan, doors=config.doors)
+    check_doors(plan)
+    return plan
+
+
+def check_wall(plan: FloorPlan, key: Key, name: str) -> None:
+    """Refuse the name of a wall that the plan lacks.
+
+    Raises:
+        BadInput: with the key and the walls that there are.
+    """
+    known = [wall.name for wall in plan.walls()]
+    if name not in known:
+        raise BadInput(f"unknown wall {name!r}; {hint(name, known)}", key=key)
+
+
+def _check_longer(length_m: float, key: str, width_m: float) -> None:
+    if length_m <= width_m:
+        raise BadInput(f"{length_m:g} must be more than the corridor's width of {width_m:g} m", key=(key,))
