@@ -27,8 +27,7 @@ from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import Tick, closed_loop, make_frame
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.scenarios.running.engine.engine import work_through
-from peopleboy.scenarios.running.engine.task import Tell
-from peopleboy.scenarios.running.engine.workers import Workers, chosen_workers
+from peopleboy.scenarios.running.engine.task import Tell, Workers, chosen_workers
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.sim.world import World

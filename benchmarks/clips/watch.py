@@ -16,8 +16,7 @@ from benchmarks.sequences import track_boxes
 from benchmarks.timing import timed_ms
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.footage.options import TrackOptions
-from peopleboy.scenarios.footage.thermal_views import ThermalViews
-from peopleboy.scenarios.footage.views import open_views
+from peopleboy.scenarios.footage.views import ThermalViews, open_views
 from peopleboy.scenarios.running.engine.task import Tell
 from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate

@@ -40,7 +40,7 @@ def train_foreground(
 
     Their places, things, people and drives are drawn by their seeds. Films that are there are not made again.
     """
-    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.running.engine.task import chosen_workers
     from peopleboy.studies.training.foreground_learning.foreground_lesson import (
         ForegroundLessons,
         give_foreground_lesson,
@@ -78,7 +78,7 @@ def train_places(
     It is for the tracker `panoramic`, after `train-foreground`, whose network must be there. Needs
     scikit-learn. A killed call goes on where it was.
     """
-    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.running.engine.task import chosen_workers
     from peopleboy.studies.training.place_learning.place_lesson import give_place_lesson
 
     click.echo(give_place_lesson(out, films, chosen_workers(workers, scheduler), scenes=scenes, ship=ship))
@@ -103,7 +103,7 @@ def train_windows(scenes: int, out: Path, ship: bool, workers: int | None, sched
     It is for the trackers `rgbd` and `rgbd-printed`: support vector machines for who is near and who is
     farther, by colour alone and with depth. Needs scikit-learn. A killed call goes on where it was.
     """
-    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.running.engine.task import chosen_workers
     from peopleboy.studies.training.window_learning.window_lesson import give_window_lesson
 
     for path in give_window_lesson(out, chosen_workers(workers, scheduler), scenes=scenes, ship=ship):
@@ -168,7 +168,7 @@ def train_detector(
     scikit-learn, and for both looks JAX and Optax: pip install '.[train]'. Films that are there are not made
     again.
     """
-    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.running.engine.task import chosen_workers
     from peopleboy.studies.training.look_learning.closer_look_lesson import give_closer_look_lesson
     from peopleboy.studies.training.look_learning.second_look_lesson import give_second_look_lesson
     from peopleboy.studies.training.people_learning.people_lesson import give_people_lesson

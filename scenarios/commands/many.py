@@ -68,9 +68,9 @@ def sweep(
     A killed call goes on where it was. Of random worlds, where many people stand behind things, figures are
     told of everybody, and again of those of whom more than 30 % is seen.
     """
-    from peopleboy.scenarios.running.engine.workers import chosen_workers
-    from peopleboy.scenarios.running.sweep import sweep as run_seeds
-    from peopleboy.scenarios.running.sweep import sweep_worlds
+    from peopleboy.scenarios.running.engine.task import chosen_workers
+    from peopleboy.scenarios.running.many_runs import sweep as run_seeds
+    from peopleboy.scenarios.running.many_runs import sweep_worlds
     from peopleboy.scenarios.scores.by_tracker import figures_of_all, score_by_tracker
     from peopleboy.scenarios.scores.show_scores import print_runs
     from peopleboy.tracker.footage.box_kinds import BoxKind
@@ -150,9 +150,13 @@ def compare(
     A killed call goes on where it was.
     """
     from peopleboy.scenarios.files.load import load_scenario
-    from peopleboy.scenarios.running.compare_controllers import compare, parse_controller
-    from peopleboy.scenarios.running.engine.workers import chosen_workers
-    from peopleboy.scenarios.running.show_comparison import keep_comparison, show_comparison
+    from peopleboy.scenarios.running.compare_controllers import (
+        compare,
+        keep_comparison,
+        parse_controller,
+        show_comparison,
+    )
+    from peopleboy.scenarios.running.engine.task import chosen_workers
     from peopleboy.tracker.footage.box_kinds import BoxKind
 
     who = chosen_workers(workers, scheduler)

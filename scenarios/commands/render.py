@@ -66,7 +66,7 @@ def render(
     split.
     """
     from peopleboy.scenarios.export.make_dataset import of_scenarios, of_worlds, render_set
-    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.running.engine.task import chosen_workers
 
     who = chosen_workers(workers, scheduler)
     if randomise is None:

@@ -27,7 +27,7 @@ from peopleboy.scenarios.commands.options import (
 if TYPE_CHECKING:
     from peopleboy.scenarios.files.scenario import Scenario
     from peopleboy.scenarios.loop.loop import Tick
-    from peopleboy.scenarios.running.engine.workers import Workers
+    from peopleboy.scenarios.running.engine.task import Workers
     from peopleboy.scenarios.running.run import RunOptions
     from peopleboy.scenarios.scores.run_scores import RunScores
 
@@ -85,7 +85,7 @@ def run(
     from peopleboy.scenarios.files.load import load_scenario
     from peopleboy.scenarios.files.suite import suite_names
     from peopleboy.scenarios.recording.viewer import live_viewer
-    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.running.engine.task import chosen_workers
     from peopleboy.scenarios.running.run import RunOptions
     from peopleboy.tracker.footage.box_kinds import BoxKind
 
@@ -186,7 +186,7 @@ def _run_shown(scenario: Scenario, options: RunOptions) -> RunScores:
 
 
 def _run_suite(name: str, options: RunOptions, physics: str | None, workers: Workers, output: Output) -> None:
-    from peopleboy.scenarios.running.run_suite import run_suite
+    from peopleboy.scenarios.running.many_runs import run_suite
     from peopleboy.scenarios.scores.by_tracker import figures_of_all, score_by_tracker
     from peopleboy.scenarios.scores.show_scores import print_runs
 

@@ -171,7 +171,7 @@ def _parse_start(text: str) -> tuple[float, float, float, float] | str:
 
 
 def _tell(tracked: Tracked, options: TrackOptions) -> None:
-    from peopleboy.scenarios.footage.outcome import outcome_lines
+    from peopleboy.scenarios.footage.track_footage import outcome_lines
     from peopleboy.scenarios.scores.show_scores import print_scores
 
     for note in tracked.notes:

@@ -26,9 +26,9 @@ from peopleboy.scenarios.random_worlds.drawn_values import drawn_values, histogr
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.output import check_named, writing_to
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
+from peopleboy.scenarios.running.many_runs import RunTask, play, unfinished
 from peopleboy.scenarios.running.run import RunOptions
-from peopleboy.scenarios.running.run_task import RunTask, play, unfinished
 from peopleboy.sim.physics.physics import check_physics
 
 

@@ -1,1 +1,1 @@
-"""Tracking in footage that others recorded, and what is left of it."""
+"""Track people in recorded footage."""

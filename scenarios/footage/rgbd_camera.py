@@ -1,4 +1,4 @@
-"""The RGB-D camera of others: where it stood, and how wide it sees."""
+"""Pose and field of view of a recorded RGB-D camera."""
 
 from __future__ import annotations
 

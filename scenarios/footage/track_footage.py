@@ -1,26 +1,28 @@
-"""Run a tracker over footage, and leave a folder like that of a run."""
+"""Run a tracker over footage, write a folder like that of a run, and summarise the result."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import at_frame, traceback_to
-from peopleboy.scenarios.footage.footage_log import FootageLog
-from peopleboy.scenarios.footage.options import TrackOptions
+from peopleboy.scenarios.footage.footage_output import FootageLog
+from peopleboy.scenarios.footage.options import RgbdOptions, TrackOptions
 from peopleboy.scenarios.footage.views import Views, open_views
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.run_folder.output import check_named, whole_folder
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.checked_tracker import CheckedTracker
+from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.footage.box_kinds import BoxKind, boxed_whole, torso_of
 from peopleboy.tracker.footage.truth_files import GivenTruth, doubts, find_truth, load_truth
 from peopleboy.tracker.frame import DEPTH
 from peopleboy.tracker.trackers import Introducible, Tracker, explanation_of, is_own, make_tracker
+from peopleboy.wording import counted
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -166,3 +168,50 @@ def _about(options: TrackOptions, views: Views) -> dict[str, Any]:
         "start": options.start,
         "versions": versions(),
     }
+
+
+_ROUND: Final = {
+    BoxKind.TORSO: ", boxes round torsos",
+    BoxKind.WHOLE: ", boxes round whole people",
+    None: "",
+}
+
+
+def outcome_lines(tracked: Tracked, options: TrackOptions) -> tuple[str, str]:
+    """Say how much was tracked, and which files show it, or what to look at if nobody was found."""
+    count = f"{counted(tracked.frames, 'frame')}, {counted(tracked.tracks, 'track')}{_ROUND[tracked.boxes]}"
+    sheet = options.out / "contact_sheet.png"
+    if not tracked.tracks:
+        shown = f"Nobody was found. Look at {sheet}: {_what_to_look_at(options)}"
+    elif options.film:
+        shown = f"{sheet} and {options.out / 'overlay.mp4'} show them."
+    else:
+        shown = f"{sheet} shows them."
+    return f"{count}, {tracked.per_second:.0f} frames/s", shown
+
+
+def _what_to_look_at(options: TrackOptions) -> str:
+    if options.rgbd is not None:
+        return _what_depth_asks(options.rgbd)
+    remedy = "leave --black-hot out" if options.radiometry.is_inverted else "give --black-hot"
+    asked = f"is warm bright there? If not, {remedy}."
+    if options.tracker in VARIANTS:
+        asked += f" Are people {_heights(options.tracker)} of the picture's height, from head to feet?"
+        if not options.radiometry.is_known:
+            asked += " Are degC known? Then give --temperature-range (8 bit) or --scale (16 bit)."
+    return f"{asked} Is their outline to be seen, or only a hot face?"
+
+
+def _what_depth_asks(rgbd: RgbdOptions) -> str:
+    camera = rgbd.camera
+    return (
+        f"was the camera {camera.height_m:g} m above the floor (--camera-height-m), and looked down by "
+        f"{camera.pitch_deg:g} degrees (--pitch-deg)? Do people stand upright? Is depth read where they are?"
+    )
+
+
+def _heights(tracker: str) -> str:
+    """Say which people this tracker looks for; one who fills more than the picture is not seen whole."""
+    config = VARIANTS[tracker]
+    low, high = (config.box.height_per_h * share for share in config.detector.limits.h)
+    return f"at least {low:.0%}" if high >= 1 else f"{low:.0%} to {high:.0%}"

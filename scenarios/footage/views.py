@@ -1,15 +1,229 @@
-"""Footage of any kind as a tracker sees it, and as people are shown it."""
+"""Footage of any kind as frames of the tracker: thermal with optional colour, or colour with depth."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, Protocol
+from itertools import zip_longest
+from pathlib import Path
+from typing import Any, Final, Protocol
 
-from peopleboy.scenarios.drawing.overlay import Picture
-from peopleboy.scenarios.footage.options import TrackOptions
-from peopleboy.scenarios.footage.rgbd_views import RgbdViews
-from peopleboy.scenarios.footage.thermal_views import ThermalViews
-from peopleboy.tracker.frame import Frame
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.drawing.overlay import Picture, show_thermal
+from peopleboy.scenarios.footage.options import (
+    DEFAULT_RATE_HZ,
+    RgbdOptions,
+    TrackOptions,
+    check_first,
+    colour_picture,
+)
+from peopleboy.tracker.footage.depth_pictures import DepthCounts, pair_up
+from peopleboy.tracker.footage.grey import Radiometry, check_plausible, grey_maker
+from peopleboy.tracker.footage.pictures import PictureFolder, open_footage
+from peopleboy.tracker.footage.read_picture import read_picture, read_row, size_of
+from peopleboy.tracker.footage.sequence_info import find_info, load_odometry, rate_in
+from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, THERMAL, Frame, Odometry, PinholeCalibration
+from peopleboy.tracker.trackers import BY_CONTRAST
+
+
+class RgbdViews:
+    """Two folders of an RGB-D camera.
+
+    Raises:
+        BadInput: a folder cannot be read, the pictures of both do not belong together, or an option is one
+            for thermal footage.
+    """
+
+    camera = DEPTH
+    cameras: tuple[str, ...] = (DEPTH, DEPTH_COLOUR)
+    is_exact = True
+
+    def __init__(self, options: TrackOptions, rgbd: RgbdOptions) -> None:
+        _check_kind(options)
+        self._options, self._rgbd = options, rgbd
+        self._counts = DepthCounts(rgbd.depth, rgbd.m_per_count)
+        folders = [_folder(path, image) for path, image in _folders(options, rgbd)]
+        told = [*rgbd.camera.notes, *(note for folder in folders for note in folder.notes)]
+        self.notes = list(dict.fromkeys(told))
+        self._pairs = pair_up(*(folder.paths for folder in folders))
+        self.expected = len(self._pairs.colour)
+        self.numbers = folders[0].numbers
+        if options.rate_hz is not None and self._pairs.time_s is not None:
+            raise BadInput("--rate-hz: the names of the pictures tell their times; leave it out")
+        self.rate_hz = options.rate_hz or self._pairs.rate_hz or DEFAULT_RATE_HZ
+        self._odometry: list[Odometry] | None = None
+        if rgbd.odometry is not None:
+            self._odometry = load_odometry(rgbd.odometry, self.expected)
+        first = read_picture(self._pairs.colour[0], [])
+        check_first(first, options)
+        self._geometry = rgbd.camera.geometry(first.shape[1], first.shape[0])
+
+    def __iter__(self) -> Iterator[Frame]:
+        """Read colour and depth of the same instants.
+
+        Raises:
+            BadInput: a picture that cannot be used, or depth of another size than its colour.
+        """
+        calibration = PinholeCalibration(self._geometry.intrinsics, self._geometry.robot_from_camera)
+        colours, depths = (read_row(paths, self.notes) for paths in (self._pairs.colour, self._pairs.depth))
+        for number, (colour, counts) in enumerate(zip(colours, depths, strict=True)):
+            if colour.shape[:2] != counts.shape[:2]:
+                raise BadInput(
+                    f"{self._pairs.depth[number]}: depth must be of the pixels of its colour picture, "
+                    f"{size_of(colour)}, got {size_of(counts)}"
+                )
+            depth = self._counts(counts)
+            if number == 0:
+                self._counts.check_plausible(counts)
+            yield Frame(
+                images={DEPTH: depth, DEPTH_COLOUR: colour_picture(colour, str(self._options.footage))},
+                time_s=self._time_s(number),
+                calibrations={DEPTH: calibration},
+                odometry=None if self._odometry is None else self._odometry[number],
+            )
+
+    def _time_s(self, number: int) -> float:
+        times = self._pairs.time_s
+        return number / self.rate_hz if times is None else float(times[number])
+
+    def picture(self, frame: Frame) -> Picture:
+        """Show the colours of a frame."""
+        return frame.rgb(DEPTH_COLOUR)
+
+    def about(self) -> dict[str, Any]:
+        """Say how counts became metres, and where the camera stood."""
+        rgbd = self._rgbd
+        return {
+            "depth": rgbd.depth.name,
+            "depth_scale_m": rgbd.m_per_count,
+            "camera": {
+                "height_m": rgbd.camera.height_m,
+                "pitch_deg": rgbd.camera.pitch_deg,
+                "focal_px": self._geometry.focal_px,
+                "centre_px": self._geometry.centre_px,
+            },
+            "odometry": None if rgbd.odometry is None else rgbd.odometry.name,
+        }
+
+
+def _check_kind(options: TrackOptions) -> None:
+    if options.colour is not None or options.radiometry != Radiometry():
+        raise BadInput(
+            "--depth: --colour, --temperature-range, --scale and --black-hot are for thermal pictures; "
+            "the folder itself holds the colour ones"
+        )
+
+
+def _folders(options: TrackOptions, rgbd: RgbdOptions) -> tuple[tuple[Path, str], tuple[Path, str]]:
+    """Give both folders, each with what a run calls it."""
+    return (options.footage, DEPTH_COLOUR), (rgbd.depth, DEPTH)
+
+
+def _folder(path: Path, image: str) -> PictureFolder:
+    if not path.is_dir():
+        raise BadInput(f"{path}: there is no such folder; colour pictures and their depth are in one each")
+    if (path / "run.json").is_file():
+        raise BadInput(f"{path}: is a run; give {path / image}")
+    return PictureFolder(path, path.name)
+
+
+COLOUR_TRACKER: Final = "colour"
+"""It differs from `thermal` by what colours add alone."""
+
+
+class ThermalViews:
+    """Thermal pictures of a folder or a video.
+
+    Raises:
+        BadInput: they cannot be read, or the tracker needs colour and there is none.
+    """
+
+    camera = THERMAL
+    cameras: tuple[str, ...] = (THERMAL, COLOUR)
+
+    def __init__(self, options: TrackOptions) -> None:
+        if options.tracker == COLOUR_TRACKER and options.colour is None:
+            raise BadInput("--tracker colour: needs --colour FOLDER; without it, give --tracker thermal")
+        self._options = options
+        self._footage = open_footage(options.footage)
+        self._colour = None if options.colour is None else open_footage(options.colour)
+        self.expected, self.is_exact = self._footage.expected, self._footage.is_exact
+        self.numbers = self._footage.numbers
+        self.rate_hz = options.rate_hz or self._footage.rate_hz or self._told_rate() or DEFAULT_RATE_HZ
+
+    def _told_rate(self) -> float | None:
+        """Read the rate from what lies beside the pictures."""
+        path = find_info(self._options.footage)
+        rate = None if path is None else rate_in(path)
+        if rate is not None:
+            self._footage.notes.append(
+                f"{path}: {rate:g} pictures a second are taken from there; --rate-hz goes first"
+            )
+        return rate
+
+    @property
+    def notes(self) -> list[str]:
+        """What was taken as something else than it is."""
+        return [*self._footage.notes, *([] if self._colour is None else self._colour.notes)]
+
+    def __iter__(self) -> Iterator[Frame]:
+        """Read thermal pictures, and colour ones along with them.
+
+        Raises:
+            BadInput: a picture that cannot be used, or a colour picture too few or too many.
+        """
+        options, radiometry, notes = self._options, self._options.radiometry, self._footage.notes
+        to_grey = None
+        for number, (thermal, picture) in enumerate(self._pictures()):
+            if number == 0:
+                check_first(thermal, options)
+                self._note_counts(thermal)
+            values = radiometry.values(thermal, notes)
+            if number == 0:
+                check_plausible(radiometry, values)
+            if to_grey is None:
+                to_grey = grey_maker(
+                    radiometry,
+                    is_grey=thermal.dtype == np.uint8,
+                    by_contrast=options.tracker in BY_CONTRAST,
+                )
+            images: dict[str, NDArray[np.uint8]] = {THERMAL: to_grey(values)}
+            if picture is not None:
+                images[COLOUR] = colour_picture(picture, "--colour")
+            yield Frame(images=images, time_s=number / self.rate_hz)
+
+    def _pictures(self) -> Iterator[tuple[NDArray[Any], NDArray[Any] | None]]:
+        here, there = self._options.footage, self._options.colour
+        colours = () if self._colour is None else self._colour
+        for number, (thermal, picture) in enumerate(zip_longest(self._footage, colours)):
+            if thermal is None or (self._colour is not None and picture is None):
+                shorter, longer = (here, there) if thermal is None else (there, here)
+                raise BadInput(
+                    f"{shorter}: ends after {number} pictures, before {longer}; both must be as long"
+                )
+            yield thermal, picture
+
+    def _note_counts(self, thermal: NDArray[Any]) -> None:
+        if thermal.dtype != np.uint8 and not self._options.radiometry.is_known:
+            self._footage.notes.append(
+                f"{thermal.dtype} pictures without --scale: degC are unknown, "
+                "grey follows the scene's contrast"
+            )
+
+    def picture(self, frame: Frame) -> Picture:
+        """Show the grey of a frame."""
+        return show_thermal(frame.grey(THERMAL))
+
+    def about(self) -> dict[str, Any]:
+        """Say what is known of the pixels."""
+        colour, radiometry = self._options.colour, self._options.radiometry
+        return {
+            "colour": None if colour is None else colour.name,
+            "temperature_range_c": radiometry.span_c,
+            "scale": radiometry.scale,
+        }
 
 
 class Views(Protocol):

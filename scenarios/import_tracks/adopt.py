@@ -19,7 +19,7 @@ from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_whole_
 from peopleboy.scenarios.run_folder.folder import RunFolder
 from peopleboy.scenarios.run_folder.image_files import about_gains
 from peopleboy.scenarios.run_folder.output import check_out, whole, writing_to
-from peopleboy.scenarios.running.watchers import Watchers
+from peopleboy.scenarios.running.run import Watchers
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.frame import THERMAL

@@ -1,1 +1,1 @@
-"""Running scenarios: one, many seeds, suites, behaviours side by side, films on disk."""
+"""Run scenarios: one, many seeds, suites, compared controllers, and cached sequences of frames."""

@@ -1,4 +1,4 @@
-"""Playing a scenario whose robot drives without eyes, for whoever wants to see what it could see."""
+"""Play a scenario without a tracker, for what its robot's sensors observe."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rendered frames kept on disk: any number of trackers see the same ones, and none is rendered twice.
+"""Rendered frames cached on disk, so that every tracker sees the same ones and none is rendered twice.
 
 They hold what trackers are given, the images of `thermal` and `colour`. Those of further cameras are not
 kept, but a film is another one as soon as any camera is.

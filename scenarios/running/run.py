@@ -1,30 +1,89 @@
-"""One run: build the world of a scenario, close the loop, and leave a folder behind."""
+"""Run one scenario: build its world, close the loop, record it, and write its folder."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
+import yaml
+
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import traceback_in
-from peopleboy.scenarios.files.own_files import keep_own_files
+from peopleboy.scenarios.drawing.contact_sheet import ContactSheet
+from peopleboy.scenarios.files.own_files import are_kept, keep_own_files
 from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.files.schema.robot import FaultSpec
 from peopleboy.scenarios.loop.faults import FaultySensors, FaultyTracker
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
-from peopleboy.scenarios.loop.tracker_by_name import check_cameras, make_eyes
+from peopleboy.scenarios.loop.run_events import LogLine, RunEvents
+from peopleboy.scenarios.loop.tracker_by_name import camera_names, check_cameras, make_eyes
 from peopleboy.scenarios.recording.recorder import Recorder
+from peopleboy.scenarios.run_folder.finished_run import open_run, read_run
 from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versions
 from peopleboy.scenarios.run_folder.image_files import about_gains
 from peopleboy.scenarios.run_folder.output import left_by_sigterm
-from peopleboy.scenarios.running.watchers import Watchers
-from peopleboy.scenarios.scores.following_score import following_task
+from peopleboy.scenarios.scores.comfort_metrics import ComfortLog
+from peopleboy.scenarios.scores.corridor_metrics import CorridorLog
+from peopleboy.scenarios.scores.following_score import FollowingLog, following_task, whose_tracks
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
+from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.world import World
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.trackers import knows_again
+
+
+class Watchers:
+    """Hands each tick to all who look on; a recorder only if there is one.
+
+    Args:
+        config: of the world.
+        title: of the run.
+        recorder: of it, if there is one.
+        boxes: what the tracker's boxes are drawn round.
+        faults: that the scenario asks for.
+        is_secret: whether nobody knows whom the robot goes after, as commands alone do not tell.
+    """
+
+    def __init__(
+        self,
+        config: WorldConfig,
+        title: str,
+        recorder: Recorder | None,
+        boxes: BoxKind = BoxKind.TORSO,
+        *,
+        faults: Sequence[FaultSpec] = (),
+        is_secret: bool = False,
+    ) -> None:
+        self.following = FollowingLog()
+        self.corridor = CorridorLog()
+        self.comfort = ComfortLog()
+        self._events = RunEvents(faults)
+        self._sheet = ContactSheet(title, config.robot)
+        self._recorder = recorder
+        self._boxes = boxes
+        self._is_secret = is_secret
+        self._track = 0  # that lay on the person to follow last
+
+    def update(self, tick: Tick) -> list[LogLine]:
+        """Look at one tick and return what happened at it."""
+        events = self._events.update(tick)
+        track, is_wrong = whose_tracks(tick, self._boxes, self._track)
+        self._track = track or self._track
+        self.following.add(tick.truth, track, None if self._is_secret else is_wrong)
+        self.corridor.add(tick.truth)
+        self.comfort.add(tick.truth)
+        self._sheet.add(tick, events)
+        if self._recorder is not None:
+            self._recorder.log(tick, events)
+        return events
+
+    def save(self, folder: Path) -> None:
+        """Save what is drawn at the end."""
+        self._sheet.save(folder / "contact_sheet.png")
+
 
 FOLLOWERS = ("follow_person", "patrol")
 
@@ -158,3 +217,52 @@ def run(
         watchers.save(options.out)
         folder.complete(scores.to_json())
     return scores
+
+
+def is_finished(scenario: Scenario, options: RunOptions) -> bool:
+    """Tell whether the folder holds this very run, complete, with its images if they are wanted.
+
+    Never, if it is to be replaced.
+
+    Raises:
+        BadInput: it holds a complete run of another scenario, seed, tracker, kind of boxes or version, or a
+            spoilt one.
+    """
+    if options.overwrite or not _is_complete(options.out):
+        return False
+    run = open_run(options.out)
+    tracker = tracker_name(scenario, options)
+    if run.about.tracker != tracker:
+        raise BadInput(
+            f"{options.out}: was run with tracker {run.about.tracker!r}; give --overwrite, or another --out"
+        )
+    if run.about.boxes != options.boxes:
+        raise BadInput(
+            f"{options.out}: was run with --boxes {run.about.boxes}; give --overwrite, or another --out"
+        )
+    if run.about.behaviour != scenario.own_behaviour:
+        was = run.about.behaviour or run.scenario.robot.behaviour
+        raise BadInput(f"{options.out}: was run with behaviour {was!r}; give --overwrite, or another --out")
+    if options.frames and not run.about.images:
+        return False
+    mounted = scenario.mounting(camera_names(tracker))
+    resolved = _as_read(mounted.resolved(options.seed, versions()))
+    if (run.played, run.about.renderer) != (resolved, options.renderer) or not are_kept(
+        scenario.kept_files(), options.out
+    ):
+        raise BadInput(
+            f"{options.out}: is a run of another scenario or version; give --overwrite, or another --out"
+        )
+    return True
+
+
+def _is_complete(folder: Path) -> bool:
+    try:
+        read_run(folder)
+    except BadInput:
+        return False
+    return True
+
+
+def _as_read(data: object) -> object:
+    return yaml.safe_load(yaml.safe_dump(data))

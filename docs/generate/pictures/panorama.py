@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from peopleboy.scenarios.drawing.overlay import draw_truth, enlarge, people_parts
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.sim.cameras.camera_config import PanoramaConfig, ThermalConfig
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint

@@ -1,1 +1,1 @@
-"""Many tasks, one way to work through them: here, in processes of this machine, or on a cluster."""
+"""Resumable tasks, in processes of this machine or on a Dask cluster."""

@@ -1,4 +1,4 @@
-"""Tasks on the workers of a Dask scheduler."""
+"""Run tasks on the workers of a Dask scheduler."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.running.engine.source import Source, running_source
-from peopleboy.scenarios.running.engine.task import Failure, Task, attempt
+from peopleboy.scenarios.running.engine.task import Failure, Source, Task, attempt, running_source
 
 try:
     from distributed import Client, KilledWorker, as_completed

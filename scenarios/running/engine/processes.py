@@ -1,4 +1,4 @@
-"""Tasks in several processes of this machine, by joblib; one that is killed costs only what it was at."""
+"""Run tasks in several processes by joblib; a killed process costs only its current task."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Results of finished tasks, one JSON line each: whoever is killed goes on from there."""
+"""Results of finished tasks, one JSON line each, from which a killed command resumes."""
 
 from __future__ import annotations
 

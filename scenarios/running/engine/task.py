@@ -1,13 +1,21 @@
-"""What the engine works through, and what becomes of it."""
+"""Tasks, their outcome, and the workers that run them."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
+import joblib
+
+from peopleboy import sim
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import OwnCodeFailed, in_one_line
+from peopleboy.scenarios.run_folder.folder import versions
 
 Result_co = TypeVar("Result_co", covariant=True)
 
@@ -69,3 +77,47 @@ def attempt(task: Task[Any], tell: Tell) -> Any:
         return Failure(task.name, str(error))
     except Exception as error:
         return Failure(task.name, in_one_line(error))
+
+
+@dataclass(frozen=True, slots=True)
+class Workers:
+    """Who does the work.
+
+    Attributes:
+        count: processes of this machine; with one, everything is done in the process that asks for it.
+        scheduler: address of a Dask scheduler whose workers do it instead; None for this machine.
+    """
+
+    count: int = 1
+    scheduler: str | None = None
+
+
+def chosen_workers(count: int | None, scheduler: str | None) -> Workers:
+    """Take what the user gave; without it, one process a core.
+
+    Raises:
+        BadInput: both are given.
+    """
+    if scheduler is not None and count is not None:
+        raise BadInput(f"--workers {count}: the cluster of --scheduler has workers of its own; leave one out")
+    return Workers(joblib.cpu_count() if count is None else count, scheduler)
+
+
+Source = dict[str, str]
+
+
+@cache
+def running_source() -> Source:
+    """Return the versions of packages by name, and under "source" a hash of PeopleBoy's own files.
+
+    Workers of a cluster must have the same, since bytes depend on them.
+    """
+    digest = sha256()
+    root = Path(sim.__path__[0]).parent
+    for folder, inner, names in os.walk(root, followlinks=True):
+        inner.sort()
+        for name in sorted(names):
+            if name.endswith((".py", ".yaml", ".urdf")):
+                path = Path(folder, name)
+                digest.update(f"{path.relative_to(root)}\0".encode() + path.read_bytes())
+    return versions() | {"source": digest.hexdigest()}

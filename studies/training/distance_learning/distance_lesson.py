@@ -15,7 +15,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.output import writing_to
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.store import Store, code_digest
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.frame_cache import film_key
 from peopleboy.studies.training.distance_learning import distance_examples
 from peopleboy.studies.training.distance_learning.distance_examples import Examples, see_floor

@@ -15,7 +15,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.run_folder.output import whole, writing_to
 from peopleboy.scenarios.running.engine.engine import work_through
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.training.foreground_learning.film_task import FilmTask
 from peopleboy.studies.training.foreground_learning.judge_masks import Judgement, judge
 from peopleboy.studies.training.foreground_learning.masked_film import MaskedFilm

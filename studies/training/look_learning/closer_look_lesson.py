@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.training.look_learning.closer_look_examples import closer_looks_of
 from peopleboy.studies.training.look_learning.examples import LookExamples
 from peopleboy.studies.training.look_learning.films_of_later_worlds import films_in

@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 
 from peopleboy.scenarios.run_folder.output import writing_to
 from peopleboy.scenarios.running.engine.engine import work_through
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.training.people_learning.people_film_task import PeopleFilmTask
 from peopleboy.studies.training.people_learning.worlds_to_learn_from import KINDS, LATER
 

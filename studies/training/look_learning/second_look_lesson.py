@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.training.look_learning.examples import LookExamples
 from peopleboy.studies.training.look_learning.films_of_later_worlds import films_in
 from peopleboy.studies.training.look_learning.learned_network import (

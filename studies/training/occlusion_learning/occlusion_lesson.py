@@ -10,7 +10,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.output import writing_to
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.store import Store, code_digest
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.training.occlusion_learning import occlusion_pairs
 from peopleboy.studies.training.occlusion_learning.occlusion_pairs import PairExample
 from peopleboy.studies.training.occlusion_learning.pair_files import read_pairs, write_pairs

@@ -13,7 +13,7 @@ from rich.console import Console
 
 from peopleboy.scenarios.run_folder.output import whole, writing_to
 from peopleboy.scenarios.running.engine.engine import work_through
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.training.people_learning.boosting import Boosting
 from peopleboy.studies.training.people_learning.judge_detector import judge_detector, log_odds_line
 from peopleboy.studies.training.people_learning.patch_pool import patch_pool

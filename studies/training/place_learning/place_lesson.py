@@ -14,7 +14,7 @@ from rich.console import Console
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.output import writing_to
 from peopleboy.scenarios.running.engine.engine import work_through
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.training.foreground_learning.foreground_lesson import FIRST_SEED
 from peopleboy.studies.training.place_learning import place_examples
 from peopleboy.studies.training.place_learning.place_examples import PlaceExamples

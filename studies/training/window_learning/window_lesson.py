@@ -12,7 +12,7 @@ from rich.console import Console
 
 from peopleboy.scenarios.run_folder.output import writing_to
 from peopleboy.scenarios.running.engine.engine import work_through
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.training.window_learning.teach_windows import judgement, teach_windows
 from peopleboy.studies.training.window_learning.window_examples import WindowExamples
 from peopleboy.studies.training.window_learning.window_task import WindowTask

@@ -13,8 +13,7 @@ from pathlib import Path
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.store import Result, Store
-from peopleboy.scenarios.running.engine.task import Task, Tell
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Task, Tell, Workers
 
 _KEPT: list[bytes] = []
 

@@ -3,8 +3,7 @@ import re
 import pytest
 
 from peopleboy.scenarios.footage.options import TrackOptions
-from peopleboy.scenarios.footage.outcome import outcome_lines
-from peopleboy.scenarios.footage.track_footage import Tracked
+from peopleboy.scenarios.footage.track_footage import Tracked, outcome_lines
 from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.footage.grey import Radiometry

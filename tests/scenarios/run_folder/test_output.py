@@ -13,7 +13,7 @@ from peopleboy.scenarios.export.make_dataset import of_scenarios, render_set
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.folder import claim_folder
 from peopleboy.scenarios.run_folder.output import whole, whole_folder
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.frame_cache import film
 from peopleboy.studies.reproductions.units import open_store
 from peopleboy.studies.training.distance_learning.distance_lesson import give_distance_lesson

@@ -7,9 +7,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
-from peopleboy.scenarios.running.compare_controllers import Controller, compare, intervals, parse_controller
-from peopleboy.scenarios.running.engine.workers import Workers
-from peopleboy.scenarios.running.show_comparison import _limit, keep_comparison, show_comparison
+from peopleboy.scenarios.running.compare_controllers import (
+    Controller,
+    _limit,
+    compare,
+    intervals,
+    keep_comparison,
+    parse_controller,
+    show_comparison,
+)
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.scores.bootstrap import bootstrap
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from tests.helpers.calls.refused import refused

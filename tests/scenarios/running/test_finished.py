@@ -8,8 +8,7 @@ import pytest
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.folder import versions
-from peopleboy.scenarios.running.finished import is_finished
-from peopleboy.scenarios.running.run import RunOptions
+from peopleboy.scenarios.running.run import RunOptions, is_finished
 from tests.helpers.runs import toy_runs as toy
 
 SCENARIO = load_scenario("crossing_2")

@@ -11,10 +11,10 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.cli import cli
 from peopleboy.scenarios.files import suite as suites
 from peopleboy.scenarios.files.suite import EntrySpec, SuiteSpec, load_suite, runs_of, suite_names
-from peopleboy.scenarios.running import run_suite as module
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running import many_runs as module
+from peopleboy.scenarios.running.engine.task import Workers
+from peopleboy.scenarios.running.many_runs import run_suite
 from peopleboy.scenarios.running.run import RunOptions
-from peopleboy.scenarios.running.run_suite import run_suite
 from peopleboy.scenarios.scores.suite_table import THESIS, Content, add_up, count
 from peopleboy.studies.reproductions.runner import count_suite
 from tests.helpers.calls.refused import refused

@@ -10,11 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from peopleboy.scenarios.running.engine import source
-from peopleboy.scenarios.running.engine.source import running_source
+from peopleboy.scenarios.running.engine import task
 from peopleboy.scenarios.running.engine.store import Store
-from peopleboy.scenarios.running.engine.task import TasksFailed
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import TasksFailed, Workers, running_source
 from tests.helpers.calls.refused import refused
 from tests.helpers.runs import toy_tasks
 from tests.helpers.runs.toy_tasks import ToyTask, diary, squares, toys, work
@@ -34,7 +32,7 @@ class Ours:
         return running_source() | self._changed
 
     def __reduce__(self) -> tuple[object, ...]:
-        return getattr, (source, "running_source")
+        return getattr, (task, "running_source")
 
 
 @pytest.fixture

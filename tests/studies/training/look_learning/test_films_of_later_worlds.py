@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.training.look_learning.films_of_later_worlds import films_in, later_seeds
 from peopleboy.studies.training.people_learning.people_film_task import PeopleFilmTask
 from peopleboy.studies.training.people_learning.worlds_to_learn_from import KINDS, LATER, world_of
