@@ -16,7 +16,7 @@ from benchmarks.clips.clip import CHOSEN_BY, Clip, open_clips
 from benchmarks.clips.watch import PEERS, Watched, WatchTask, make_watcher
 from benchmarks.sequences import print_head, print_row
 from peopleboy.scenarios.running.engine.engine import work_through
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.tracker.evaluation.evaluate import combine
 
 OUT: Final = Path("runs/clips.json")

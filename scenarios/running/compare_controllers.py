@@ -1,4 +1,4 @@
-"""Compare controllers on the same scenarios and seeds, with confidence intervals, as table, picture and JSON."""
+"""Compare controllers on the same scenarios and seeds, with confidence intervals."""
 
 from __future__ import annotations
 
