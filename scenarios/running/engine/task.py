@@ -12,10 +12,9 @@ from typing import Any, Protocol, TypeVar
 
 import joblib
 
-from peopleboy import sim
+import peopleboy
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import OwnCodeFailed, in_one_line
-from peopleboy.scenarios.run_folder.folder import versions
 
 Result_co = TypeVar("Result_co", covariant=True)
 
@@ -112,8 +111,10 @@ def running_source() -> Source:
 
     Workers of a cluster must have the same, since bytes depend on them.
     """
+    from peopleboy.scenarios.run_folder.folder import versions  # here, as the command line loads this module
+
     digest = sha256()
-    root = Path(sim.__path__[0]).parent
+    root = Path(peopleboy.__path__[0])
     for folder, inner, names in os.walk(root, followlinks=True):
         inner.sort()
         for name in sorted(names):
