@@ -68,7 +68,7 @@ def train_occlusion(
     Examples are split at random, as there, and scenario by scenario; the table is learned from all of them.
     Needs scikit-learn. A killed call goes on where it was.
     """
-    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.running.engine.task import chosen_workers
     from peopleboy.studies.training.occlusion_learning.occlusion_lesson import give_lesson
 
     who = chosen_workers(workers, scheduler)
@@ -111,7 +111,7 @@ def train_distance(
     SCENARIO is a name or a path, room_long if left out. It begins with five empty panoramas, and one person
     at a time is there later. A killed call goes on where it was.
     """
-    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.running.engine.task import chosen_workers
     from peopleboy.studies.training.distance_learning.distance_lesson import give_distance_lesson
     from peopleboy.tracker.panoramic.paper.distance_network import Lessons
 
@@ -174,7 +174,7 @@ def reproduce(
     ID is one of `--list`, or its number: 4.9 stands for figures 4.9a and 4.9b. A killed call goes on where it
     was when it is given again.
     """
-    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.running.engine.task import chosen_workers
     from peopleboy.studies.reproductions.plan import REPEATS
     from peopleboy.studies.reproductions.runner import list_experiments, reproduce_named
 
@@ -237,7 +237,7 @@ def tune(
     As in its sections 4.4 to 7.5, each with the tracker of its chapter. Films have seeds from 100 on, which
     no figure is reported on. Leaves a curve of each parameter and a page. A killed call goes on where it was.
     """
-    from peopleboy.scenarios.running.engine.workers import chosen_workers
+    from peopleboy.scenarios.running.engine.task import chosen_workers
     from peopleboy.studies.reproductions.tune import TrainingFilms, print_tuned
     from peopleboy.studies.reproductions.tune import tune as tune_all
     from peopleboy.studies.reproductions.tuned_parameters import chosen_parameters

@@ -18,9 +18,8 @@ from rich.text import Text
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.running.engine.store import Store
-from peopleboy.scenarios.running.engine.task import Failure, TasksFailed
-from peopleboy.scenarios.running.engine.workers import Workers
-from peopleboy.scenarios.running.run_suite import films_of
+from peopleboy.scenarios.running.engine.task import Failure, TasksFailed, Workers
+from peopleboy.scenarios.running.many_runs import films_of
 from peopleboy.scenarios.scores.suite_table import THESIS, Content, add_up, count
 from peopleboy.studies.reproductions.catalogue import choose
 from peopleboy.studies.reproductions.experiment import Experiment, Outcome

@@ -21,7 +21,7 @@ from rich.table import Table
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.suite import SuiteRun
 from peopleboy.scenarios.running.engine.store import Store
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.reproductions.experiments.tracking import add_sums, count_unit, metric, sequence_unit
 from peopleboy.studies.reproductions.page import span
 from peopleboy.studies.reproductions.statistics import Difference, margin, paired

@@ -11,8 +11,7 @@ from typing import Any, TypeVar
 
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.store import Result, Store, code_digest
-from peopleboy.scenarios.running.engine.task import Failure, Task, TasksFailed, Tell
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Failure, Task, TasksFailed, Tell, Workers
 from peopleboy.studies.reproductions.plan import Plan
 
 Key = TypeVar("Key")

@@ -12,8 +12,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.suite import SuiteRun
 from peopleboy.scenarios.running.engine.store import Result
-from peopleboy.scenarios.running.engine.task import TasksFailed
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import TasksFailed, Workers
 from peopleboy.studies.reproductions.catalogue import EXPERIMENTS, choose
 from peopleboy.studies.reproductions.experiment import Experiment, Line, Samples
 from peopleboy.studies.reproductions.plan import Plan

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.reproductions.tracker_settings import BASES
 from peopleboy.studies.reproductions.tune import RESULTS, TrainingFilms, Tuned, tune
 from peopleboy.studies.reproductions.tuned_parameters import PARAMETERS, chosen_parameters

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.running.engine.workers import Workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.reproductions.experiments.learning import learn_pairs
 from peopleboy.studies.training.occlusion_learning.example_splits import (
     learn_split,
