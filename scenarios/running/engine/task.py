@@ -12,7 +12,6 @@ from typing import Any, Protocol, TypeVar
 
 import joblib
 
-import peopleboy
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import OwnCodeFailed, in_one_line
 
@@ -114,7 +113,7 @@ def running_source() -> Source:
     from peopleboy.scenarios.run_folder.folder import versions  # here, as the command line loads this module
 
     digest = sha256()
-    root = Path(peopleboy.__path__[0])
+    root = Path(__file__).parents[3]
     for folder, inner, names in os.walk(root, followlinks=True):
         inner.sort()
         for name in sorted(names):
