@@ -21,7 +21,7 @@ from benchmarks.peers.show import draw_occlusions, print_occlusions, print_resul
 from peopleboy.scenarios.commands.options import workers_options
 from peopleboy.scenarios.files.suite import load_suite
 from peopleboy.scenarios.running.engine.engine import work_through
-from peopleboy.scenarios.running.engine.workers import Workers, chosen_workers
+from peopleboy.scenarios.running.engine.task import Workers, chosen_workers
 from peopleboy.wording import hint
 
 _QUICK = "crossing_2,crossing_3,same_uniform,pass_behind_pillar,hidden_0_5s,hidden_2s,hidden_5s,crowd_8"

@@ -14,7 +14,7 @@ from peopleboy.own_code import traceback_in
 from peopleboy.scenarios.drawing.contact_sheet import ContactSheet
 from peopleboy.scenarios.files.own_files import are_kept, keep_own_files
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.files.schema.robot import FaultSpec
+from peopleboy.scenarios.files.scenario_file import FaultSpec
 from peopleboy.scenarios.loop.faults import FaultySensors, FaultyTracker
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.scenarios.loop.run_events import LogLine, RunEvents
