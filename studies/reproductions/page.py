@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import jinja2
 
@@ -158,7 +158,7 @@ def page_text(sections: Sequence[Section], about: PageHead) -> str:
     return environment.get_template("page.html.jinja").render(
         sections=sections,
         about=about,
-        general=read_yaml(HERE / "page_notes.yaml"),
+        general=_notes(),
         sources={name: source for name, source in PAPERS.items() if name in papers},
         below=list(below_source(sections)),
         margins={"points": POINTS, "part": 100 * PART, "much": 100 * MUCH},
@@ -302,38 +302,28 @@ def _seeds(plan: Plan, papers: Set[str], repeats: int) -> str:
     )
 
 
-def _share(plan: Plan) -> str:
-    """Write how much of the data sets a quick run sees."""
-    seen, there = (
-        sum(play.scenario.duration_s for plays in suites.values() for play in plays)
-        for suites in (plan.suites, full_plan(plan.cache).suites)
-    )
-    return f"{seen:.0f} of {there:.0f} s"
-
-
 def _amount(plan: Plan, papers: Set[str], repeats: Set[int]) -> str:
-    runs = {name: len(plays) for name, plays in plan.suites.items()}
+    """Write how much was done."""
     if plan.is_quick:
-        return (
-            f"One run per data set and of it {QUICK_S:g} s at most ({_share(plan)}), {plan.repeats} repeats "
-            "instead of 10, fewer values of each parameter (each section says which are left out), "
-            "figure 6.6 with 200 samples instead of 1000, pairs of people "
-            f"from one run per scenario, no weighted triplets, {plan.walks} panoramic films of each room, "
-            f"{plan.drive_s:g} s of {len(plan.sets)} of the 12 drives with a depth camera, "
-            f"{len(plan.scenes)} of the 17 films of things that are moved."
-        )
-    if papers == {"panoramic"}:
-        return f"{plan.walks} films of each room, and {plan.repeats} by webcams."
-    if papers == {"situation"}:
-        return (
-            f"{plan.drives} runs of each of {len(plan.sets)} drives, {plan.ablated} where trackers differ in "
-            f"one thing or the noise is varied, {2 * plan.drives} where odometry is left out; "
-            f"{plan.scene_seeds} of each of {len(plan.scenes)} films of moved things, by {len(plan.presets)} "
-            f"depth cameras. {plan.drives} runs of each film of attention, {plan.absences} of each absence, "
-            f"{plan.follows} of followers."
-        )
-    total = ", ".join(f"{name}: {count} runs" for name, count in runs.items())
-    count = (
-        f"{max(repeats)}" if len(repeats) == 1 else f"{min(repeats)} to {max(repeats)}, as each part says,"
+        # How much of the data sets a quick run sees.
+        every = full_plan(plan.cache)
+        seen, there = (sum(run.scenario.duration_s for run in one.runs(one.suites)) for one in (plan, every))
+        kind, share = "quick", f"{seen:.0f} of {there:.0f} s"
+    else:
+        kind, share = next((one for one in ("panoramic", "situation") if papers == {one}), "tracking"), ""
+    least, most = min(repeats), max(repeats)
+    words: str = _notes()["amount"][kind]
+    return words.format(
+        plan=plan,
+        quick_s=QUICK_S,
+        share=share,
+        **{name: len(getattr(plan, name)) for name in ("sets", "scenes", "presets")},
+        turns=2 * plan.drives,
+        repeats=f"{most}" if least == most else f"{least} to {most}, as each part says,",
+        runs=", ".join(f"{name}: {len(runs)} runs" for name, runs in plan.suites.items()),
     )
-    return f"{count} repeats of everything with other random numbers in the trackers. {total}."
+
+
+def _notes() -> dict[str, Any]:
+    notes: dict[str, Any] = read_yaml(HERE / "page_notes.yaml")
+    return notes

@@ -10,40 +10,21 @@ from matplotlib.figure import Figure
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.engine.store import Result
-from peopleboy.studies.reproductions.evaluations.attention_focus import (
-    CHOICES,
-    DEFAULT,
-    MATCHING,
-    PRINTED_NAME,
-    watch_absence,
-    watch_focus,
-    watch_follower,
-)
-from peopleboy.studies.reproductions.evaluations.scene_scores import (
-    ADAPT,
-    CHAIRS,
-    MEAN,
-    OURS,
-    PRESETS,
-    PRINTED,
-    ROBUST,
-    SEQUENCES,
-    watch_scene,
-    with_preset,
-)
+from peopleboy.studies.reproductions.evaluations import attention_focus as attention
+from peopleboy.studies.reproductions.evaluations import scene_scores as scenes
 from peopleboy.studies.reproductions.experiment import Floats, Line, Row, Samples, as_columns, ratio
 from peopleboy.studies.reproductions.pictures.situation_figures import draw_maps
 from peopleboy.studies.reproductions.plan import Plan, shortened
 from peopleboy.studies.reproductions.units import Measurement, Unit
 
-TOF: Final = PRESETS[0]
+TOF: Final = scenes.PRESETS[0]
 ALL: Final = "all"
 _SHOWN: Final = ("s1r1", "s2r1", "s3r1", "s4r1", "s5r1", "s6r1")
 
 FOCUS_SCENARIOS: Final = ("crossing_3", "same_uniform", "crowd_8", "follow_passers_by")
 FOCUS_SETS: Final = {"A": ("follow_passers_by",), "B": ("same_uniform", "crowd_8")}
 """Scenarios for the thesis's sets: a person who leads the robot past others; people dressed alike."""
-COMPARED: Final = (PRINTED_NAME, MATCHING, DEFAULT)
+COMPARED: Final = (attention.PRINTED_NAME, attention.MATCHING, attention.DEFAULT)
 TRACKERS: Final = ("contour", "attentive-printed", "attentive")
 FOLLOWERS: Final = ("attentive", "contour")
 ABSENCES: Final = ("absence_10s", "absence_60s")
@@ -65,7 +46,7 @@ def static_scenes(using: Measurement) -> Samples:
             for seed in seeds
         )
         for group, names in groups.items()
-        for model in (*PRINTED, ROBUST)
+        for model in (*scenes.PRINTED, scenes.ROBUST)
     }
 
 
@@ -74,11 +55,11 @@ def scene_models(using: Measurement) -> Samples:
     plan, result = using.plan, {}
     found = _scenes(using, plan.presets)
     others, chairs = (
-        [name for name in plan.scenes if (name in CHAIRS) == is_chair] for is_chair in (False, True)
+        [name for name in plan.scenes if (name in scenes.CHAIRS) == is_chair] for is_chair in (False, True)
     )
     for preset in plan.presets:
         for group, names in ((preset, others), (f"{preset}, chairs", chairs)):
-            for model in (ADAPT, *OURS) if names else ():
+            for model in (scenes.ADAPT, *scenes.OURS) if names else ():
                 result[Line(group, model)] = as_columns(
                     _scene_scores([found[preset, name, seed] for name in names], model)
                     for seed in range(plan.scene_seeds)
@@ -97,7 +78,9 @@ def _scene_scores(runs: Sequence[Result], model: str) -> Row:
         "mean [mm]": _mean([run["ever"]["mean"] for run in own]),
         "median pixel [mm]": _mean([run["ever"]["median"] for run in own]),
         "known": _mean([run["ever"]["known"] for run in own]),
-        "better than MEAN": _mean([run[model]["clean"]["mean"] < run[MEAN]["clean"]["mean"] for run in runs]),
+        "better than MEAN": _mean(
+            [run[model]["clean"]["mean"] < run[scenes.MEAN]["clean"]["mean"] for run in runs]
+        ),
         "events F1": ratio(2.0 * precision * recall, precision + recall),
         "moved by": ratio(events["named"], events["asked"]),
         "things P": ratio(things[0], things[0] + things[1]),
@@ -126,17 +109,17 @@ def _scenes(using: Measurement, presets: Sequence[str]) -> dict[tuple[str, str, 
 
 def _scene_unit(preset: str, name: str, seed: int) -> Unit:
     """Play a run once; by time of flight all models watch it, by other cameras those that are worth it."""
-    names = (*PRINTED, *OURS) if preset == TOF else (MEAN, ADAPT, *OURS)
+    names = (*scenes.PRINTED, *scenes.OURS) if preset == TOF else (scenes.MEAN, scenes.ADAPT, *scenes.OURS)
     keeps_maps = preset == TOF and seed == 0 and name in _SHOWN
-    scenario = SEQUENCES[name]
+    scenario = scenes.SEQUENCES[name]
     key = f"scene {scenario}-{seed} {preset}{' with maps' if keeps_maps else ''} | {', '.join(names)}"
     return Unit(key, score_scene, (scenario, seed, preset, names, keeps_maps))
 
 
 def score_scene(scenario: str, seed: int, preset: str, names: Sequence[str], keeps_maps: bool) -> Result:
-    """Play a scenario before a depth camera, and score scene models."""
-    played = with_preset(load_scenario(scenario), preset)
-    return watch_scene(played, seed, names, keeps_maps=keeps_maps)
+    """Play a scenario before a depth camera, and score scene scenes."""
+    played = scenes.with_preset(load_scenario(scenario), preset)
+    return scenes.watch_scene(played, seed, names, keeps_maps=keeps_maps)
 
 
 def focus(using: Measurement) -> Samples:
@@ -183,7 +166,7 @@ def focus_variants(using: Measurement) -> Samples:
         Line(name, "measured"): {
             scenario: np.array([_right(run[name]) for run in runs]) for scenario, runs in found.items()
         }
-        for name in CHOICES
+        for name in attention.CHOICES
     }
 
 
@@ -198,7 +181,7 @@ def _focused(using: Measurement) -> dict[str, list[Result]]:
 
 
 def _focus_units(plan: Plan, scenario: str) -> list[Unit]:
-    variants = tuple(CHOICES)
+    variants = tuple(attention.CHOICES)
     return [
         Unit(
             f"focus {scenario}-{seed} {plan.drive_s:g}s | {', '.join(variants)}",
@@ -211,7 +194,7 @@ def _focus_units(plan: Plan, scenario: str) -> list[Unit]:
 
 def score_focus(scenario: str, seed: int, variants: Sequence[str], most_s: float) -> Result:
     """Play a scenario, and direct attention to its people."""
-    return watch_focus(shortened(scenario, most_s), seed, variants)
+    return attention.watch_focus(shortened(scenario, most_s), seed, variants)
 
 
 def absences(using: Measurement) -> Samples:
@@ -244,7 +227,7 @@ def _recognised(runs: Sequence[Mapping[str, Any]]) -> dict[str, Floats]:
 
 def score_absence(scenario: str, seed: int, trackers: Sequence[str]) -> Result:
     """Play a scenario in which a person goes away and comes back, for several trackers."""
-    return watch_absence(load_scenario(scenario), seed, trackers)
+    return attention.watch_absence(load_scenario(scenario), seed, trackers)
 
 
 def followers(using: Measurement) -> Samples:
@@ -271,7 +254,7 @@ def followers(using: Measurement) -> Samples:
 
 def score_follower(scenario: str, seed: int, tracker: str) -> Result:
     """Let a robot follow a person who goes away twice."""
-    return watch_follower(load_scenario(scenario), seed, tracker)
+    return attention.watch_follower(load_scenario(scenario), seed, tracker)
 
 
 def _mean(values: Sequence[float]) -> float:

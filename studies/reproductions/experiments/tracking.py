@@ -12,15 +12,7 @@ import numpy as np
 from peopleboy.scenarios.files.suite import SuiteRun
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.scores.suite_table import Content, add_up
-from peopleboy.studies.reproductions.evaluations.sequence_scores import (
-    CAUSES,
-    RECORDS,
-    STRICT,
-    count_sequence,
-    measure_delay,
-    score_causes,
-    score_sequence,
-)
+from peopleboy.studies.reproductions.evaluations import sequence_scores as scores
 from peopleboy.studies.reproductions.experiment import Jackknife, Line, Samples, Values
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.statistics import PAPER, THESIS
@@ -38,9 +30,9 @@ RULES: Final = {
 """Ways to deal with uncounted people, by what they add to a tracker's name."""
 RATE_HZ: Final = 15
 WORK: Final[Mapping[str, Callable[..., Result]]] = {
-    "track": score_sequence,
-    "delay": measure_delay,
-    "causes": score_causes,
+    "track": scores.score_sequence,
+    "delay": scores.measure_delay,
+    "causes": scores.score_causes,
 }
 """What a tracker does on a sequence, by the word in the unit's key."""
 
@@ -181,12 +173,12 @@ def causes(using: Measurement, **declared: Any) -> Samples:
 
     The first columns say how much that is, as a share of what strictly counts.
     """
-    rules = {f", {way}" if way else "": way for way in CAUSES}
+    rules = {f", {way}" if way else "": way for way in scores.CAUSES}
     listed = list(trials(is_quick=using.plan.is_quick, rules=rules, **declared))
 
     def row(trial: TrackerTrial) -> Row:
         def shares_and_metrics(results: Sequence[Result]) -> list[float]:
-            strict, counted = ([result[name] for result in results] for name in (STRICT, trial.rule))
+            strict, counted = ([result[name] for result in results] for name in (scores.STRICT, trial.rule))
             sums = add_sums(counted)
             kinds = (
                 100 * (1 - sum(one[kind] for one in counted) / max(sum(one[kind] for one in strict), 1))
@@ -239,7 +231,7 @@ def _values(
 
 def count_unit(run: SuiteRun, cache: Path) -> Unit:
     """Render a run and count what it holds."""
-    return Unit(f"film {_run_key(run)}", count_sequence, (run, cache))
+    return Unit(f"film {_run_key(run)}", scores.count_sequence, (run, cache))
 
 
 def sequence_units(trial: TrackerTrial, plan: Plan, repeat: int, work: str = "track") -> list[Unit]:
@@ -261,7 +253,7 @@ def _run_key(run: SuiteRun) -> str:
 def add_sums(results: Sequence[Result]) -> dict[str, Any]:
     """Add the sequences' sums of numerators and denominators, record by record."""
     totals: dict[str, Any] = {}
-    for name, kind in RECORDS.items():
+    for name, kind in scores.RECORDS.items():
         if name in results[0]:
             first, *others = [restored(kind, result[name]) for result in results]
             totals[name] = sum(others, start=first)
