@@ -10,8 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from peopleboy.bad_input import BadInput, found_in
-from peopleboy.scenarios.random_worlds.distribution import Distribution
-from peopleboy.scenarios.random_worlds.narrow import is_number, narrowed
+from peopleboy.scenarios.random_worlds.distribution import Distribution, is_number, narrowed
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.appearance.traits import usual_clothes
 from peopleboy.sim.people.body.clothes import Clothes, random_clothes
@@ -39,7 +38,7 @@ factor on everybody's walking speeds, which stay within 0.1..2.5 m/s; facing, 1 
 at first to where the first person comes in.
 
 Of random worlds there is `world` as well: what they are drawn from, see
-`peopleboy.scenarios.random_worlds.narrow`.
+`peopleboy.scenarios.random_worlds.distribution`.
 """
 
 WORLD: Final = "world"

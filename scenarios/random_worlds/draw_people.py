@@ -8,9 +8,8 @@ from typing import Final
 from peopleboy.scenarios.files.check import Ground
 from peopleboy.scenarios.files.people import PersonSpec
 from peopleboy.scenarios.files.validation import validated
-from peopleboy.scenarios.random_worlds.attempts import Data, rounded
 from peopleboy.scenarios.random_worlds.distribution import Draws
-from peopleboy.scenarios.random_worlds.draw_place import draw_point
+from peopleboy.scenarios.random_worlds.draw_scene import Data, draw_point, rounded
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.places.furniture.thing_kinds import KINDS
 

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from peopleboy.scenarios.random_worlds.attempts import (
+from peopleboy.scenarios.random_worlds.draw_scene import (
     Data,
     colour,
     rounded,

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final
 
-from peopleboy.scenarios.random_worlds.attempts import rounded
+from peopleboy.scenarios.random_worlds.draw_scene import rounded
 from peopleboy.scenarios.random_worlds.random_world import random_world
 from peopleboy.sim.random_streams import stream
 from peopleboy.studies.training.people_learning.crowds import crowded_world

@@ -7,7 +7,7 @@ import pytest
 
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.vector_environment import PeopleBoyVectorEnv
-from peopleboy.scenarios.random_worlds.narrow import narrowed
+from peopleboy.scenarios.random_worlds.distribution import narrowed
 from peopleboy.scenarios.random_worlds.random_world import random_world
 from tests.helpers.calls.refused import refused
 
