@@ -17,7 +17,7 @@ import click
 import numpy as np
 
 from benchmarks import call
-from benchmarks.clips.clip import CHOSEN_BY, Clip, open_clips
+from benchmarks.clips import CHOSEN_BY, Clip, open_clips
 from benchmarks.peers.detectors import Blobs
 from benchmarks.sequences import Recording, print_head, print_row, record
 from peopleboy.scenarios.footage.options import TrackOptions
@@ -124,13 +124,12 @@ class Variant:
     stage: Stage | None = None
     is_calibrated: bool = True
 
-    def tracked(self, film: Recording) -> list[tuple[Track, ...]]:
+    def tracked(self, recording: Recording) -> list[tuple[Track, ...]]:
         """Follow people in all frames."""
         find = None if self.stage is None else thermal_finder(self.stage)
         tracker = DetectionTracker(self.config, find)
-        return [
-            tracker.update(frame) for frame in (film if self.is_calibrated else film.uncalibrated()).frames
-        ]
+        seen = recording if self.is_calibrated else recording.uncalibrated()
+        return [tracker.update(frame) for frame in seen.frames]
 
 
 def _without_doubt(old: ExistenceConfig) -> ExistenceConfig:
@@ -188,29 +187,29 @@ def clip_recording(clip: Clip) -> Recording:
     return Recording(frames, clip.given.truth, boxes_whole=True)
 
 
-def of_worlds(scenes: Sequence[Recording], worlds: Sequence[Recording], variant: Variant) -> list[str]:
+def score_recordings(scenes: Sequence[Recording], worlds: Sequence[Recording], variant: Variant) -> list[str]:
     """Give a row's figures, as `COLUMNS` names them."""
-    library = combine([film.score(variant.tracked(film)) for film in scenes])
-    ways = [(film, variant.tracked(film)) for film in worlds]
-    everybody = combine([film.score(way) for film, way in ways])
-    seen = combine([film.score(way, min_visible=_SEEN) for film, way in ways])
+    library = combine([recording.score(variant.tracked(recording)) for recording in scenes])
+    tracked = [(recording, variant.tracked(recording)) for recording in worlds]
+    everybody = combine([recording.score(tracks) for recording, tracks in tracked])
+    seen = combine([recording.score(tracks, min_visible=_SEEN) for recording, tracks in tracked])
     return [
         f"{library.mot.hota.hota:.1f}",
         f"{library.mot.identity.idf1:.1f}",
         str(library.mot.clear.switches),
         f"{everybody.mot.hota.hota:.1f}",
         f"{seen.mot.hota.hota:.1f}",
-        _false(everybody),
+        _false_per_1000(everybody),
     ]
 
 
-def of_clips(clips: Sequence[Recording], variant: Variant) -> list[str]:
+def score_clips(clips: Sequence[Recording], variant: Variant) -> list[str]:
     """Give a row's figures, as `COLUMNS_OF_CLIPS` names them."""
-    scores = combine([film.score(variant.tracked(film)) for film in clips])
-    return [f"{scores.mot.hota.hota:.1f}", _false(scores)]
+    scores = combine([recording.score(variant.tracked(recording)) for recording in clips])
+    return [f"{scores.mot.hota.hota:.1f}", _false_per_1000(scores)]
 
 
-def _false(scores: Scores) -> str:
+def _false_per_1000(scores: Scores) -> str:
     return f"{1000.0 * scores.counts.false_tracks / scores.counts.frames:.2f}"
 
 
@@ -232,7 +231,8 @@ def main(seed: int, worlds: int, clips: Path | None) -> None:
     columns = (*COLUMNS, *(COLUMNS_OF_CLIPS if real else ()))
     print_head("", columns)
     for name, variant in VARIANTS.items():
-        print_row(name, [*of_worlds(scenes, drawn, variant), *(of_clips(real, variant) if real else ())])
+        of_clips = score_clips(real, variant) if real else []
+        print_row(name, [*score_recordings(scenes, drawn, variant), *of_clips])
 
 
 if __name__ == "__main__":

@@ -18,30 +18,30 @@ from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
 
 
 @pytest.fixture(scope="module")
-def film() -> Recording:
+def recording() -> Recording:
     return record(load_scenario("crossing_2").lasting(1.0), 100)
 
 
 @pytest.mark.slow
-def test_all_looks_together_are_those_of_the_detector(film: Recording) -> None:
+def test_all_looks_together_are_those_of_the_detector(recording: Recording) -> None:
     whole, all_stages = PeopleDetector(least_score=LEAST), DetectorOfStage(Stage.CLOSER_LOOK)
-    for frame in film.frames:
+    for frame in recording.frames:
         grey = frame.grey(THERMAL)
         expected = whole.update(grey, frame.time_s)
         for found, wanted in zip(all_stages.update(grey, frame.time_s), expected, strict=True):
             assert_array_equal(found, wanted)
 
 
-def test_as_it_is_it_is_the_tracker(film: Recording) -> None:
+def test_as_it_is_it_is_the_tracker(recording: Recording) -> None:
     tracker = DetectionTracker()
-    expected = [tracker.update(frame) for frame in film.frames]
-    assert VARIANTS["as it is"].tracked(film) == expected
+    expected = [tracker.update(frame) for frame in recording.frames]
+    assert VARIANTS["as it is"].tracked(recording) == expected
     assert expected[-1]
 
 
-def test_a_threshold_finds_people_by_the_greys_it_was_made_for_alone(film: Recording) -> None:
+def test_a_threshold_finds_people_by_the_greys_it_was_made_for_alone(recording: Recording) -> None:
     find = thermal_finder(Stage.THRESHOLD)
-    frame = film.frames[-1]
+    frame = recording.frames[-1]
     warmer = np.clip(frame.grey(THERMAL).astype(int) + 60, 0, 255).astype(np.uint8)
     assert len(find(frame, NOBODY, everywhere=True).box) >= 1
     assert len(find(replace(frame, images={THERMAL: warmer}), NOBODY, everywhere=True).box) == 0
@@ -51,7 +51,9 @@ def test_every_variant_is_another_tracker() -> None:
     assert len(set(map(repr, VARIANTS.values()))) == len(VARIANTS)
 
 
-def test_what_is_not_known_of_cameras_is_left_out(film: Recording) -> None:
-    assert film.frames[0].calibrations
-    assert not any(frame.calibrations for frame in film.uncalibrated().frames)
-    assert np.shares_memory(film.uncalibrated().frames[0].images[THERMAL], film.frames[0].images[THERMAL])
+def test_what_is_not_known_of_cameras_is_left_out(recording: Recording) -> None:
+    assert recording.frames[0].calibrations
+    assert not any(frame.calibrations for frame in recording.uncalibrated().frames)
+    assert np.shares_memory(
+        recording.uncalibrated().frames[0].images[THERMAL], recording.frames[0].images[THERMAL]
+    )

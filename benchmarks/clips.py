@@ -1,8 +1,9 @@
-"""Let a tracker watch a clip, and score it."""
+"""Real thermal clips with truth, and what trackers, ours or peers, find in them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
 from pathlib import Path
@@ -10,7 +11,6 @@ from typing import Final
 
 import numpy as np
 
-from benchmarks.clips.clip import Clip
 from benchmarks.peers.ours import Contestant, Ours
 from benchmarks.sequences import track_boxes
 from benchmarks.timing import timed_ms
@@ -20,14 +20,80 @@ from peopleboy.scenarios.footage.views import ThermalViews, open_views
 from peopleboy.scenarios.running.engine.task import Tell
 from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
+from peopleboy.tracker.evaluation.mot_files import read_truth
+from peopleboy.tracker.evaluation.sequence import TrueBoxes
+from peopleboy.tracker.footage.pictures import open_footage
+from peopleboy.tracker.footage.truth_files import GivenTruth, find_truth, load_truth
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, is_own
 
+CHOSEN_BY: Final = ("camel_08", "camel_21")
+"""The clips by which values may be chosen; all others are only reported."""
+TRUTH: Final = "gt.txt"
 PEERS: Final = {"HOG x 2 + ByteTrack": 2.0, "HOG x 3 + ByteTrack": 3.0}
 """How many times each enlarges the pictures: HOG sees people from 96 px of the enlarged ones on."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Watched:
+class Clip:
+    """The first frames of a clip.
+
+    Attributes:
+        folder: of the clip; its pictures lie there or in an inner folder such as `thermal`.
+        given: the truth of these frames.
+        frames: how many there are.
+    """
+
+    folder: Path
+    given: GivenTruth
+    frames: int
+
+    @property
+    def name(self) -> str:
+        """The folder's name."""
+        return self.folder.name
+
+
+def open_clips(home: Path, only: Sequence[str] = (), frames: int | None = None) -> list[Clip]:
+    """Open the clips of a folder: those by which values are chosen, then the others, by name.
+
+    Args:
+        home: a folder of clips, each a folder of its own.
+        only: names of clips; none for all.
+        frames: how many of each to take, from the first on; None for all.
+
+    Raises:
+        BadInput: there are no clips, or one that is named is missing or cannot be used.
+    """
+    there = {one.name: one for one in home.iterdir() if find_truth(one) is not None}
+    missing = [name for name in only if name not in there]
+    if missing or not there:
+        told = ", ".join(sorted(there)) or "none"
+        raise BadInput(f"{home}: no clip {' '.join(missing)} with pictures and {TRUTH}; there are: {told}")
+    names = sorted(only or there, key=lambda name: (name not in CHOSEN_BY, name))
+    return [_open(there[name], frames) for name in names]
+
+
+def _open(folder: Path, frames: int | None) -> Clip:
+    path, there = find_truth(folder), open_footage(folder).expected
+    assert path is not None
+    count = there if frames is None else min(frames, there)
+    given = _load(path, there)
+    return Clip(folder, replace(given, truth=_first(given.truth, count)), count)
+
+
+def _load(path: Path, frames: int) -> GivenTruth:
+    """Read truth; what is no person, such as a bicycle, is neither to be found nor wrong to find."""
+    if path.name == TRUTH:
+        return GivenTruth(read_truth(path, keeps_things=True), is_single=False, path=path)
+    return load_truth(path, frames)
+
+
+def _first(truth: TrueBoxes, frames: int) -> TrueBoxes:
+    return truth.take(truth.frame <= frames)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ClipResult:
     """What came of one tracker, one clip and one seed.
 
     Attributes:
@@ -40,7 +106,7 @@ class Watched:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class WatchTask:
+class ClipTask:
     """Let a tracker watch a clip.
 
     Attributes:
@@ -65,13 +131,13 @@ class WatchTask:
         """Frames to watch."""
         return self.clip.frames
 
-    def __call__(self, tell: Tell) -> Watched:
+    def __call__(self, tell: Tell) -> ClipResult:
         """Watch it from the first frame on.
 
         Raises:
             BadInput: the tracker is unknown or wants other cameras, or a picture cannot be used.
         """
-        watcher = make_watcher(self.tracker, self.seed)
+        contestant = make_clip_tracker(self.tracker, self.seed)
         name = DEFAULT_TRACKER if self.tracker in PEERS else self.tracker
         views = open_views(
             TrackOptions(footage=self.clip.folder, out=Path(), tracker=name, rate_hz=self.rate_hz)
@@ -79,14 +145,14 @@ class WatchTask:
         rows: list[tuple[int, int, Floats]] = []
         times_ms = []
         for number, frame in enumerate(islice(views, self.clip.frames), start=1):
-            frame_ms, (boxes, ids) = timed_ms(partial(watcher.step, frame))
+            frame_ms, (boxes, ids) = timed_ms(partial(contestant.step, frame))
             times_ms.append(frame_ms)
             rows += [(number, identity, box) for box, identity in zip(boxes, ids, strict=True)]
             tell(number)
-        return Watched(_scored(self.clip, rows), float(np.median(times_ms)) / 1000.0)
+        return ClipResult(score_clip(self.clip, rows), float(np.median(times_ms)) / 1000.0)
 
 
-def make_watcher(name: str, seed: int) -> Contestant:
+def make_clip_tracker(name: str, seed: int) -> Contestant:
     """Make one of ours, or a peer.
 
     Raises:
@@ -109,6 +175,7 @@ def _peer(name: str) -> Contestant:
     return make_clip_peer(PEERS[name])
 
 
-def _scored(clip: Clip, rows: list[tuple[int, int, Floats]]) -> Scores:
+def score_clip(clip: Clip, rows: list[tuple[int, int, Floats]]) -> Scores:
+    """Score rows of frame, id and box against a clip's truth."""
     tracks = track_boxes((frame, identity, box, 1.0) for frame, identity, box in rows)
     return evaluate(clip.given.truth, tracks, frames=clip.frames, is_single=clip.given.is_single)
