@@ -10,7 +10,7 @@ from typing import Protocol, runtime_checkable
 
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.percept import Percept
-from peopleboy.own_code import blamed, load_own
+from peopleboy.own_code import blamed
 
 # What a behaviour asks of the robot: a forward speed and a turn rate.
 
@@ -108,18 +108,21 @@ class CheckedBehaviour:
             return command
 
 
-def make_own_behaviour(name: str) -> CheckedBehaviour:
-    """Make the behaviour that "module:Class" names, by calling the class without any argument.
+def checked_behaviour(behaviour: object, name: str) -> CheckedBehaviour:
+    """Check that an object is a behaviour, and check each of its answers from then on.
+
+    Args:
+        behaviour: made by a class from outside.
+        name: for messages, such as "behaviour 'my_module:MyBehaviour'".
 
     Raises:
-        BadInput: there is none, or what is there is no behaviour.
+        BadInput: it is no behaviour.
         OwnCodeFailed: its mode, reason or following raised an error.
     """
-    behaviour, who = load_own("behaviour", name, "without an argument")(), f"behaviour {name!r}"
-    with blamed(who):
+    with blamed(name):
         if not isinstance(behaviour, Behaviour):
             raise BadInput("is no behaviour; give it `command(percept)`, `mode`, `reason` and `following`")
-        return CheckedBehaviour(behaviour, who)
+        return CheckedBehaviour(behaviour, name)
 
 
 def _faults(

@@ -1,17 +1,97 @@
-"""Behaviours by name, each under guard."""
+"""The behaviours by name; whatever one commands, the sonars limit."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
 
 from peopleboy.bad_input import BadInput
-from peopleboy.behaviours.behaviour import Behaviour, Command, make_own_behaviour
-from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig, FollowCorridor
-from peopleboy.behaviours.following.follow_person import FollowConfig, FollowPerson
-from peopleboy.behaviours.patrol import Patrol
-from peopleboy.behaviours.safety_guard import Guarded
-from peopleboy.behaviours.safety_limits import SafetyConfig
-from peopleboy.behaviours.scripted import Scripted, Stand
+from peopleboy.own_code import guarded, load_own
+from peopleboy.registry import Registry
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from peopleboy.behaviours.behaviour import Behaviour, Command
+    from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig
+    from peopleboy.behaviours.following.follow_person import FollowConfig
+    from peopleboy.behaviours.safety_guard import Guarded
+    from peopleboy.behaviours.safety_limits import SafetyConfig
+
+BEHAVIOURS: Final = Registry("behaviour", "peopleboy.behaviours")
+"""The behaviours by name. One that PeopleBoy ships is called with `BehaviourSettings`, others without any.
+
+A behaviour is registered by decorating the function below that makes it.
+"""
+SCRIPTED: Final = "scripted"
+"""The behaviour that only a scenario file can ask for, as it tells the commands."""
+
+_CALL: Final = "without an argument"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BehaviourSettings:
+    """What a scenario says about its behaviour.
+
+    Attributes:
+        script: pairs of a time [s] and the command from then on.
+        follow: gains and limits of following a person; None for the defaults.
+        corridor: sense, gains and limits of following a corridor; None for the defaults.
+    """
+
+    script: Sequence[tuple[float, Command]] = ()
+    follow: FollowConfig | None = None
+    corridor: CorridorConfig | None = None
+
+
+@BEHAVIOURS.register("stand", summary="leaves it where it is")
+def _stand(settings: BehaviourSettings) -> Behaviour:  # noqa: ARG001
+    from peopleboy.behaviours.scripted import Stand
+
+    return Stand()
+
+
+@BEHAVIOURS.register(
+    "follow_person",
+    summary="finds a person and follows, up to where that person looks as tall as `keep_height` says",
+)
+def _follow_person(settings: BehaviourSettings) -> Behaviour:
+    from peopleboy.behaviours.following.follow_person import FollowPerson
+
+    return FollowPerson(settings.follow)
+
+
+@BEHAVIOURS.register(
+    "follow_corridor",
+    summary="keeps to the middle of a corridor, turns at its end, and waits for people in the way",
+)
+def _follow_corridor(settings: BehaviourSettings) -> Behaviour:
+    from peopleboy.behaviours.corridor.follow_corridor import FollowCorridor
+
+    return FollowCorridor(settings.corridor)
+
+
+@BEHAVIOURS.register(
+    "patrol",
+    summary="follows a corridor until a person turns up, follows that person for a while, and returns",
+)
+def _patrol(settings: BehaviourSettings) -> Behaviour:
+    from peopleboy.behaviours.corridor.follow_corridor import FollowCorridor
+    from peopleboy.behaviours.patrol import Patrol
+
+    return Patrol(FollowCorridor(settings.corridor), settings.follow)
+
+
+@BEHAVIOURS.register(SCRIPTED, summary="drives as `commands` says")
+def _scripted(settings: BehaviourSettings) -> Behaviour:
+    from peopleboy.behaviours.scripted import Scripted
+
+    return Scripted(settings.script)
+
+
+def is_own(name: str) -> bool:
+    """Whether a name is that of a behaviour from outside: "module:Class", or one of another package."""
+    return ":" in name or BEHAVIOURS.is_plugged_in(name)
 
 
 def make_behaviour(
@@ -25,8 +105,7 @@ def make_behaviour(
     """Make a behaviour by its name; whatever it commands, the sonars limit.
 
     Args:
-        name: "stand", "follow_person", "follow_corridor", "patrol" or "scripted"; or "module:Class", a class
-            of your own, which is called without an argument.
+        name: one of `BEHAVIOURS`; or "module:Class", a class of your own that is called without arguments.
         script: for "scripted", pairs of a time [s] and the command from then on.
         follow: for "follow_person", its gains and limits.
         corridor: for "follow_corridor", its sense, gains and limits.
@@ -35,16 +114,17 @@ def make_behaviour(
     Raises:
         BadInput: there is no such behaviour, or the script's times do not rise.
     """
+    from peopleboy.behaviours.behaviour import checked_behaviour
+    from peopleboy.behaviours.safety_guard import Guarded
+
     if ":" in name:
-        return Guarded(make_own_behaviour(name), safety)
-    makers: dict[str, Callable[[], Behaviour]] = {
-        "stand": Stand,
-        "follow_person": lambda: FollowPerson(follow),
-        "follow_corridor": lambda: FollowCorridor(corridor),
-        "patrol": lambda: Patrol(FollowCorridor(corridor), follow),
-        "scripted": lambda: Scripted(script),
-    }
-    if name not in makers:
-        known = ", ".join(sorted(makers))
+        own = load_own("behaviour", name, _CALL)()
+        return Guarded(checked_behaviour(own, f"behaviour {name!r}"), safety)
+    if name not in BEHAVIOURS:
+        known = ", ".join(sorted(BEHAVIOURS))
         raise BadInput(f"behaviour: unknown name '{name}'; there are {known}, and your own as module:Class")
-    return Guarded(makers[name](), safety)
+    if is_own(name):
+        made = guarded("behaviour", name, _CALL, BEHAVIOURS[name])()
+        return Guarded(checked_behaviour(made, f"behaviour {name!r}"), safety)
+    settings = BehaviourSettings(script=script, follow=follow, corridor=corridor)
+    return Guarded(BEHAVIOURS[name](settings), safety)

@@ -1,36 +1,25 @@
-"""The trackers by name, and what anything must do to be one."""
+"""The trackers by name, and the protocol that a tracker implements."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from functools import partial
-from typing import Final, Protocol, runtime_checkable
-
-import numpy as np
+from typing import TYPE_CHECKING, Final, Protocol, runtime_checkable
 
 from peopleboy.bad_input import BadInput
-from peopleboy.own_code import load_own
-from peopleboy.tracker.attention.attend import PersonModel
-from peopleboy.tracker.attention.attention_config import PRINTED as PRINTED_ATTENTION
-from peopleboy.tracker.attention.people.attentive_config import AS_FOUND
-from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
-from peopleboy.tracker.attention.people.recogniser import ByColour, ByFocus, ColourLook, Spotted
-from peopleboy.tracker.contour.contour_tracker import ContourTracker
-from peopleboy.tracker.contour.variants import VARIANTS
-from peopleboy.tracker.frame import Calibration, Frame
-from peopleboy.tracker.fusion.fused_tracker import FusedTracker, ThermalDepthTracker
-from peopleboy.tracker.fusion.fusion_config import FusionConfig
-from peopleboy.tracker.fusion.handover_tracker import HandoverTracker
-from peopleboy.tracker.fusion.visibility import is_warm
-from peopleboy.tracker.panoramic.paper.appearance_file import shipped_models
-from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicPaperTracker
-from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
-from peopleboy.tracker.panoramic.people.place_file import load_places
-from peopleboy.tracker.rgbd.rgbd_config import PRINTED, RgbdConfig
-from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
-from peopleboy.tracker.rgbd.verification.window_model import shipped_windows
-from peopleboy.tracker.track import Box, Track
-from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
+from peopleboy.own_code import guarded, load_own
+from peopleboy.registry import Registry
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import numpy as np
+
+    from peopleboy.tracker.contour.contour_tracker import ContourTracker
+    from peopleboy.tracker.frame import Calibration, Frame
+    from peopleboy.tracker.fusion.fused_tracker import FusedTracker
+    from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
+    from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
+    from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
+    from peopleboy.tracker.track import Box, Track
 
 
 @runtime_checkable
@@ -69,9 +58,12 @@ class ChecksCameras(Protocol):
         ...
 
 
-Factory = Callable[[np.random.Generator], Tracker]
-"""Makes a tracker that draws all that is random from the generator."""
+TRACKERS: Final = Registry("tracker", "peopleboy.trackers")
+"""The trackers by name; each is called with a `numpy.random.Generator`. The first is the default.
 
+A tracker is registered by decorating the function below that makes it. These functions import what they
+need, so that asking for one tracker, or for the names, does not load all of them.
+"""
 
 DETECTION_TRACKER: Final = "detection"
 CONTOUR_TRACKER: Final = "contour"
@@ -97,67 +89,224 @@ def knows_again(tracker: Tracker) -> bool:
 
 
 def _contour_tracker(name: str, rng: np.random.Generator) -> ContourTracker:
+    from peopleboy.tracker.contour.contour_tracker import ContourTracker
+    from peopleboy.tracker.contour.variants import VARIANTS
+
     return ContourTracker(VARIANTS[name], rng)
 
 
-def _by_detection_tracker(rng: np.random.Generator) -> DetectionTracker:  # noqa: ARG001
-    return DetectionTracker()
+def _panoramic_tracker() -> PanoramicTracker:
+    from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
+    from peopleboy.tracker.panoramic.people.place_file import load_places
 
-
-def _panoramic_paper_tracker(rng: np.random.Generator) -> PanoramicPaperTracker:  # noqa: ARG001
-    return PanoramicPaperTracker(shipped_models())
-
-
-def _panoramic_tracker(rng: np.random.Generator) -> PanoramicTracker:  # noqa: ARG001
     return PanoramicTracker(*load_places())
 
 
-def _handover_tracker(rng: np.random.Generator) -> HandoverTracker:
-    return HandoverTracker(_contour_tracker(CONTOUR_TRACKER, rng), _panoramic_tracker(rng))
-
-
 def _rgbd_tracker(config: RgbdConfig, rng: np.random.Generator) -> RgbdTracker:
+    from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
+    from peopleboy.tracker.rgbd.verification.window_model import shipped_windows
+
     return RgbdTracker(config, shipped_windows(sees_depth=config.sees_depth), rng)
 
 
 def _fused_tracker(rng: np.random.Generator) -> FusedTracker:
-    by_heat, by_depth = rng.spawn(2)
-    thermal = _contour_tracker(CONTOUR_TRACKER, by_heat)
-    rgbd = RgbdTracker(RgbdConfig(), shipped_windows(sees_depth=True), by_depth, is_warm)
-    return FusedTracker(ThermalDepthTracker(thermal, rgbd, FusionConfig()), _panoramic_tracker(rng))
+    from peopleboy.tracker.fusion.fused_tracker import FusedTracker, ThermalDepthTracker
+    from peopleboy.tracker.fusion.fusion_config import FusionConfig
+    from peopleboy.tracker.fusion.visibility import is_warm
+    from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
+    from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
+    from peopleboy.tracker.rgbd.verification.window_model import shipped_windows
+
+    thermal_rng, depth_rng = rng.spawn(2)
+    thermal = _contour_tracker(CONTOUR_TRACKER, thermal_rng)
+    rgbd = RgbdTracker(RgbdConfig(), shipped_windows(sees_depth=True), depth_rng, is_warm)
+    return FusedTracker(ThermalDepthTracker(thermal, rgbd, FusionConfig()), _panoramic_tracker())
 
 
-def _attentive_tracker(rng: np.random.Generator) -> AttentiveTracker[ColourLook, ColourLook]:
+@TRACKERS.register(
+    DETECTION_TRACKER,
+    scope="the default: any camera, any room, recorded video",
+    summary="A detector that has seen nothing but rendered random worlds proposes people, and a Kalman "
+    "filter in metres follows each. No temperature matters, only contrast; colours tell who came "
+    "back.",
+)
+def _detection(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
+    from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
+
+    return DetectionTracker()
+
+
+@TRACKERS.register(
+    CONTOUR_TRACKER,
+    scope="thesis, chapters 4 to 7, and beyond",
+    summary="Particles, contour, colour and thermal looks. People who overlap are sorted by depth, those "
+    "in front are explained away, hidden people walk on. It knows how the robot moved.",
+)
+def _contour(rng: np.random.Generator) -> Tracker:
+    return _contour_tracker(CONTOUR_TRACKER, rng)
+
+
+@TRACKERS.register(
+    "learned",
+    scope="the same, taught",
+    summary="The same, but who is in front is told by the classifier that `peopleboy train-occlusion` "
+    "learned.",
+)
+def _learned(rng: np.random.Generator) -> Tracker:
+    return _contour_tracker("learned", rng)
+
+
+@TRACKERS.register(
+    "thesis",
+    scope="thesis, chapters 4 to 7",
+    summary="As it is written: independent filters, colour moments, occlusion handling by a boosted "
+    "classifier of who is in front.",
+)
+def _thesis(rng: np.random.Generator) -> Tracker:
+    return _contour_tracker("thesis", rng)
+
+
+@TRACKERS.register(
+    "thermal",
+    scope="thesis, chapters 4 and 5",
+    summary="Thermal image alone.",
+)
+def _thermal(rng: np.random.Generator) -> Tracker:
+    return _contour_tracker("thermal", rng)
+
+
+@TRACKERS.register(
+    "colour",
+    scope="thesis, chapters 4 to 6",
+    summary="With colour, without occlusion handling.",
+)
+def _colour(rng: np.random.Generator) -> Tracker:
+    return _contour_tracker("colour", rng)
+
+
+@TRACKERS.register(
+    "paper",
+    scope="the 2005 paper",
+    summary="Its measurement model, its 30 % best samples, three frames to detect.",
+)
+def _paper(rng: np.random.Generator) -> Tracker:
+    return _contour_tracker("paper", rng)
+
+
+@TRACKERS.register(
+    "panoramic-paper",
+    scope="the 2003 paper",
+    summary="One person all round a standing robot, by the panoramic camera alone: background "
+    "subtraction, a network for the distance, which `peopleboy train-distance` trains, a Kalman "
+    "filter on the floor.",
+)
+def _panoramic_paper(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
+    from peopleboy.tracker.panoramic.paper.appearance_file import shipped_models
+    from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicPaperTracker
+
+    return PanoramicPaperTracker(shipped_models())
+
+
+@TRACKERS.register(
+    "panoramic",
+    scope="the 2003 paper, and beyond",
+    summary="Several people all round a robot that stands or drives, by the panoramic camera alone: a "
+    "learned foreground, a learned reading of where people stand and how sure that is, colours by "
+    "height.",
+)
+def _panoramic(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
+    return _panoramic_tracker()
+
+
+@TRACKERS.register(
+    "handover",
+    scope="thesis, section 8.2",
+    summary="`contour` for what is warm ahead and `panoramic` for all round it, which point people out to "
+    "each other: a person keeps one number from the thermal image through the panorama and back.",
+)
+def _handover(rng: np.random.Generator) -> Tracker:
+    from peopleboy.tracker.fusion.handover_tracker import HandoverTracker
+
+    return HandoverTracker(_contour_tracker(CONTOUR_TRACKER, rng), _panoramic_tracker())
+
+
+@TRACKERS.register(
+    "rgbd",
+    scope="the situation-awareness thesis, chapter 4, and beyond",
+    summary="People on the floor by a depth camera with colour, standing or driving: what has the size of "
+    "a human and looks like one, and a particle filter for each of them.",
+)
+def _rgbd(rng: np.random.Generator) -> Tracker:
+    from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
+
+    return _rgbd_tracker(RgbdConfig(), rng)
+
+
+@TRACKERS.register(
+    "rgbd-printed",
+    scope="the situation-awareness thesis, chapter 4",
+    summary="The same as it is printed, where it is.",
+)
+def _rgbd_printed(rng: np.random.Generator) -> Tracker:
+    from peopleboy.tracker.rgbd.rgbd_config import PRINTED
+
+    return _rgbd_tracker(PRINTED, rng)
+
+
+@TRACKERS.register(
+    "fused",
+    scope="both theses, and beyond",
+    summary="`contour` and `rgbd` at once, and `panoramic` where that camera is mounted: thermal says "
+    "warm, depth says where, colour says who. It goes on with the cameras that are left, and in "
+    "the dark.",
+)
+def _fused(rng: np.random.Generator) -> Tracker:
+    return _fused_tracker(rng)
+
+
+@TRACKERS.register(
+    "attentive",
+    scope="the situation-awareness thesis, chapter 5, and beyond",
+    summary="`contour`, which learns what everybody looks like, and gives who comes back the old number, "
+    "however long the person was away; whoever is not known stays a stranger. A robot that "
+    "follows searches on until it sees its person again.",
+)
+def _attentive(rng: np.random.Generator) -> Tracker:
+    from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
+    from peopleboy.tracker.attention.people.recogniser import ByColour
+
     return AttentiveTracker(_contour_tracker(CONTOUR_TRACKER, rng), ByColour())
 
 
-def _attentive_printed_tracker(rng: np.random.Generator) -> AttentiveTracker[PersonModel, Spotted]:
-    return AttentiveTracker(_contour_tracker(CONTOUR_TRACKER, rng), ByFocus(PRINTED_ATTENTION), AS_FOUND)
+@TRACKERS.register(
+    "attentive-printed",
+    scope="the situation-awareness thesis, chapter 5",
+    summary="The same, but people are known by the attention of that chapter as it is printed.",
+)
+def _attentive_printed(rng: np.random.Generator) -> Tracker:
+    from peopleboy.tracker.attention.attention_config import PRINTED
+    from peopleboy.tracker.attention.people.attentive_config import AS_FOUND
+    from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
+    from peopleboy.tracker.attention.people.recogniser import ByFocus
+
+    return AttentiveTracker(_contour_tracker(CONTOUR_TRACKER, rng), ByFocus(PRINTED), AS_FOUND)
 
 
-def _attentive_fused_tracker(rng: np.random.Generator) -> AttentiveTracker[ColourLook, ColourLook]:
+@TRACKERS.register(
+    "attentive-fused",
+    scope="all of these",
+    summary="`fused`, whose people are known again like those of `attentive`, by every camera of colours.",
+)
+def _attentive_fused(rng: np.random.Generator) -> Tracker:
+    from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
+    from peopleboy.tracker.attention.people.recogniser import ByColour
+
     return AttentiveTracker(_fused_tracker(rng), ByColour())
 
 
-TRACKERS: Final[dict[str, Factory]] = {
-    DETECTION_TRACKER: _by_detection_tracker,
-    **{name: partial(_contour_tracker, name) for name in VARIANTS},
-    "panoramic-paper": _panoramic_paper_tracker,
-    "panoramic": _panoramic_tracker,
-    "handover": _handover_tracker,
-    "rgbd": partial(_rgbd_tracker, RgbdConfig()),
-    "rgbd-printed": partial(_rgbd_tracker, PRINTED),
-    "fused": _fused_tracker,
-    "attentive": _attentive_tracker,
-    "attentive-printed": _attentive_printed_tracker,
-    "attentive-fused": _attentive_fused_tracker,
-}
-"""Each tracker's factory by name; the first is the default. Whoever has a further one adds it here."""
-
-
 def is_own(name: str) -> bool:
-    """Tell whether a tracker of that name is one of your own, "module:Class"."""
-    return ":" in name
+    """Whether a name is that of a tracker from outside: "module:Class", or one of another package."""
+    return ":" in name or TRACKERS.is_plugged_in(name)
 
 
 def make_tracker(name: str, rng: np.random.Generator) -> Tracker:
@@ -168,16 +317,21 @@ def make_tracker(name: str, rng: np.random.Generator) -> Tracker:
     Raises:
         BadInput: there is none of that name, or what is there is no tracker.
     """
-    if is_own(name):
-        return _own_tracker(name, rng)
+    if ":" in name:
+        return _checked(name, load_own("tracker", name, _CALL)(rng))
     if name not in TRACKERS:
         known = ", ".join(TRACKERS)
         raise BadInput(f"unknown tracker {name!r}; there are: {known}, and your own as module:Class")
-    return TRACKERS[name](rng)
+    if is_own(name):
+        return _checked(name, guarded("tracker", name, _CALL, TRACKERS[name])(rng))
+    shipped: Tracker = TRACKERS[name](rng)
+    return shipped
 
 
-def _own_tracker(name: str, rng: np.random.Generator) -> Tracker:
-    tracker = load_own("tracker", name, "with a numpy.random.Generator")(rng)
+_CALL: Final = "with a numpy.random.Generator"
+
+
+def _checked(name: str, tracker: object) -> Tracker:
     if not isinstance(tracker, Tracker):
         raise BadInput(f"tracker {name!r}: is no tracker; give it `cameras` and `update(frame)`")
     cameras = tracker.cameras

@@ -12,12 +12,11 @@ from pathlib import Path
 import click
 from click.shell_completion import CompletionItem
 
-TRACKER_NAMES = (
-    "detection", "contour", "learned", "thesis", "colour", "thermal", "paper", "panoramic-paper",
-    "panoramic", "handover", "rgbd", "rgbd-printed", "fused", "attentive", "attentive-printed",
-    "attentive-fused",
-)  # fmt: skip
-BEHAVIOUR_NAMES = ("stand", "follow_person", "follow_corridor", "patrol")
+from peopleboy.behaviours.registry import BEHAVIOURS, SCRIPTED
+from peopleboy.tracker.trackers import TRACKERS
+
+TRACKER_NAMES = tuple(TRACKERS.shipped)
+BEHAVIOUR_NAMES = tuple(name for name in BEHAVIOURS.shipped if name != SCRIPTED)
 
 _HOME = Path(__file__).parents[1]
 _Complete = Callable[[click.Context, click.Parameter, str], list[CompletionItem]]

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from peopleboy.scenarios.commands.options import BOXES, Number, tell_note
-from peopleboy.scenarios.export.formats import format_names
+from peopleboy.scenarios.export.formats import FORMATS
 
 
 class FormatName(click.Choice[str]):
@@ -21,7 +21,7 @@ class FormatName(click.Choice[str]):
     @cached_property
     def choices(self) -> tuple[str, ...]:  # type: ignore[override]
         """All names."""
-        return format_names()
+        return tuple(FORMATS)
 
 
 @click.command()

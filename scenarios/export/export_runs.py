@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.export.formats import format_names, load_writer, takes
+from peopleboy.scenarios.export.formats import FORMATS, takes
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.export.splits import by_split
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
@@ -32,7 +32,7 @@ def export(
 
     Args:
         runs: which.
-        form: name of the format, one of `format_names`.
+        form: name of the format, one of `FORMATS`.
         out: the folder to leave.
         play: gives a run's ticks, as `replay` does.
         camera: whose images and boxes, for a format of one camera; None for its usual one.
@@ -50,7 +50,7 @@ def export(
             f"--least-px {least_px:g}: {form} has everybody of whom a pixel is visible; leave it out"
         )
     if boxes is not None and not takes(form, "boxes"):
-        having = [name for name in format_names() if takes(name, "boxes")]
+        having = [name for name in FORMATS if takes(name, "boxes")]
         raise BadInput(f"--boxes {boxes}: only {', '.join(having)} has boxes of either; leave it out")
     about: dict[str, Any] = {"format": form, "runs": [run.name for run in runs], "versions": versions()}
     splits = {split: [run.name for run in own] for split, own in by_split(runs).items() if split}
@@ -58,7 +58,7 @@ def export(
     asked: dict[str, Any] = {"camera": camera, "least_px": least_px, "boxes": boxes}
     chosen = {name: value for name, value in asked.items() if value is not None}
     with whole_folder(out, about | chosen, overwrite=overwrite) as folder:
-        load_writer(form)(runs, folder, play, **chosen)
+        FORMATS[form](runs, folder, play, **chosen)
 
 
 def notes_on(

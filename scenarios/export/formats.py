@@ -6,54 +6,41 @@ this table, `write(runs, folder, play)`, and is offered under the entry point's 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from functools import cache
+from collections.abc import Callable
 from importlib import import_module
 from inspect import signature
 from typing import Any, Final
 
 from peopleboy.bad_input import BadInput
+from peopleboy.registry import Entry, Registry
 
-FORMATS: Final[Mapping[str, str]] = {
-    "mot": "peopleboy.scenarios.export.mot:write_mot",
-    "coco": "peopleboy.scenarios.export.coco:write_coco",
-    "images": "peopleboy.scenarios.export.camera_images:write_label_images",
-    "yolo": "peopleboy.scenarios.export.yolo:write_yolo",
-    "yolo-pose": "peopleboy.scenarios.export.yolo:write_yolo_pose",
-    "viper": "peopleboy.scenarios.export.viper:write_viper",
-    "mcap": "peopleboy.scenarios.export.ros_bag:write_mcap",
-    "mp4": "peopleboy.scenarios.export.video:write_mp4",
-}
-GROUP: Final = "peopleboy.exports"
+_HERE: Final = "peopleboy.scenarios.export"
 
 Writer = Callable[..., None]
 
-
-@cache
-def format_names() -> tuple[str, ...]:
-    """Name all formats, those of other packages last."""
-    return tuple(dict.fromkeys((*FORMATS, *_entry_points())))
-
-
-def load_writer(name: str) -> Writer:
-    """Load the function that writes a format; its further parameters are the options that it takes."""
-    if name not in FORMATS:
-        writer: Writer = _entry_points()[name].load()
-        return writer
-    module, _, function = FORMATS[name].partition(":")
-    own: Writer = getattr(import_module(module), function)
-    return own
+FORMATS: Final = Registry(
+    "export format",
+    "peopleboy.exports",
+    {
+        "mot": Entry(f"{_HERE}.mot:write_mot", "MOTChallenge, for TrackEval"),
+        "coco": Entry(f"{_HERE}.coco:write_coco", "masks, boxes, keypoints"),
+        "images": Entry(
+            f"{_HERE}.camera_images:write_label_images",
+            "beside every image, who is at each pixel, which part of the body, and true depth",
+        ),
+        "yolo": Entry(f"{_HERE}.yolo:write_yolo", "boxes, for Ultralytics"),
+        "yolo-pose": Entry(f"{_HERE}.yolo:write_yolo_pose", "boxes and keypoints, for Ultralytics"),
+        "viper": Entry(f"{_HERE}.viper:write_viper", "ViPER XML"),
+        "mcap": Entry(f"{_HERE}.ros_bag:write_mcap", "ROS 2 bags"),
+        "mp4": Entry(f"{_HERE}.video:write_mp4", "films"),
+    },
+)
+"""The formats by name; each is called with `(runs, folder, play)`; further parameters are its options."""
 
 
 def takes(name: str, option: str) -> bool:
     """Tell whether a format has an option: `camera`, `least_px` or `boxes`."""
-    return option in signature(load_writer(name)).parameters
-
-
-def _entry_points() -> Mapping[str, Any]:
-    from importlib.metadata import entry_points  # here, as it takes a tenth of a second
-
-    return {entry.name: entry for entry in entry_points(group=GROUP)}
+    return option in signature(FORMATS[name]).parameters
 
 
 def need(package: str, form: str) -> Any:

@@ -26,6 +26,7 @@ from peopleboy.sim.places.floor_plan import FloorPlan, Rectangle
 from peopleboy.sim.places.furniture.place_things import describe_floor, name_things
 from peopleboy.sim.places.furniture.thing_kinds import KINDS
 from peopleboy.sim.places.place import Place
+from peopleboy.tracker.trackers import TRACKERS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -192,8 +193,6 @@ def _check_behaviour(robot: RobotSpec) -> None:
 
 
 def _check_tracker(name: str) -> None:
-    from peopleboy.tracker.trackers import TRACKERS  # here, as they take a second to load
-
     if name not in (*TRACKERS, ORACLE):
         known = ", ".join((*TRACKERS, ORACLE))
         raise BadInput(f"unknown name {name!r}; there are {known}", key=("tracker",))

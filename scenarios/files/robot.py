@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Any, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 from pydantic import Field, model_validator
 
 from peopleboy.bad_input import BadInput, found_in
+from peopleboy.behaviours.registry import BEHAVIOURS
 from peopleboy.scenarios.files.validation import GivenCamera
 from peopleboy.settings import Degrees, Point, Seconds
 from peopleboy.sim.cameras.kinds import check_rate, colour_from_thermal, configure_camera
@@ -43,6 +44,12 @@ class CommandSpec:
     ] = 0.0
 
 
+if TYPE_CHECKING:
+    BehaviourName = str
+else:
+    BehaviourName = Literal[tuple(BEHAVIOURS.shipped)]  # which no type checker can read
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotSpec:
     """The robot: where it starts and what it does."""
@@ -50,13 +57,10 @@ class RobotSpec:
     at_m: Annotated[Point, Field(description="where it starts")]
     heading_deg: Annotated[Degrees, Field(description="where it looks at the start")] = 0.0
     behaviour: Annotated[
-        Literal["stand", "follow_person", "follow_corridor", "patrol", "scripted"],
+        BehaviourName,
         Field(
-            description="what drives it: `stand`, nothing does; `follow_person` finds a person and follows, "
-            "up to where that person looks as tall as `keep_height` says; `follow_corridor` keeps to the "
-            "middle of a corridor, turns at its end, and waits for people in the way; `patrol` follows a "
-            "corridor until a person turns up, follows that person for a while, and returns; `scripted` "
-            "drives as `commands` says"
+            description="what drives it: "
+            + "; ".join(f"`{name}` {entry.summary}" for name, entry in BEHAVIOURS.shipped.items())
         ),
     ] = "stand"
     commands: Annotated[

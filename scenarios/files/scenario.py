@@ -13,7 +13,7 @@ from peopleboy.behaviours.behaviour import Behaviour, Command
 from peopleboy.behaviours.corridor.corridor_from_image import CameraView
 from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig
 from peopleboy.behaviours.following.follow_person import FollowConfig
-from peopleboy.behaviours.registry import make_behaviour
+from peopleboy.behaviours.registry import is_own, make_behaviour
 from peopleboy.scenarios.files.check import Ground, check_scenario, make_ground
 from peopleboy.scenarios.files.drives import KEPT, Repeat, pack_drive, read_drive
 from peopleboy.scenarios.files.own_files import read_own_files
@@ -161,9 +161,9 @@ class Scenario:
             BadInput: there is no such behaviour.
         """
         make_behaviour(behaviour)  # refuses an unknown name
-        if ":" in behaviour:
+        if is_own(behaviour):
             return replace(self, drive=None, own_behaviour=behaviour)
-        robot = replace(self.robot, behaviour=behaviour)  # type: ignore[arg-type]  # it was made above
+        robot = replace(self.robot, behaviour=behaviour)
         return replace(self, spec=replace(self.spec, robot=robot), drive=None, own_behaviour=None)
 
     def moved_by(self, physics: PhysicsName | str) -> Scenario:

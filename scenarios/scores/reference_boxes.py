@@ -79,7 +79,7 @@ def kind_of_boxes(folder: Path, camera: str, tracker: str | None, said: BoxKind)
         tracker: its name; None for one that is not told by its name.
         said: of the run.
     """
-    if tracker not in TRACKERS or camera == THERMAL:
+    if tracker not in TRACKERS.shipped or camera == THERMAL:
         return said
     config = cameras_of(folder).get(camera)
     is_round = config is not None and math.isfinite(around_px(config.camera))

@@ -59,9 +59,22 @@ def load_own(what: str, name: str, call: str) -> Callable[..., Any]:
     if not hasattr(found, member):
         raise BadInput(f"{what} {name!r}: there is no {member!r} in {home}")
 
-    def make(*arguments: object) -> Any:
+    return guarded(what, name, call, lambda *arguments: getattr(found, member)(*arguments))
+
+
+def guarded(what: str, name: str, call: str, make: Callable[..., Any]) -> Callable[..., Any]:
+    """Let a function of a user's own, which makes one of these, fail with one line that names it.
+
+    Args:
+        what: what it makes, such as "tracker".
+        name: by which the user chose it.
+        call: how it is called, for messages, such as "with no argument".
+        make: the function or class.
+    """
+
+    def make_guarded(*arguments: object) -> Any:
         try:
-            return getattr(found, member)(*arguments)
+            return make(*arguments)
         except BadInput as error:
             raise BadInput(f"{what} {name!r}: {error}") from error
         except Exception as error:
@@ -69,7 +82,7 @@ def load_own(what: str, name: str, call: str) -> Callable[..., Any]:
                 f"{what} {name!r}: cannot be made; it is called {call}: {in_one_line(error)}"
             ) from error
 
-    return make
+    return make_guarded
 
 
 class Terminated(SystemExit):

@@ -16,6 +16,7 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rerun.chunk import RrdReader
 
+from peopleboy.registry import Entry
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.finished_run import open_run
@@ -211,7 +212,7 @@ class Floor:
 def test_a_tracker_that_wants_depth_is_given_the_usual_camera_and_finds_the_floor(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setitem(TRACKERS, "floor", Floor)
+    monkeypatch.setitem(TRACKERS.shipped, "floor", Entry(Floor))
     monkeypatch.setattr(Floor, "heights", [])
     make_run(SCENE | {"duration_s": 0.4, "things": []}, tmp_path / "run", "--tracker", "floor")
     told = json.loads((tmp_path / "run" / "run.json").read_text(encoding="utf-8"))

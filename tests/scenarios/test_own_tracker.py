@@ -16,6 +16,7 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rerun.chunk import RrdReader
 
+from peopleboy.registry import Entry
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import thermal_box
 from peopleboy.scenarios.running.run import RunOptions
@@ -60,7 +61,7 @@ STANDING = SCENE | {
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(TRACKERS, "reckoner", Reckoner)
+        patch.setitem(TRACKERS.shipped, "reckoner", Entry(Reckoner))
         folder = tmp_path_factory.mktemp("own") / "run"
         make_run(STANDING, folder)
         assert run_cli("run", folder.parent / "standing.yaml", "--out", folder, "--overwrite") == 0
@@ -91,7 +92,7 @@ class Seer(Reckoner):
 def test_who_is_in_no_image_is_nobody_to_find_and_no_false_alarm(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setitem(TRACKERS, "reckoner", Seer)
+    monkeypatch.setitem(TRACKERS.shipped, "reckoner", Entry(Seer))
     robot = {
         name: value for name, value in STANDING["robot"].items() if name not in ("commands", "behaviour")
     }
@@ -180,8 +181,8 @@ def test_a_camera_that_it_wants_is_mounted_and_nothing_else_changes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(KINDS, "rear", replace(KINDS["thermal"], config=RearConfig))
-    monkeypatch.setitem(TRACKERS, "peeping", Peeping)
-    monkeypatch.setitem(TRACKERS, "reckoner", Reckoner)
+    monkeypatch.setitem(TRACKERS.shipped, "peeping", Entry(Peeping))
+    monkeypatch.setitem(TRACKERS.shipped, "reckoner", Entry(Reckoner))
     plain = make_run(STANDING, tmp_path / "plain")
     more = make_run(STANDING, tmp_path / "more", "--tracker", "peeping")
     assert json.loads((more / "run.json").read_text(encoding="utf-8"))["mounted_for_tracker"] == ["rear"]
@@ -215,8 +216,8 @@ class Everywhen(Reckoner):
 def test_boxes_are_scored_in_frames_in_which_a_slow_camera_took_an_image(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setitem(TRACKERS, "everywhen", Everywhen)
-    monkeypatch.setitem(TRACKERS, "reckoner", Reckoner)
+    monkeypatch.setitem(TRACKERS.shipped, "everywhen", Entry(Everywhen))
+    monkeypatch.setitem(TRACKERS.shipped, "reckoner", Entry(Reckoner))
     cameras = STANDING["robot"].get("cameras", {}) | {"slow": {"kind": "thermal", "rate_hz": 5}}
     scene = STANDING | {"robot": STANDING["robot"] | {"cameras": cameras}}
     run = make_run(scene, tmp_path / "run", "--tracker", "everywhen")
@@ -229,7 +230,7 @@ def test_boxes_are_scored_in_frames_in_which_a_slow_camera_took_an_image(
 def test_a_camera_of_which_there_is_no_kind_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setitem(TRACKERS, "peeping", Peeping)
+    monkeypatch.setitem(TRACKERS.shipped, "peeping", Entry(Peeping))
     (tmp_path / "standing.yaml").write_text(
         yaml.safe_dump(STANDING | {"robot": SCENE["robot"]}), encoding="utf-8"
     )

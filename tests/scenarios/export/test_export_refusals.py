@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from peopleboy.scenarios.export import coco, formats
-from peopleboy.scenarios.export.formats import FORMATS, format_names, load_writer, takes
+from peopleboy.scenarios.export import coco
+from peopleboy.scenarios.export.formats import FORMATS, takes
 from peopleboy.scenarios.run_folder.output import whole_folder
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names
@@ -23,19 +23,9 @@ def copy(run: Path, to: Path) -> Path:
 
 
 def test_every_format_has_a_writer() -> None:
-    assert all(callable(load_writer(name)) for name in FORMATS)
+    assert all(callable(FORMATS[name]) for name in FORMATS)
     assert [name for name in FORMATS if takes(name, "boxes")] == ["mot"]
     assert [name for name in FORMATS if takes(name, "least_px")] == ["yolo", "yolo-pose"]
-
-
-def test_other_packages_add_formats(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Entry:
-        def load(self) -> object:
-            return shutil.copy
-
-    monkeypatch.setattr(formats, "_entry_points", lambda: {"own": Entry()})
-    assert format_names.__wrapped__() == (*FORMATS, "own")
-    assert load_writer("own") is shutil.copy
 
 
 def test_bad_input_is_one_line(crossing: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

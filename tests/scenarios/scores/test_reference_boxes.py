@@ -11,6 +11,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from peopleboy.registry import Entry
 from peopleboy.scenarios.report.findings.highlights import headline
 from peopleboy.scenarios.report.findings.run_findings import analyse_run
 from peopleboy.scenarios.run_folder.finished_run import open_run
@@ -186,7 +187,7 @@ def test_who_gives_boxes_in_another_image_alone_is_scored_there_and_told_so(
 ) -> None:
     text = (seen / "truth" / "colour.gt.txt").read_text(encoding="utf-8")
     monkeypatch.setattr(Colourist, "rows", tuple(line.split(",") for line in text.splitlines()))
-    monkeypatch.setitem(TRACKERS, "colourist", Colourist)
+    monkeypatch.setitem(TRACKERS.shipped, "colourist", Entry(Colourist))
     run = make_run(SEEN, seen.parent / "colour", "--tracker", "colourist")
     told = capsys.readouterr()
     assert "People were found in 100 % of" in told.out
