@@ -46,7 +46,8 @@ CONTENTS: Final = {
 }
 """Columns of the thesis's table 3.1."""
 
-Row = Callable[[Sequence[Result]], Sequence[float]]
+Row = Callable[[Sequence[Result], str], Sequence[float]]
+"""Gives the columns of some sequences' results, counted by a rule."""
 Record = TypeVar("Record", bound=Sums)
 
 
@@ -137,31 +138,24 @@ def tracking(
         declared: as `trials` takes it.
     """
     names = METRICS[metrics] if isinstance(metrics, str) else tuple(metrics)
-    listed = list(trials(is_quick=using.plan.is_quick, rules=RULES if rules == "all" else None, **declared))
 
-    def row(trial: TrackerTrial) -> Row:
-        return lambda results: [
-            metric(add_sums([one[trial.rule] for one in results]), name) for name in names
-        ]
+    def row(results: Sequence[Result], rule: str) -> list[float]:
+        sums = add_sums([one[rule] for one in results])
+        return [metric(sums, name) for name in names]
 
-    return _measured(using, listed, "track", names, row)
+    return _measured(using, declared, "track", names, row, RULES if rules == "all" else None)
 
 
 def delay(using: Measurement, **declared: Any) -> Samples:
     """Measure how many frames trackers need to find a person in plain view, once they are started."""
 
-    def row(_: TrackerTrial) -> Row:
-        return _delays
+    def row(results: Sequence[Result], _: str) -> list[float]:
+        needed = [frames for result in results for frames in result["needed"]]
+        starts = sum(result["starts"] for result in results)
+        frames = float(np.mean(needed)) if needed else float("nan")
+        return [frames, frames / RATE_HZ, 100 * len(needed) / max(starts, 1)]
 
-    listed = list(trials(is_quick=using.plan.is_quick, **declared))
-    return _measured(using, listed, "delay", ("frames", "s", "found in 2 s [%]"), row)
-
-
-def _delays(results: Sequence[Result]) -> list[float]:
-    needed = [frames for result in results for frames in result["needed"]]
-    starts = sum(result["starts"] for result in results)
-    frames = float(np.mean(needed)) if needed else float("nan")
-    return [frames, frames / RATE_HZ, 100 * len(needed) / max(starts, 1)]
+    return _measured(using, declared, "delay", ("frames", "s", "found in 2 s [%]"), row)
 
 
 BOXES, PEOPLE = "boxes aside [%]", "people aside [%]"
@@ -173,59 +167,53 @@ def causes(using: Measurement, **declared: Any) -> Samples:
 
     The first columns say how much that is, as a share of what strictly counts.
     """
+
+    def row(results: Sequence[Result], way: str) -> list[float]:
+        strict, counted = ([result[name] for result in results] for name in (scores.STRICT, way))
+        sums = add_sums(counted)
+        aside = (
+            100 * (1 - sum(one[kind] for one in counted) / max(sum(one[kind] for one in strict), 1))
+            for kind in ("boxes", "people")
+        )
+        return [*aside, *(metric(sums, name) for name in _OF_CAUSES)]
+
     rules = {f", {way}" if way else "": way for way in scores.CAUSES}
-    listed = list(trials(is_quick=using.plan.is_quick, rules=rules, **declared))
-
-    def row(trial: TrackerTrial) -> Row:
-        def shares_and_metrics(results: Sequence[Result]) -> list[float]:
-            strict, counted = ([result[name] for result in results] for name in (scores.STRICT, trial.rule))
-            sums = add_sums(counted)
-            kinds = (
-                100 * (1 - sum(one[kind] for one in counted) / max(sum(one[kind] for one in strict), 1))
-                for kind in ("boxes", "people")
-            )
-            return [*kinds, *(metric(sums, name) for name in _OF_CAUSES)]
-
-        return shares_and_metrics
-
-    return _measured(using, listed, "causes", (BOXES, PEOPLE, *_OF_CAUSES), row)
+    return _measured(using, declared, "causes", (BOXES, PEOPLE, *_OF_CAUSES), row, rules)
 
 
 def _measured(
     using: Measurement,
-    listed: Sequence[TrackerTrial],
+    declared: Mapping[str, Any],
     work: str,
     names: Sequence[str],
-    row: Callable[[TrackerTrial], Row],
+    row: Row,
+    rules: Mapping[str, str] | None = None,
 ) -> Samples:
     """Render the sequences, then run all trackers on them, and take each repeat's sequences together."""
     plan = using.plan
-    using.results(count_unit(run, plan.cache) for trial in listed for run in plan.runs(trial.suites))
-    units = {
-        (repeat, trial): sequence_units(trial, plan, repeat, work)
-        for repeat in range(plan.repeats)
-        for trial in listed
-    }
-    found = using.grouped(units)
+    lines = list(trials(is_quick=plan.is_quick, rules=rules, **declared))
+    using.results(count_unit(run, plan.cache) for trial in lines for run in plan.runs(trial.suites))
+    repeats = range(plan.repeats)
+    found = using.grouped(
+        {(k, trial): sequence_units(trial, plan, k, work) for k in repeats for trial in lines}
+    )
     return {
-        trial.line: _values(
-            [found[repeat, trial] for repeat in range(plan.repeats)], trial.suites, names, row(trial)
-        )
-        for trial in listed
+        trial.line: _values([found[k, trial] for k in range(plan.repeats)], trial, names, row)
+        for trial in lines
     }
 
 
 def _values(
-    repeats: Sequence[Sequence[Result]], suites: tuple[str, ...], names: Sequence[str], row: Row
+    repeats: Sequence[Sequence[Result]], trial: TrackerTrial, names: Sequence[str], row: Row
 ) -> dict[str, Values]:
     """Return each column's value per repeat; of a single repeat also those without each sequence."""
     first, *others = repeats
     if others or len(first) == 1:
-        return dict(zip(names, np.array([row(results) for results in repeats]).T, strict=True))
-    without = np.array([row([*first[:k], *first[k + 1 :]]) for k in range(len(first))])
+        return dict(zip(names, np.array([row(one, trial.rule) for one in repeats]).T, strict=True))
+    without = np.array([row([*first[:k], *first[k + 1 :]], trial.rule) for k in range(len(first))])
     return {
-        name: Jackknife(float(whole), rest, suites)
-        for name, whole, rest in zip(names, row(first), without.T, strict=True)
+        name: Jackknife(float(whole), rest, trial.suites)
+        for name, whole, rest in zip(names, row(first, trial.rule), without.T, strict=True)
     }
 
 
