@@ -104,7 +104,7 @@ class GroupSpec(_Variations):
         )
 
 
-def cast(
+def resolve_person(
     person: PersonSpec,
     seed: int,
     can_walk: Callable[[PersonSpec], bool],
@@ -113,7 +113,7 @@ def cast(
     """Decide everything about a person that the file leaves to the seed.
 
     Each person has random streams of its own, so that another person in the file changes nothing for it.
-    What the file says stays; the result has nothing left to draw, and casting it again returns it.
+    What the file says stays; the result has nothing left to draw, and resolving it again returns it.
 
     Args:
         person: as in the file.
@@ -143,7 +143,7 @@ def make_config(person: PersonSpec) -> PersonConfig:
     return PersonConfig(**given | {"clothes": Clothes(**person.clothes or {})})
 
 
-def tell_apart(people: Sequence[PersonSpec], rng: np.random.Generator) -> tuple[PersonSpec, ...]:
+def assign_distinct_colours(people: Sequence[PersonSpec], rng: np.random.Generator) -> tuple[PersonSpec, ...]:
     """Give each person a top and a bottom of colours that no other one wears, as far as there are colours.
 
     Colours that a person has already stay, and are not avoided by others. With more than eight people the

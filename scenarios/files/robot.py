@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from peopleboy.bad_input import BadInput, found_in
 from peopleboy.behaviours.registry import BEHAVIOURS
 from peopleboy.scenarios.files.validation import GivenCamera
-from peopleboy.settings import Degrees, Point, Seconds
+from peopleboy.settings import Point, Seconds, meaning_of
 from peopleboy.sim.cameras.kinds import check_rate, colour_from_thermal, configure_camera
 from peopleboy.sim.config import CONTROL_HZ
 from peopleboy.sim.robot.robot_config import RobotConfig
@@ -54,8 +54,8 @@ else:
 class RobotSpec:
     """The robot: where it starts and what it does."""
 
-    at_m: Annotated[Point, Field(description="where it starts")]
-    heading_deg: Annotated[Degrees, Field(description="where it looks at the start")] = 0.0
+    at_m: Annotated[Point, meaning_of(RobotConfig, "at_m")]
+    heading_deg: Annotated[float, meaning_of(RobotConfig, "heading_rad")] = 0.0
     behaviour: Annotated[
         BehaviourName,
         Field(

@@ -17,7 +17,7 @@ from peopleboy.behaviours.registry import is_own, make_behaviour
 from peopleboy.scenarios.files.check import Ground, check_scenario, make_ground
 from peopleboy.scenarios.files.drives import KEPT, Repeat, pack_drive, read_drive
 from peopleboy.scenarios.files.own_files import read_own_files
-from peopleboy.scenarios.files.people import PersonSpec, cast, make_config, tell_apart
+from peopleboy.scenarios.files.people import PersonSpec, assign_distinct_colours, make_config, resolve_person
 from peopleboy.scenarios.files.robot import RobotSpec
 from peopleboy.scenarios.files.scenario_file import DrawnSpec, ScenarioSpec, to_data
 from peopleboy.sim.cameras.kinds import KINDS, flat_geometry
@@ -96,10 +96,11 @@ class Scenario:
             raise BadInput(f"seed {seed} must be 0 or more")
         people = tuple(person for _, person in _everybody(self.spec))
         if self.spec.clothes_differ:
-            people = tell_apart(people, stream(seed, "scenario.colours"))
+            people = assign_distinct_colours(people, stream(seed, "scenario.colours"))
         air_c = air_of(self.place) if self.spec.detail == "full" else None
         return tuple(
-            cast(person, seed, lambda one: self.ground.fault(one) is None, air_c) for person in people
+            resolve_person(person, seed, lambda one: self.ground.fault(one) is None, air_c)
+            for person in people
         )
 
     def world(self, seed: int, renderer: str = "raycast") -> WorldConfig:

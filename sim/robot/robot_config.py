@@ -5,7 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Annotated
 
+from pydantic import Field
+
+from peopleboy.settings import IN_DEGREES, Point, Share
 from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, ThermalConfig
 from peopleboy.sim.cameras.kinds import check_cameras
 from peopleboy.sim.named import Named
@@ -16,45 +20,51 @@ class SonarConfig:
     """The ring of 16 sonars.
 
     Positions and angles: ARIA's robot parameter file peoplebot-sh.p, SonarUnit 0..15.
-
-    Attributes:
-        nearest_m, farthest_m: [m] range; nothing within it reads farthest_m.
-        cone_rad: [rad] full opening angle of a sonar's beam.
-        noise_m: [m] standard deviation of a reading.
-        drop_out: share of readings that are lost and read farthest_m.
-        height_m: [m] of the ring above the floor.
     """
 
-    nearest_m: float = 0.15
-    farthest_m: float = 5.0
-    cone_rad: float = math.radians(15.0)
-    noise_m: float = 0.01
-    drop_out: float = 0.01
-    height_m: float = 0.25
+    nearest_m: Annotated[float, Field(ge=0.0, description="shortest distance that a sonar reads")] = 0.15
+    farthest_m: Annotated[
+        float, Field(gt=0.0, description="longest distance; a sonar with nothing in its range reads this one")
+    ] = 5.0
+    cone_rad: Annotated[
+        float, IN_DEGREES, Field(gt=0.0, le=90.0, description="full opening angle of a sonar's beam")
+    ] = math.radians(15.0)
+    noise_m: Annotated[float, Field(ge=0.0, description="standard deviation of a reading")] = 0.01
+    drop_out: Annotated[Share, Field(description="share of readings that are lost and read farthest_m")] = (
+        0.01
+    )
+    height_m: Annotated[float, Field(ge=0.0, description="of the ring above the floor")] = 0.25
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DriveConfig:
-    """Limits of the differential drive, and the noise of its wheel encoders.
+    """Limits of the differential drive, and the noise of its wheel encoders."""
 
-    Attributes:
-        max_linear_m_s: [m/s] forward speed limit.
-        max_angular_rad_s: [rad/s] turn rate limit.
-        linear_acceleration_m_s2: [m/s2] rate at which the forward speed changes.
-        angular_acceleration_rad_s2: [rad/s2] rate at which the turn rate changes.
-        emergency_m_s2, emergency_rad_s2: [m/s2], [rad/s2] rates at which the speeds fall in an emergency
-            stop; the robot, which is tall and has its castor behind, lifts its tail when it brakes harder.
-        encoder_noise_m: [m] standard deviation of the way that a wheel's encoder counts on 1 m; it grows with
-            the square root of the way.
-    """
-
-    max_linear_m_s: float = 0.8
-    max_angular_rad_s: float = math.radians(150.0)
-    linear_acceleration_m_s2: float = 0.6
-    angular_acceleration_rad_s2: float = math.radians(200.0)
-    emergency_m_s2: float = 2.2
-    emergency_rad_s2: float = math.radians(400.0)
-    encoder_noise_m: float = 0.002
+    max_linear_m_s: Annotated[float, Field(ge=0.0, description="forward speed limit")] = 0.8
+    max_angular_rad_s: Annotated[float, Field(ge=0.0, description="turn rate limit [rad/s]")] = math.radians(
+        150.0
+    )
+    linear_acceleration_m_s2: Annotated[
+        float, Field(gt=0.0, description="rate at which the forward speed changes [m/s2]")
+    ] = 0.6
+    angular_acceleration_rad_s2: Annotated[
+        float, Field(gt=0.0, description="rate at which the turn rate changes [rad/s2]")
+    ] = math.radians(200.0)
+    # The robot is tall and has its castor behind: it lifts its tail when it brakes harder than this.
+    emergency_m_s2: Annotated[
+        float, Field(gt=0.0, description="rate at which the forward speed falls in an emergency stop [m/s2]")
+    ] = 2.2
+    emergency_rad_s2: Annotated[
+        float, Field(gt=0.0, description="rate at which the turn rate falls in an emergency stop [rad/s2]")
+    ] = math.radians(400.0)
+    encoder_noise_m: Annotated[
+        float,
+        Field(
+            ge=0.0,
+            description="standard deviation of the distance that a wheel's encoder counts on 1 m; it grows "
+            "with the square root of the distance",
+        ),
+    ] = 0.002
 
     @property
     def limits(self) -> tuple[float, float]:
@@ -76,19 +86,17 @@ class DriveConfig:
 class RobotConfig:
     """The robot: where it starts and what it carries.
 
-    Attributes:
-        at_m: [m] start on the floor, world frame.
-        heading_rad: [rad] start heading, 0 along x, positive to the left.
-        cameras: by name, in their order; one of them is the thermal camera `thermal`.
-
     Raises:
         BadInput: the cameras cannot be told apart, or there is no thermal one.
     """
 
-    at_m: tuple[float, float] = (0.0, 0.0)
-    heading_rad: float = 0.0
+    at_m: Annotated[Point, Field(description="where it starts")] = (0.0, 0.0)
+    heading_rad: Annotated[
+        float, IN_DEGREES, Field(ge=-720.0, le=720.0, description="where it looks at the start")
+    ] = 0.0
     drive: DriveConfig = field(default_factory=DriveConfig)
     sonar: SonarConfig = field(default_factory=SonarConfig)
+    # In this order; one of them is the thermal camera `thermal`.
     cameras: Mapping[str, CameraConfig] = field(
         default_factory=lambda: {"thermal": ThermalConfig(), "colour": ColourConfig()}
     )

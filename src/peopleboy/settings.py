@@ -174,7 +174,8 @@ def _settings_of(config: Any) -> tuple[Setting, ...]:
 def meaning_of(config: type[Any], field: str) -> FieldInfo:
     """Return limits and meaning of a field, for another class that has the same setting."""
     hint = get_type_hints(config, include_extras=True)[field]
-    return next(entry for entry in _unwrapped(hint)[1] if isinstance(entry, FieldInfo))
+    about = (entry for entry in _unwrapped(hint)[1] if isinstance(entry, FieldInfo))
+    return next(entry for entry in about if entry.description)
 
 
 def with_keys(config: C, given: Mapping[str, Any]) -> C:
