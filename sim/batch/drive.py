@@ -1,8 +1,7 @@
-"""The wheels of many robots, driven together."""
+"""The robots of many worlds: one control step of their wheels, with the people whom they may run into."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -13,18 +12,14 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.batch.joined_worlds import JoinedWorlds, slice_world
 from peopleboy.sim.batch.people import BatchWalks
-from peopleboy.sim.geometry.vectors import remainder
 from peopleboy.sim.physics.kinematic import Kinematic
-from peopleboy.sim.physics.solid_shapes import Array, Placements, Solids, refresh
-from peopleboy.sim.physics.vehicle import Vehicle, push_out, roll
-from peopleboy.sim.robot.peoplebot import Gears, approach
-from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M, WHEEL_RADIUS_M, wheel_speeds
+from peopleboy.sim.physics.solid_shapes import Array, Placements, refresh
+from peopleboy.sim.physics.vehicle import Motion, Vehicle, advance
+from peopleboy.sim.robot.peoplebot import Gears, approach_target, count_travel
+from peopleboy.sim.robot.robot_body import WHEEL_RADIUS_M, wheel_speeds
 from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.world import World
 
-# One control step of the robots of many worlds, with the people whom they may run into (numba kernels).
-
-_approach = njit(cache=True)(approach)
 _wheel_speeds = njit(cache=True)(wheel_speeds)
 
 
@@ -75,31 +70,37 @@ def drive_step(
     for row in range(len(active)):
         world = active[row]
         bodies, solids = slice_world(joined, world)
+        own, motion, robot = joined.own[world], _motion_of(joined.motion, world), _gears_of(gears, world)
         first, end = joined.first_body[world], joined.first_body[world + 1]
         met = np.zeros(end - first, np.bool_)
         for k in range(steps):
-            _set_wheels(gears, world, dt_s, joined.motion.speeds[world])
+            if approach_target(robot, dt_s):
+                left, right = _wheel_speeds(robot.command[0], robot.command[1])
+                motion.speeds[0], motion.speeds[1] = left / WHEEL_RADIUS_M, right / WHEEL_RADIUS_M
             _move_people(people, world, (k + 1) / steps, bodies)
             refresh(bodies, solids)
             met[:] = False
-            _roll(joined, world, vehicle, bodies, solids, dt_s, met)
+            advance(vehicle, motion, bodies, solids, own, dt_s, met)
             for body in range(end - first):
                 touched[first + body] |= met[body]
-        bodies.stale[joined.own[world]] = True
-        _count(gears, world, noise_m[row], joined.motion.angles[world])
+        bodies.stale[own] = True
+        count_travel(robot, motion.angles, noise_m[row])
         _put_people(people, world, bodies)
 
 
 @njit(cache=True)
-def _set_wheels(gears: Gears, world: int, dt_s: float, speeds: Array) -> None:
-    """Move the speeds towards those to be reached; see `PeopleBot.drive`."""
-    command, target, rise = gears.command[world], gears.target[world], gears.rise[world]
-    if command[0] == target[0] and command[1] == target[1]:
-        return
-    for k in range(2):
-        command[k] = _approach(command[k], target[k], rise[k] * dt_s)
-    left, right = _wheel_speeds(command[0], command[1])
-    speeds[0], speeds[1] = left / WHEEL_RADIUS_M, right / WHEEL_RADIUS_M
+def _motion_of(motion: Motion, world: int) -> Motion:
+    return Motion(
+        motion.pose[world], motion.angles[world], motion.speeds[world], motion.velocity[world]
+    )  # fmt: skip
+
+
+@njit(cache=True)
+def _gears_of(gears: Gears, world: int) -> Gears:
+    return Gears(
+        gears.command[world], gears.target[world], gears.rise[world], gears.turned[world],
+        gears.odometry[world],
+    )  # fmt: skip
 
 
 @njit(cache=True)
@@ -127,53 +128,6 @@ def _place(bodies: Placements, body: int, x: float, y: float, z: float) -> None:
     place[0], place[1], place[2] = x, y, z
     place[3], place[4], place[5], place[6] = 0.0, 0.0, 0.0, 1.0
     bodies.stale[body] = True
-
-
-@njit(cache=True)
-def _roll(
-    joined: JoinedWorlds,
-    world: int,
-    vehicle: Vehicle,
-    bodies: Placements,
-    solids: Solids,
-    dt_s: float,
-    met: NDArray[np.bool_],
-) -> None:
-    """Let a vehicle roll for one physics step; see `Kinematic.step`.
-
-    Its own parts stay behind until the last one, as it passes through itself.
-    """
-    motion, own = joined.motion, joined.own[world]
-    pose, speeds = motion.pose[world], motion.speeds[world]
-    x, y, heading = pose[0], pose[1], pose[2]
-    roll(vehicle, pose, speeds[0], speeds[1], dt_s)
-    push_out(vehicle, pose, bodies, solids, own, met)
-    for k in range(2):
-        motion.angles[world, k] += speeds[k] * dt_s
-    dx, dy, turn = pose[0] - x, pose[1] - y, pose[2] - heading
-    velocity = motion.velocity[world]
-    velocity[0], velocity[1], velocity[2] = dx / dt_s, dy / dt_s, remainder(turn) / dt_s
-    if dx != 0.0 or dy != 0.0 or turn != 0.0:
-        place = bodies.places[own]
-        place[:] = 0.0
-        place[0], place[1] = pose[0], pose[1]
-        place[5], place[6] = math.sin(pose[2] / 2.0), math.cos(pose[2] / 2.0)
-
-
-@njit(cache=True)
-def _count(gears: Gears, world: int, noise_m: Array, angles: Array) -> None:
-    """Integrate what the encoders counted; see `PeopleBot.update_odometry`."""
-    rims = np.empty(2)
-    for k in range(2):
-        travelled = (angles[k] - gears.turned[world, k]) * WHEEL_RADIUS_M
-        rims[k] = travelled + noise_m[k] * math.sqrt(abs(travelled))
-        gears.turned[world, k] = angles[k]
-    turn, advance = (rims[1] - rims[0]) / WHEEL_DISTANCE_M, (rims[0] + rims[1]) / 2.0
-    odometry = gears.odometry[world]
-    middle = odometry[2] + turn / 2.0
-    odometry[0] += advance * math.cos(middle)
-    odometry[1] += advance * math.sin(middle)
-    odometry[2] = remainder(odometry[2] + turn)
 
 
 class BatchDrive:

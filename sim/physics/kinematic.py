@@ -22,9 +22,9 @@ from peopleboy.sim.physics.vehicle import (
     Motion,
     State,
     Vehicle,
+    advance,
     make_vehicle,
-    push_out,
-    roll,
+    place_on_floor,
     wheels_of,
 )
 from peopleboy.sim.shapes.shape_table import VisualShape, as_given
@@ -42,19 +42,14 @@ class _Rolling:
         vehicle: its outline and its wheels.
         joints: names of the left and the right wheel's.
         wheels: numbers of their parts.
-        pose: (3,) x, y [m], heading [rad].
-        angles, speeds: (2,) [rad], [rad/s] of the wheels.
-        velocity: (3,) [m/s], [m/s], [rad/s] in the last step, world frame.
+        motion: how it stands and moves.
     """
 
     body: int
     vehicle: Vehicle
     joints: tuple[str, str]
     wheels: tuple[int, int]
-    pose: Matrix
-    angles: Matrix
-    speeds: Matrix
-    velocity: Matrix
+    motion: Motion
 
 
 class Kinematic:
@@ -127,10 +122,7 @@ class Kinematic:
                 vehicle=make_vehicle(name, links),
                 joints=(links[left].joint, links[right].joint),
                 wheels=(first + left, first + right),
-                pose=np.zeros(3),
-                angles=np.zeros(2),
-                speeds=np.zeros(2),
-                velocity=np.zeros(3),
+                motion=Motion(np.zeros(3), np.zeros(2), np.zeros(2), np.zeros(3)),
             )
         self._add_body(name, position, orientation)
         for link in links:
@@ -144,9 +136,10 @@ class Kinematic:
         if rolling is not None and rolling.body == number:
             x, y, z, w = orientation
             heading = math.atan2(2.0 * (x * y + z * w), 1.0 - 2.0 * (y * y + z * z))
-            rolling.pose[:] = position[0], position[1], heading
-            rolling.velocity[:] = 0.0
-            self._place_vehicle(rolling)
+            rolling.motion.pose[:] = position[0], position[1], heading
+            rolling.motion.velocity[:] = 0.0
+            place_on_floor(rolling.motion.pose, self._places[number])
+            self._mark(number)
             return
         self._places[number] = (*position, *orientation)
         self._mark(number)
@@ -177,32 +170,25 @@ class Kinematic:
         rolling = self._rolling
         if rolling is None:
             return
-        before = rolling.pose.copy()
-        left, right = rolling.speeds.tolist()
-        roll(rolling.vehicle, rolling.pose, left, right, self._dt_s)
-        push_out(rolling.vehicle, rolling.pose, bodies, solids, rolling.body, self._touched)
-        rolling.angles += rolling.speeds * self._dt_s
-        moved = rolling.pose - before
-        rolling.velocity[:] = moved[0], moved[1], math.remainder(moved[2], math.tau)
-        rolling.velocity /= self._dt_s
-        if moved.any():
-            self._place_vehicle(rolling)
+        own = rolling.body
+        if advance(rolling.vehicle, rolling.motion, bodies, solids, own, self._dt_s, self._touched):
+            self._mark(own)
 
     def set_joint_speeds(self, name: str, speeds: Mapping[str, float], max_torque_nm: float) -> None:
         """Let wheels turn at speeds [rad/s] from the next step on, at any positive torque."""
         rolling = self._vehicle_called(name, speeds)
         for joint, speed in speeds.items():
-            rolling.speeds[rolling.joints.index(joint)] = speed if max_torque_nm > 0.0 else 0.0
+            rolling.motion.speeds[rolling.joints.index(joint)] = speed if max_torque_nm > 0.0 else 0.0
 
     def joint_states(self, name: str, joints: Sequence[str]) -> tuple[Matrix, Matrix]:
         """See `Physics.joint_states`."""
         rolling = self._vehicle_called(name, joints)
         chosen = [rolling.joints.index(joint) for joint in joints]
-        return rolling.angles[chosen], rolling.speeds[chosen]
+        return rolling.motion.angles[chosen], rolling.motion.speeds[chosen]
 
     def velocity(self, name: str) -> tuple[Matrix, Matrix]:
         """See `Physics.velocity`; that of the base frame's origin."""
-        x, y, turn = self._vehicle_called(name, ()).velocity.tolist()
+        x, y, turn = self._vehicle_called(name, ()).motion.velocity.tolist()
         return np.array([x, y, 0.0]), np.array([0.0, 0.0, turn])
 
     def parts(self) -> tuple[PartKey, ...]:
@@ -219,7 +205,7 @@ class Kinematic:
         bodies, _ = self._up_to_date()
         poses = bodies.poses.copy()
         if self._rolling is not None:
-            turn_wheels(poses, np.array(self._rolling.wheels, np.int64), self._rolling.angles)
+            turn_wheels(poses, np.array(self._rolling.wheels, np.int64), self._rolling.motion.angles)
         return poses
 
     @property
@@ -271,16 +257,15 @@ class Kinematic:
         assert self._rolling is not None
         bodies, solids = self._up_to_date()
         rolling = self._rolling
-        motion = Motion(rolling.pose, rolling.angles, rolling.speeds, rolling.velocity)
-        return State(bodies, solids, motion, rolling.vehicle, rolling.body)
+        return State(bodies, solids, rolling.motion, rolling.vehicle, rolling.body)
 
     def rebind(self, state: State) -> None:
         """Keep all that is in the world in other arrays from now on, which hold the same already."""
         assert self._rolling is not None
-        bodies, rolling = state.bodies, self._rolling
+        bodies = state.bodies
         self._packed = bodies, state.solids
         self._places, self._hidden, self._stale = bodies.places, bodies.hidden, bodies.stale
-        rolling.pose, rolling.angles, rolling.speeds, rolling.velocity = state.motion
+        self._rolling.motion = state.motion
 
     def _check_new(self, name: str) -> None:
         if name in self._numbers:
@@ -325,11 +310,6 @@ class Kinematic:
             poses=np.zeros((len(self._parts), 4, 4)),
         )
         return bodies, make_solids(self._solid)
-
-    def _place_vehicle(self, rolling: _Rolling) -> None:
-        x, y, heading = rolling.pose.tolist()
-        self._places[rolling.body] = x, y, 0.0, 0.0, 0.0, math.sin(heading / 2.0), math.cos(heading / 2.0)
-        self._mark(rolling.body)
 
     def _mark(self, number: int) -> None:
         self._stale[number] = self._is_stale = True

@@ -11,6 +11,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.sim.geometry.angles import remainder
 from peopleboy.sim.physics.footprints import (
     APART,
     MOST_POINTS,
@@ -129,6 +130,54 @@ _MESH = int(ShapeKind.MESH)
 _PLANE = int(ShapeKind.PLANE)
 
 Contact = tuple[float, float, float, float, float]  # depth, normal x and y, where x and y; world frame
+
+
+@njit(cache=True, nogil=True)
+def advance(
+    vehicle: Vehicle,
+    motion: Motion,
+    bodies: Placements,
+    solids: Solids,
+    own: int,
+    dt_s: float,
+    touched: NDArray[np.bool_],
+) -> bool:
+    """Let a vehicle roll for one physics step, and push it out of what it is in.
+
+    Its parts stay where they were until they are refreshed, as it passes through itself.
+
+    Args:
+        vehicle: what it is.
+        motion: changed in place.
+        bodies: up to date; the vehicle's place is changed.
+        solids: up to date.
+        own: number of the vehicle's body.
+        dt_s: [s] length of the step.
+        touched: (B,) gets True for the bodies that it touches.
+
+    Returns:
+        Whether it has moved.
+    """
+    pose, speeds, velocity = motion.pose, motion.speeds, motion.velocity
+    x, y, heading = pose[0], pose[1], pose[2]
+    roll(vehicle, pose, speeds[0], speeds[1], dt_s)
+    push_out(vehicle, pose, bodies, solids, own, touched)
+    for k in range(2):
+        motion.angles[k] += speeds[k] * dt_s
+    dx, dy, turn = pose[0] - x, pose[1] - y, pose[2] - heading
+    velocity[0], velocity[1], velocity[2] = dx / dt_s, dy / dt_s, remainder(turn) / dt_s
+    has_moved = dx != 0.0 or dy != 0.0 or turn != 0.0
+    if has_moved:
+        place_on_floor(pose, bodies.places[own])
+    return bool(has_moved)
+
+
+@njit(cache=True, nogil=True)
+def place_on_floor(pose: Array, place: Array) -> None:
+    """Write the place (7,) of a body, position and quaternion, that stands at a pose (3,) on the floor."""
+    place[:] = 0.0
+    place[0], place[1] = pose[0], pose[1]
+    place[5], place[6] = math.sin(pose[2] / 2.0), math.cos(pose[2] / 2.0)
 
 
 @njit(cache=True, nogil=True)

@@ -6,10 +6,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
+from peopleboy.sim.geometry.vectors import remainder
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.physics.physics import Physics
 from peopleboy.sim.random_streams import stream
@@ -97,33 +99,14 @@ class PeopleBot:
 
     def drive(self, dt_s: float) -> None:
         """Move the wheel speeds towards the command, as far as the acceleration limits allow in dt_s."""
-        gears = self._gears
-        command, target = gears.command.tolist(), gears.target.tolist()
-        if command == target:
-            return
-        rises = gears.rise.tolist()
-        gears.command[:] = [
-            approach(now, goal, rise * dt_s) for now, goal, rise in zip(command, target, rises, strict=True)
-        ]
-        self._turn_wheels()
+        if approach_target(self._gears, dt_s):
+            self._turn_wheels()
 
     def update_odometry(self) -> None:
         """Integrate what the wheel encoders counted since the last call, with their noise."""
-        gears, angles, noise = self._gears, self._wheel_angles(), np.empty(2)
-        travelled = (angles - gears.turned) * WHEEL_RADIUS_M
-        gears.turned[:] = angles
+        noise = np.empty(2)
         self.draw_noise(noise)
-        noise *= self._limits.encoder_noise_m
-        left, right = (travelled + noise * np.sqrt(np.abs(travelled))).tolist()
-        turn = (right - left) / WHEEL_DISTANCE_M
-        x, y, heading = gears.odometry.tolist()
-        middle = heading + turn / 2.0
-        advance = (left + right) / 2.0
-        gears.odometry[:] = (
-            x + advance * math.cos(middle),
-            y + advance * math.sin(middle),
-            math.remainder(heading + turn, math.tau),
-        )
+        count_travel(self._gears, self._wheel_angles(), noise * self._limits.encoder_noise_m)
 
     def draw_noise(self, noise: NDArray[np.float64]) -> None:
         """Fill (2,) with standard normal noise, of which the encoders' is made in the next control step."""
@@ -189,6 +172,35 @@ class PeopleBot:
         return angles
 
 
-def approach(value: float, target: float, step: float) -> float:
-    """Move a value towards a target by at most one step."""
-    return value + min(max(target - value, -step), step)
+@njit(cache=True, nogil=True)
+def approach_target(gears: Gears, dt_s: float) -> bool:
+    """Move the speeds of one robot towards those to be reached, and return whether they have changed."""
+    command, target, rise = gears.command, gears.target, gears.rise
+    if command[0] == target[0] and command[1] == target[1]:
+        return False
+    for k in range(2):
+        step = rise[k] * dt_s
+        command[k] += min(max(target[k] - command[k], -step), step)
+    return True
+
+
+@njit(cache=True, nogil=True)
+def count_travel(gears: Gears, angles: NDArray[np.float64], noise_m: NDArray[np.float64]) -> None:
+    """Integrate the odometry of one robot.
+
+    Args:
+        gears: of the robot.
+        angles: (2,) [rad] of its wheels now.
+        noise_m: (2,) [m/sqrt(m)] of its encoders.
+    """
+    rims = np.empty(2)
+    for k in range(2):
+        travelled = (angles[k] - gears.turned[k]) * WHEEL_RADIUS_M
+        rims[k] = travelled + noise_m[k] * math.sqrt(abs(travelled))
+        gears.turned[k] = angles[k]
+    turn, advance = (rims[1] - rims[0]) / WHEEL_DISTANCE_M, (rims[0] + rims[1]) / 2.0
+    odometry = gears.odometry
+    middle = odometry[2] + turn / 2.0
+    odometry[0] += advance * math.cos(middle)
+    odometry[1] += advance * math.sin(middle)
+    odometry[2] = remainder(odometry[2] + turn)
