@@ -16,19 +16,18 @@ from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import Command
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.environments.arguments import check_actions, check_size, check_word, shown_cameras
-from peopleboy.scenarios.environments.judging.episode_figures import Figures, track_in
-from peopleboy.scenarios.environments.judging.episodes import LiveEpisodes, Terms, Verdicts
-from peopleboy.scenarios.environments.judging.rewards import TASKS, TERMS
+from peopleboy.scenarios.environments.episodes import Figures, LiveEpisodes, Terms, Verdicts, track_in
 from peopleboy.scenarios.environments.normalise import Normaliser
 from peopleboy.scenarios.environments.observations import (
     KINDS,
     Arrays,
+    Teller,
     observation_space,
     see_tracks,
 )
 from peopleboy.scenarios.environments.randomise import check_options, vary, world_of
+from peopleboy.scenarios.environments.rewards import TASKS, TERMS
 from peopleboy.scenarios.environments.scene_picture import ScenePicture
-from peopleboy.scenarios.environments.teller import Teller
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario

@@ -2,25 +2,100 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
 import numpy as np
 from gymnasium import spaces
+from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.environments.tell_worlds import fill_tracks, tell_motions
+from peopleboy.scenarios.environments.normalise import Normaliser
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import thermal_box
 from peopleboy.sim.batch.snapshot import Snapshot
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.physics.solid_shapes import Array
+from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.joined_tables import Numbers
-from peopleboy.sim.truth.scenes import SEEN, Scenes
+from peopleboy.sim.truth.scenes import SEEN, Records, Scenes
+from peopleboy.tracker.boxes import image_shares
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Status, Track
+
+# The numbers of observations in many worlds (numba kernels).
+
+_image_shares = njit(cache=True)(image_shares)
+
+
+@njit(cache=True, nogil=True)
+def tell_motions(starts: Array, now: Array, wheels: Array, found: NDArray[np.float32]) -> None:
+    """Fill `odometry`.
+
+    Args:
+        starts: (G, 3) x, y [m], heading [rad] by odometry at the start.
+        now: (G, 3) the same now.
+        wheels: (G, 2) [m/s] rim speeds, left and right.
+        found: (G, 6) gets x, y [m] from the start in its frame, cosine and sine of the heading since then,
+            forward speed [m/s], turn rate [rad/s].
+    """
+    for row in range(len(starts)):
+        cos, sin = math.cos(starts[row, 2]), math.sin(starts[row, 2])
+        dx, dy = now[row, 0] - starts[row, 0], now[row, 1] - starts[row, 1]
+        turned = now[row, 2] - starts[row, 2]
+        left, right = wheels[row, 0], wheels[row, 1]
+        found[row, 0], found[row, 1] = cos * dx + sin * dy, cos * dy - sin * dx
+        found[row, 2], found[row, 3] = math.cos(turned), math.sin(turned)
+        found[row, 4], found[row, 5] = (left + right) / 2.0, (right - left) / WHEEL_DISTANCE_M
+
+
+@njit(cache=True, nogil=True)
+def fill_tracks(
+    people: Array,
+    borders: Numbers,
+    width: int,
+    height: int,
+    farthest: float,
+    lowest: tuple[float, ...],
+    highest: tuple[float, ...],
+    found: NDArray[np.float32],
+) -> None:
+    """Fill `tracks`, the tallest first, and nobody into the rest.
+
+    Args:
+        people: (Q, 7) id, box [px], confidence and is_visible, of all worlds; nobody by a box of NaN.
+        borders: (G, 2) where those of each world begin and end.
+        width: [px] of the image.
+        height: [px].
+        farthest: [half image widths] from the middle of the image, beyond which nobody is told.
+        lowest: number of each column.
+        highest: number of each column.
+        found: (G, 5 * 7).
+    """
+    columns = people.shape[1]
+    told = np.empty(people.shape)
+    found[:] = 0.0
+    for row in range(len(borders)):
+        first, end = borders[row, 0], borders[row, 1]
+        for q in range(first, end):
+            left, top, across, up = people[q, 1], people[q, 2], people[q, 3], people[q, 4]
+            shares = _image_shares((left, top, across, up), width, height)
+            told[q, 0], told[q, 5], told[q, 6] = people[q, 0], people[q, 5], people[q, 6]
+            told[q, 1], told[q, 2], told[q, 3], told[q, 4] = shares
+            if not abs(told[q, 1]) <= farthest:
+                told[q, 2] = -np.inf
+        for place in range(min(found.shape[1] // columns, end - first)):
+            tallest = first + np.argmax(told[first:end, 2])
+            if told[tallest, 2] == -np.inf:
+                break
+            for k in range(columns):
+                number = min(max(told[tallest, k], lowest[k]), highest[k])
+                found[row, place * columns + k] = number
+            told[tallest, 2] = -np.inf
+
 
 Arrays = dict[str, NDArray[Any]]
 
@@ -120,3 +195,59 @@ def _fill(
     found = np.empty((len(borders), MOST_TRACKS * len(COLUMNS)), np.float32)
     fill_tracks(people, borders, camera.width, camera.height, farthest, _LOWEST, _HIGHEST, found)
     return found
+
+
+# Tells controllers what they are told, in one world as in many.
+
+
+class Teller:
+    """Makes the observations of one kind.
+
+    Args:
+        kind: one of `KINDS`.
+        robot: with the cameras of all worlds.
+        shown: names of those whose images `pixels` has.
+        normaliser: brings numbers within -1..1; None to leave them.
+
+    Attributes:
+        tracks: whether trackers look for people.
+        slow: names of the cameras that do not take an image at every step.
+    """
+
+    def __init__(
+        self, kind: str, robot: RobotConfig, shown: Sequence[str], normaliser: Normaliser | None
+    ) -> None:
+        self._kind, self._robot, self._normaliser = kind, robot, normaliser
+        self._shapes = {name: image_shape(robot.cameras[name]) for name in shown} if kind == "pixels" else {}
+        self.tracks = kind == "tracks"
+        self.slow = [name for name in self._shapes if robot.cameras[name].rate_hz]
+
+    def tell(self, snapshot: Snapshot, episodes: Records, tracks: NDArray[np.float32] | None) -> Arrays:
+        """Give all but images, with worlds first.
+
+        Args:
+            snapshot: of G worlds, by their numbers.
+            episodes: (B,) records EPISODE.
+            tracks: (G, 35) where trackers look, None elsewhere.
+        """
+        numbers = snapshot.numbers
+        found = feel(snapshot, episodes["start"][numbers])
+        if self._kind == "truth":
+            found["tracks"] = see_truth(snapshot.scenes, self._robot)
+        elif tracks is not None:
+            found["tracks"] = tracks
+        if self._normaliser is not None:
+            holders = episodes["holders"][numbers]
+            found = self._normaliser(found, holders)
+            episodes["holders"][numbers] = holders
+        return found
+
+    def show(self, snapshot: Snapshot) -> dict[str, tuple[Sequence[int], NDArray[Any]]]:
+        """Give the images of `pixels`: for each camera which of the worlds have a new one, and these."""
+        found = {}
+        for name, shape in self._shapes.items():
+            assert snapshot.pictures is not None
+            rows, images = snapshot.pictures.together(name)
+            if rows:
+                found[name] = rows, np.asarray(images).reshape(-1, *shape)
+        return found

@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.environments.arguments import check_actions
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
-from peopleboy.scenarios.environments.join_infos import Infos, join_infos
-from peopleboy.scenarios.environments.judging.episodes import LiveEpisodes
+from peopleboy.scenarios.environments.episodes import LiveEpisodes
 from peopleboy.scenarios.environments.observations import Arrays
-from peopleboy.scenarios.environments.step_results import StepResults
+from peopleboy.scenarios.environments.step_results import Infos, StepResults, join_infos
 from peopleboy.sim.batch.cameras import WorkerPool
 from peopleboy.sim.batch.snapshot import Snapshot
 from peopleboy.sim.batch.world_batch import WorldBatch

@@ -1,1 +1,0 @@
-"""What controllers earn, and how their episodes went."""
