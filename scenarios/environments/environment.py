@@ -16,14 +16,20 @@ from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import Command
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.environments.arguments import check_actions, check_size, check_word, shown_cameras
-from peopleboy.scenarios.environments.episodes import Figures, LiveEpisodes, Terms, Verdicts, track_in
+from peopleboy.scenarios.environments.episodes import (
+    EpisodeSettings,
+    LiveEpisodes,
+    Metrics,
+    StepOutcomes,
+    track_in,
+)
 from peopleboy.scenarios.environments.normalise import Normaliser
 from peopleboy.scenarios.environments.observations import (
     KINDS,
     Arrays,
-    Teller,
+    ObservationBuilder,
     observation_space,
-    see_tracks,
+    observe_tracks,
 )
 from peopleboy.scenarios.environments.randomise import check_options, vary, world_of
 from peopleboy.scenarios.environments.rewards import TASKS, TERMS
@@ -59,7 +65,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     """A robot among people, driven by actions; one step is one image, 1/15 s.
 
     Action: (2,) within -1..1, the shares of the robot's forward speed limit (0.8 m/s) and turn rate limit
-    (150 deg/s, positive to the left); beyond is clipped. Observations are told in `observations`, the
+    (150 deg/s, positive to the left); beyond is clipped. Observations are described in `observations`, the
     reward in `rewards`. An episode terminates when the robot touches anything, or, unless the task is
     "corridor", when the person to follow has been out of sight for 10 s; it is truncated when the
     scenario's time is over. `info` holds `truth` (a `ImageFreeTruth`), `reward` (its terms), `events` (what
@@ -131,7 +137,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
         shown = shown_cameras(cameras, observation, self._robot)
         normaliser = Normaliser(self._robot) if normalise else None
-        self.teller = Teller(observation, self._robot, shown, normaliser)
+        self.builder = ObservationBuilder(observation, self._robot, shown, normaliser)
         space = observation_space(observation, self._robot, shown)
         self.observation_space = space if normaliser is None else normaliser.space(space)
         self.join(LiveEpisodes(1, task), 0)
@@ -165,7 +171,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._before: Pose2 | None = None
         self._track = 0  # that lay on the person to follow last
         self._images: Arrays = {}
-        terms = Terms(
+        settings = EpisodeSettings(
             plan=self._scenario.plan,
             following=following_task(config, self._scenario.follow_config().keep_height),
             frames=round(self._scenario.duration_s * config.control_hz),
@@ -173,12 +179,12 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             limits=config.robot.drive.limits,
         )
         tracks = self._perceive(self._world)
-        verdicts = self._episodes.begin(self._number, terms, self._instants, tracks)
-        self._truth = verdicts.truths[0]
+        outcomes = self._episodes.begin(self._number, settings, self._snapshot, tracks)
+        self._truth = outcomes.truths[0]
         observation = self._observation()
         if self.render_mode == "human":
             self._show_first()
-        return observation, self._info(verdicts)
+        return observation, self._info(outcomes)
 
     def join(self, episodes: LiveEpisodes, number: int) -> None:
         """Have the episodes from the next one on among those of many worlds, under a number."""
@@ -209,13 +215,13 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._commands.append(Command(linear_m_s=linear_m_s, angular_rad_s=angular_rad_s))
         world.step(linear_m_s, angular_rad_s)
         tracks = self._perceive(world)
-        verdicts = self._episodes.judge(self._instants, shares, tracks)
-        self._truth = verdicts.truths[0]
-        reward = verdicts.rewards[0]
+        outcomes = self._episodes.evaluate(self._snapshot, shares, tracks)
+        self._truth = outcomes.truths[0]
+        reward = outcomes.rewards[0]
         if self._viewer is not None:
             self._viewer.go_on(self._draw(), reward, self._dt_s)
-        ends, is_cut = bool(verdicts.terminations[0]), bool(verdicts.truncations[0])
-        return self._observation(), reward, ends, is_cut, self._info(verdicts)
+        ends, is_cut = bool(outcomes.terminations[0]), bool(outcomes.truncations[0])
+        return self._observation(), reward, ends, is_cut, self._info(outcomes)
 
     def track(self, snapshot: Snapshot, row: int) -> int:
         """Let the tracker look at an instant, where there is one.
@@ -240,7 +246,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     @property
     def tracks(self) -> NDArray[np.float32]:
         """`tracks` (35,) of the instant at which the tracker looked last."""
-        return see_tracks(self._tracks, self._robot)
+        return observe_tracks(self._tracks, self._robot)
 
     @property
     def seed(self) -> int:
@@ -264,8 +270,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         """
         return self._draw() if self.render_mode == "rgb_array" else None
 
-    def metrics(self) -> Figures:
-        """Give the figures of the episode so far, see `EpisodeFigures`.
+    def metrics(self) -> Metrics:
+        """Give the figures of the episode so far, see `EpisodeMetrics`.
 
         They are over the snapshot at which a run has frames; that at which the time is over is none.
 
@@ -323,7 +329,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     def _draw(self) -> NDArray[np.uint8]:
         self._running(even_over=True)
         assert self._picture is not None
-        senses = self._instants.senses(0)
+        senses = self._snapshot.senses(0)
         assert isinstance(senses, Observation)
         explanation = None if self._tracker is None else explanation_of(self._tracker)
         return self._picture.draw(senses, self._truth, self._tracks, explanation)
@@ -358,15 +364,15 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         return vary(config, options, stream(self._seed, "environment.options"))
 
     def _perceive(self, world: World) -> list[int] | None:
-        """Take in an instant; gives what `LiveEpisodes.judge` is to know of the tracker."""
-        self._instants = take_snapshot(world)._replace(numbers=np.array([self._number]))
-        return None if self._tracker is None else [self.track(self._instants, 0)]
+        """Take a snapshot, and return what `LiveEpisodes.evaluate` needs to know of the tracker."""
+        self._snapshot = take_snapshot(world)._replace(numbers=np.array([self._number]))
+        return None if self._tracker is None else [self.track(self._snapshot, 0)]
 
     def _observation(self) -> Arrays:
-        """Tell what the controller is told of this instant."""
-        tracks = self.tracks[None] if self.teller.tracks else None
-        found = self.teller.tell(self._instants, self._episodes.records, tracks)
-        self._images |= {name: images[0] for name, (_, images) in self.teller.show(self._instants).items()}
+        """Return the observation of this instant."""
+        tracks = self.tracks[None] if self.builder.tracks else None
+        found = self.builder.build(self._snapshot, self._episodes.records, tracks)
+        self._images |= {name: images[0] for name, (_, images) in self.builder.images(self._snapshot).items()}
         return {name: array[0] for name, array in found.items()} | self._images
 
     @property
@@ -375,11 +381,11 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         own: np.void = self._episodes.records[self._number]
         return own
 
-    def _info(self, verdicts: Verdicts) -> dict[str, Any]:
+    def _info(self, outcomes: StepOutcomes) -> dict[str, Any]:
         info = {
             "truth": self._truth,
-            "reward": dict(zip(TERMS, verdicts.terms[0].tolist(), strict=True)),
-            "events": verdicts.events[0],
+            "reward": dict(zip(TERMS, outcomes.terms[0].tolist(), strict=True)),
+            "events": outcomes.events[0],
             "seed": self._seed,
         }
         return info | {"metrics": self.metrics()} if self._own["is_over"] else info

@@ -1,4 +1,4 @@
-"""Episodes in many worlds, judged together; a single environment has one."""
+"""Episodes in many worlds: rewards, terminations, events and metrics; a single environment has one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from peopleboy.scenarios.environments.rewards import (
     TERMS,
     Array,
     areas_of,
-    reward_worlds,
+    compute_rewards,
 )
 from peopleboy.scenarios.scores.comfort_metrics import score_company
 from peopleboy.scenarios.scores.corridor_metrics import score_way
@@ -31,16 +31,14 @@ from peopleboy.sim.truth.scenes import ImageFreeTruth, Scenes
 from peopleboy.sim.truth.truth import Box
 from peopleboy.tracker.track import Track
 
-# The figures of an episode: those of a run in which the same happens.
-
-Figures = dict[str, dict[str, float]]
+Metrics = dict[str, dict[str, float]]
 
 
-class EpisodeFigures:
-    """Keeps the snapshot of an episode, and works the figures out when asked.
+class EpisodeMetrics:
+    """Keeps the snapshots of an episode, and computes its metrics on demand, as those of a run.
 
-    Whom the robot goes after is its controller's secret: `wrong_person_s` is NaN, and `followed_to_end` asks
-    for the track only.
+    Only the controller knows which person it follows: `wrong_person_s` is NaN, and `followed_to_end` asks for
+    the track only.
     """
 
     def __init__(self, plan: FloorPlan, task: FollowingTask) -> None:
@@ -57,7 +55,7 @@ class EpisodeFigures:
         """
         self._noted.append((scenes, row, track))
 
-    def metrics(self) -> Figures:
+    def metrics(self) -> Metrics:
         """Give the groups `following`, `corridor` and `comfort` of a run's metrics.json, or NaN."""
         worlds = np.concatenate([scenes.worlds[row : row + 1] for scenes, row, _ in self._noted])
         borders = zip(worlds["first"].tolist(), worlds["end"].tolist(), strict=True)
@@ -71,8 +69,8 @@ class EpisodeFigures:
         target = np.full((len(worlds), 2), np.nan)
         target[np.repeat(np.arange(len(worlds)), counts)[is_target]] = people["position_m"][is_target]
         time_s, robot, contact = worlds["time_s"], worlds["robot"], worlds["is_touching"]
-        track, nobody_knows = [number for _, _, number in self._noted], np.full(len(worlds), np.nan)
-        following = np.column_stack([time_s, robot, target, contact, track, nobody_knows])
+        track, unknown = [number for _, _, number in self._noted], np.full(len(worlds), np.nan)
+        following = np.column_stack([time_s, robot, target, contact, track, unknown])
         company = np.column_stack([time_s, robot, worlds["velocity"][:, 0], counts])
         return {
             "following": asdict(score_instants(following, self._task)),
@@ -104,11 +102,11 @@ def track_in(scenes: Scenes, row: int, tracks: Iterable[Track], box: Box | None,
 
 
 Events = tuple[tuple[str, str], ...]
-_TWO: Final = 2.0  # see `reward_worlds`
+_TWO: Final = 2.0  # see `compute_rewards`
 
 
-class Terms(NamedTuple):
-    """By what one episode is played.
+class EpisodeSettings(NamedTuple):
+    """The place and the limits of one episode.
 
     Attributes:
         plan: of the place.
@@ -125,7 +123,7 @@ class Terms(NamedTuple):
     limits: tuple[float, float]
 
 
-class Verdicts(NamedTuple):
+class StepOutcomes(NamedTuple):
     """What came of a step in G worlds.
 
     Attributes:
@@ -157,31 +155,33 @@ class LiveEpisodes:
         self._task = TASKS.index(task)
         self._plans = [np.zeros((0, 4))] * count
         self._touched: list[set[str]] = [set() for _ in range(count)]
-        self._figures: dict[int, EpisodeFigures] = {}
+        self._metrics: dict[int, EpisodeMetrics] = {}
         self._lay_out()
 
-    def begin(self, number: int, terms: Terms, snapshot: Snapshot, tracks: Sequence[int] | None) -> Verdicts:
+    def begin(
+        self, number: int, settings: EpisodeSettings, snapshot: Snapshot, tracks: Sequence[int] | None
+    ) -> StepOutcomes:
         """Begin an episode in one of the worlds.
 
         Args:
             number: of the world.
-            terms: by what it is played.
+            settings: of the episode.
             snapshot: the first one, in that world alone.
-            tracks: see `judge`.
+            tracks: see `evaluate`.
         """
         self.records[number] = np.zeros((), EPISODE)
         own = self.records[number : number + 1]
-        own["start"], own["frame"], own["frames"] = snapshot.odometry, -1, terms.frames
-        own["dt_s"], own["keep_m"], own["limits"] = terms.dt_s, terms.following.keep_m, terms.limits
-        self._plans[number], self._touched[number] = areas_of(terms.plan), set()
-        self._figures[number] = EpisodeFigures(terms.plan, terms.following)
+        own["start"], own["frame"], own["frames"] = snapshot.odometry, -1, settings.frames
+        own["dt_s"], own["keep_m"], own["limits"] = settings.dt_s, settings.following.keep_m, settings.limits
+        self._plans[number], self._touched[number] = areas_of(settings.plan), set()
+        self._metrics[number] = EpisodeMetrics(settings.plan, settings.following)
         self._lay_out()
-        verdicts = self.judge(snapshot, np.zeros((1, 2)), tracks)
+        outcomes = self.evaluate(snapshot, np.zeros((1, 2)), tracks)
         own["is_over"] = False
-        return verdicts._replace(terms=np.zeros_like(verdicts.terms), rewards=[0.0])
+        return outcomes._replace(terms=np.zeros_like(outcomes.terms), rewards=[0.0])
 
-    def judge(self, snapshot: Snapshot, actions: Array, tracks: Sequence[int] | None) -> Verdicts:
-        """Judge the next snapshot of some episodes.
+    def evaluate(self, snapshot: Snapshot, actions: Array, tracks: Sequence[int] | None) -> StepOutcomes:
+        """Take in the next snapshot of some episodes, and return what came of the step.
 
         Args:
             snapshot: of G worlds, by their numbers.
@@ -192,7 +192,7 @@ class LiveEpisodes:
         numbers, scenes, records = snapshot.numbers, snapshot.scenes, self.records
         records["frame"][numbers] += 1
         seen, terms = records["seen"][numbers], np.empty((len(numbers), len(TERMS)))
-        reward_worlds(
+        compute_rewards(
             self._task, numbers, records, scenes.worlds, scenes.people, self._areas, self._first_area,
             actions, _TWO, terms,
         )  # fmt: skip
@@ -202,8 +202,8 @@ class LiveEpisodes:
         is_noted = (now["frame"] < now["frames"]).tolist()
         for row, (number, notes) in enumerate(zip(numbers.tolist(), is_noted, strict=True)):
             if notes:
-                self._figures[number].add(scenes, row, tracks[row])
-        return Verdicts(
+                self._metrics[number].add(scenes, row, tracks[row])
+        return StepOutcomes(
             terms=terms,
             rewards=list(map(math.fsum, terms.tolist())),
             terminations=(terms[:, ENDS] != 0.0).any(axis=1),
@@ -212,9 +212,9 @@ class LiveEpisodes:
             truths=scenes.truths(),
         )
 
-    def metrics(self, number: int) -> Figures:
-        """Give the figures of an episode so far, see `EpisodeFigures`."""
-        return self._figures[number].metrics()
+    def metrics(self, number: int) -> Metrics:
+        """Return the metrics of an episode so far, see `EpisodeMetrics`."""
+        return self._metrics[number].metrics()
 
     def _compare(
         self, numbers: Numbers, scenes: Scenes, before: NDArray[np.uint64], now: NDArray[np.uint64]

@@ -32,7 +32,7 @@ class Normaliser:
     | `odometry` x, y | -1..1 for -20..20 m |
     | `odometry` cosine, sine | as they are |
     | `odometry` speed, turn rate | -1..1, shares of the drive's limits |
-    | `tracks` id | 1 for somebody, 0 for nobody; all keep their rows, newcomers take the first free one |
+    | `tracks` id | 1 for a person, 0 for none; all keep their rows, newcomers take the first free one |
     | `tracks` x | -1..1, half image widths |
     | `tracks` height, top, bottom | 0..1, -1..1, -1..1 for two image heights |
     | `tracks` confidence, is_visible | as they are |
@@ -73,26 +73,26 @@ class Normaliser:
             "odometry": np.clip(observation["odometry"] / self._odometry, -1.0, 1.0),
         }
         if "tracks" in observation:
-            told = observation["tracks"].reshape(-1, MOST_TRACKS, len(COLUMNS))
-            shares = np.clip(told / _SCALES, _LOWEST, 1.0)
+            given = observation["tracks"].reshape(-1, MOST_TRACKS, len(COLUMNS))
+            shares = np.clip(given / _SCALES, _LOWEST, 1.0)
             found["tracks"] = np.empty_like(observation["tracks"])
-            _keep_rows(told, shares, holders, found["tracks"].reshape(told.shape))
+            _keep_rows(given, shares, holders, found["tracks"].reshape(given.shape))
         return found
 
 
 @njit(cache=True, nogil=True)
-def _keep_rows(told: NDArray[np.float32], shares: Array, holders: Array, found: NDArray[np.float32]) -> None:
+def _keep_rows(given: NDArray[np.float32], shares: Array, holders: Array, found: NDArray[np.float32]) -> None:
     """Put everybody into the row of before, and newcomers into the first that is free.
 
     Args:
-        told: (G, 5, 7) as in observations.
+        given: (G, 5, 7) as in observations.
         shares: (G, 5, 7) the same within bounds.
         holders: (G, 5) see `Normaliser`.
         found: (G, 5, 7).
     """
     found[:] = 0.0
-    for world in range(len(told)):
-        numbers, places = told[world, :, 0], holders[world]
+    for world in range(len(given)):
+        numbers, places = given[world, :, 0], holders[world]
         for place in range(len(places)):
             if not (numbers == places[place]).any():
                 places[place] = 0.0

@@ -1,4 +1,4 @@
-"""What a controller in an environment is told: images, tracks, or the truth in the form of tracks."""
+"""Observations of an environment: images, tracks, or the truth in the form of tracks."""
 
 from __future__ import annotations
 
@@ -26,13 +26,11 @@ from peopleboy.tracker.boxes import image_shares
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Status, Track
 
-# The numbers of observations in many worlds (numba kernels).
-
 _image_shares = njit(cache=True)(image_shares)
 
 
 @njit(cache=True, nogil=True)
-def tell_motions(starts: Array, now: Array, wheels: Array, found: NDArray[np.float32]) -> None:
+def fill_odometry(starts: Array, now: Array, wheels: Array, found: NDArray[np.float32]) -> None:
     """Fill `odometry`.
 
     Args:
@@ -63,38 +61,38 @@ def fill_tracks(
     highest: tuple[float, ...],
     found: NDArray[np.float32],
 ) -> None:
-    """Fill `tracks`, the tallest first, and nobody into the rest.
+    """Fill `tracks`, the tallest first, zeros into the rest.
 
     Args:
         people: (Q, 7) id, box [px], confidence and is_visible, of all worlds; nobody by a box of NaN.
         borders: (G, 2) where those of each world begin and end.
         width: [px] of the image.
         height: [px].
-        farthest: [half image widths] from the middle of the image, beyond which nobody is told.
+        farthest: [half image widths] from the middle of the image, beyond which people are left out.
         lowest: number of each column.
         highest: number of each column.
         found: (G, 5 * 7).
     """
     columns = people.shape[1]
-    told = np.empty(people.shape)
+    rows = np.empty(people.shape)
     found[:] = 0.0
     for row in range(len(borders)):
         first, end = borders[row, 0], borders[row, 1]
         for q in range(first, end):
             left, top, across, up = people[q, 1], people[q, 2], people[q, 3], people[q, 4]
             shares = _image_shares((left, top, across, up), width, height)
-            told[q, 0], told[q, 5], told[q, 6] = people[q, 0], people[q, 5], people[q, 6]
-            told[q, 1], told[q, 2], told[q, 3], told[q, 4] = shares
-            if not abs(told[q, 1]) <= farthest:
-                told[q, 2] = -np.inf
+            rows[q, 0], rows[q, 5], rows[q, 6] = people[q, 0], people[q, 5], people[q, 6]
+            rows[q, 1], rows[q, 2], rows[q, 3], rows[q, 4] = shares
+            if not abs(rows[q, 1]) <= farthest:
+                rows[q, 2] = -np.inf
         for place in range(min(found.shape[1] // columns, end - first)):
-            tallest = first + np.argmax(told[first:end, 2])
-            if told[tallest, 2] == -np.inf:
+            tallest = first + np.argmax(rows[first:end, 2])
+            if rows[tallest, 2] == -np.inf:
                 break
             for k in range(columns):
-                number = min(max(told[tallest, k], lowest[k]), highest[k])
+                number = min(max(rows[tallest, k], lowest[k]), highest[k])
                 found[row, place * columns + k] = number
-            told[tallest, 2] = -np.inf
+            rows[tallest, 2] = -np.inf
 
 
 Arrays = dict[str, NDArray[Any]]
@@ -104,7 +102,7 @@ MOST_TRACKS: Final = 5
 COLUMNS: Final = ("id", "x", "height", "top", "bottom", "confidence", "is_visible")
 """The seven numbers of each of the five people in `tracks`, the tallest and so nearest first.
 
-id is 1 or more and stays with a person; a row of zeros is nobody. x is in half image widths, -1 at the left
+id is 1 or more and stays with a person; a row of zeros is empty. x is in half image widths, -1 at the left
 border, +1 at the right one; height, top and bottom are in image heights from the top; confidence is 0..1;
 is_visible is 0 while a person is wholly hidden.
 """
@@ -142,7 +140,7 @@ def observation_space(kind: str, robot: RobotConfig, shown: Sequence[str]) -> sp
     return spaces.Dict(found)  # type: ignore[return-value]  # typed there as if samples were spaces
 
 
-def feel(snapshot: Snapshot, starts: Array) -> Arrays:
+def read_sensors(snapshot: Snapshot, starts: Array) -> Arrays:
     """Give what every observation has, of G worlds: sonar (G, 16) and odometry (G, 6).
 
     Args:
@@ -150,11 +148,11 @@ def feel(snapshot: Snapshot, starts: Array) -> Arrays:
         starts: (G, 3) odometry x, y [m], heading [rad] at the beginning of each episode.
     """
     odometry = np.empty((len(starts), 6), np.float32)
-    tell_motions(starts, snapshot.odometry, snapshot.wheel_speeds_m_s, odometry)
+    fill_odometry(starts, snapshot.odometry, snapshot.wheel_speeds_m_s, odometry)
     return {"sonar": snapshot.sonar_m.astype(np.float32), "odometry": odometry}
 
 
-def see_tracks(tracks: Iterable[Track], robot: RobotConfig) -> NDArray[np.float32]:
+def observe_tracks(tracks: Iterable[Track], robot: RobotConfig) -> NDArray[np.float32]:
     """Give what the tracker is sure of in one world: (35,)."""
     thermal = calibrations_of(robot.cameras)[THERMAL]
     rows = [
@@ -166,7 +164,7 @@ def see_tracks(tracks: Iterable[Track], robot: RobotConfig) -> NDArray[np.float3
     return found.reshape(-1)
 
 
-def see_truth(scenes: Scenes, robot: RobotConfig) -> NDArray[np.float32]:
+def observe_truth(scenes: Scenes, robot: RobotConfig) -> NDArray[np.float32]:
     """Give what a perfect tracker would say in G worlds, everybody within the image: (G, 35)."""
     people = scenes.people
     seen, sure = people["free_ray_share"] > SEEN, np.ones(len(people))
@@ -183,7 +181,7 @@ def image_shape(camera: CameraConfig) -> tuple[int, int, int]:
 def _fill(
     people: Array, borders: Numbers, robot: RobotConfig, farthest: float = np.inf
 ) -> NDArray[np.float32]:
-    """Fill `tracks` (G, 35): the tallest first, and nobody into the rest.
+    """Fill `tracks` (G, 35): the tallest first, zeros into the rest.
 
     Args:
         people: (Q, 7) id, box [px], confidence and is_visible, one world after the other.
@@ -197,11 +195,8 @@ def _fill(
     return found
 
 
-# Tells controllers what they are told, in one world as in many.
-
-
-class Teller:
-    """Makes the observations of one kind.
+class ObservationBuilder:
+    """Builds the observations of one kind, in one world as in many.
 
     Args:
         kind: one of `KINDS`.
@@ -222,8 +217,8 @@ class Teller:
         self.tracks = kind == "tracks"
         self.slow = [name for name in self._shapes if robot.cameras[name].rate_hz]
 
-    def tell(self, snapshot: Snapshot, episodes: Records, tracks: NDArray[np.float32] | None) -> Arrays:
-        """Give all but images, with worlds first.
+    def build(self, snapshot: Snapshot, episodes: Records, tracks: NDArray[np.float32] | None) -> Arrays:
+        """Return all but images, with worlds first.
 
         Args:
             snapshot: of G worlds, by their numbers.
@@ -231,9 +226,9 @@ class Teller:
             tracks: (G, 35) where trackers look, None elsewhere.
         """
         numbers = snapshot.numbers
-        found = feel(snapshot, episodes["start"][numbers])
+        found = read_sensors(snapshot, episodes["start"][numbers])
         if self._kind == "truth":
-            found["tracks"] = see_truth(snapshot.scenes, self._robot)
+            found["tracks"] = observe_truth(snapshot.scenes, self._robot)
         elif tracks is not None:
             found["tracks"] = tracks
         if self._normaliser is not None:
@@ -242,12 +237,12 @@ class Teller:
             episodes["holders"][numbers] = holders
         return found
 
-    def show(self, snapshot: Snapshot) -> dict[str, tuple[Sequence[int], NDArray[Any]]]:
-        """Give the images of `pixels`: for each camera which of the worlds have a new one, and these."""
+    def images(self, snapshot: Snapshot) -> dict[str, tuple[Sequence[int], NDArray[Any]]]:
+        """Return the images of `pixels`: for each camera which of the worlds have a new one, and these."""
         found = {}
         for name, shape in self._shapes.items():
-            assert snapshot.pictures is not None
-            rows, images = snapshot.pictures.together(name)
+            assert snapshot.images is not None
+            rows, images = snapshot.images.of_camera(name)
             if rows:
                 found[name] = rows, np.asarray(images).reshape(-1, *shape)
         return found

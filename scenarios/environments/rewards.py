@@ -37,7 +37,7 @@ from peopleboy.sim.truth.scenes import SEEN, Records
 # How the robot stands to the person to follow and to the corridor, and what happens to it (kernels).
 
 LOST_S: Final = 10.0
-NOBODY_M: Final = 1000.0  # stands for a distance or gap where there is nobody
+NO_PERSON_M: Final = 1000.0  # stands for a distance or gap to a person where there is none
 EPISODE: Final = np.dtype(
     [
         ("start", np.float64, 3),  # [m, m, rad] odometry at the beginning
@@ -86,7 +86,9 @@ class Situation(NamedTuple):
 
 
 @njit(cache=True)
-def judge(episode: Record, scene: Record, people: Records, areas: Array, may_lose: bool) -> Situation:
+def observe_situation(
+    episode: Record, scene: Record, people: Records, areas: Array, may_lose: bool
+) -> Situation:
     """Look at the next instant of an episode, whose record is kept up to date.
 
     The person to follow is the first in the scenario's order who is present.
@@ -99,7 +101,7 @@ def judge(episode: Record, scene: Record, people: Records, areas: Array, may_los
         may_lose: whether an episode ends when its target is lost.
     """
     is_there = scene.end > scene.first
-    sees, distance_m, bearing_rad = False, NOBODY_M, 0.0
+    sees, distance_m, bearing_rad = False, NO_PERSON_M, 0.0
     if is_there:
         target = people[scene.first]
         sees, distance_m = target.free_ray_share > SEEN, target.distance_m
@@ -112,7 +114,7 @@ def judge(episode: Record, scene: Record, people: Records, areas: Array, may_los
             episode.has_seen = target.id
     else:
         episode.unseen_s = 0.0
-    gap_m, seen = NOBODY_M if not is_there else math.inf, np.uint64(0)
+    gap_m, seen = NO_PERSON_M if not is_there else math.inf, np.uint64(0)
     for k in range(scene.first, scene.end):
         gap_m = min(gap_m, people[k].distance_m - people[k].radius_m - RADIUS_M)
         if people[k].free_ray_share > SEEN:
@@ -167,7 +169,7 @@ _KEEP, _FACE, _PROGRESS, _CENTRE, _SPACE, _CHANGE, _COLLISION, _LOST = range(len
 
 
 @njit(cache=True, nogil=True)
-def reward_worlds(
+def compute_rewards(
     task: int,
     numbers: Numbers,
     episodes: Records,
@@ -187,16 +189,16 @@ def reward_worlds(
         episodes: records EPISODE of all, kept up to date.
         scenes: (G,) records SCENE.
         people: records BYSTANDER of those.
-        areas: (A, 4) of the places of all episodes, one after the other, as in `judge`.
+        areas: (A, 4) of the places of all episodes, one after the other, as in `observe_situation`.
         first_area: (B + 1,) where those of each begin.
         actions: (G, 2) that led here.
-        two: 2, told so late that squares are made by the library's power, as Python makes them.
+        two: 2, an argument so that squares are made by the library's power, as Python makes them.
         terms: (G, 8) get those of the reward in the order of `TERMS`; their sum is the reward.
     """
     for row in range(len(numbers)):
         number = numbers[row]
         own, episode = areas[first_area[number] : first_area[number + 1]], episodes[number]
-        situation = judge(episode, scenes[row], people, own, task != _CORRIDOR)
+        situation = observe_situation(episode, scenes[row], people, own, task != _CORRIDOR)
         _earn(task, situation, episode, actions[row], two, terms[row])
         episode.action[0], episode.action[1] = actions[row, 0], actions[row, 1]
         ends = situation.collided or situation.is_lost

@@ -8,11 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.environments.episodes import Figures, Verdicts
+from peopleboy.scenarios.environments.episodes import Metrics, StepOutcomes
 from peopleboy.scenarios.environments.rewards import TERMS
 from peopleboy.sim.shapes.joined_tables import Numbers
-
-# What many environments say beside their observations, as gymnasium's vector environments have it.
 
 Infos = dict[str, Any]
 
@@ -65,18 +63,18 @@ class StepResults:
         self._terms = np.zeros((worlds, len(TERMS)))
         self._truths, self._events = np.empty((2, worlds), object)
 
-    def take(self, numbers: Numbers, verdicts: Verdicts) -> None:
+    def take(self, numbers: Numbers, outcomes: StepOutcomes) -> None:
         """Take in what came of the step in some of the worlds."""
-        self.rewards[numbers], self._terms[numbers] = verdicts.rewards, verdicts.terms
-        self.terminations[numbers], self.truncations[numbers] = verdicts.terminations, verdicts.truncations
+        self.rewards[numbers], self._terms[numbers] = outcomes.rewards, outcomes.terms
+        self.terminations[numbers], self.truncations[numbers] = outcomes.terminations, outcomes.truncations
         for row, number in enumerate(numbers.tolist()):
-            self._truths[number], self._events[number] = verdicts.truths[row], verdicts.events[row]
+            self._truths[number], self._events[number] = outcomes.truths[row], outcomes.events[row]
 
     def begin(self, number: int, info: Infos) -> None:
         """Take in what an episode begins with in one of the worlds."""
         self._truths[number], self._events[number] = info["truth"], info["events"]
 
-    def infos(self, seeds: list[int], metrics: list[Figures | None]) -> Infos:
+    def infos(self, seeds: list[int], metrics: list[Metrics | None]) -> Infos:
         """Make what `join_infos` makes of B infos of single environments.
 
         Args:

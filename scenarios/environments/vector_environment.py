@@ -52,7 +52,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         if not (isinstance(num_envs, int | np.integer) and num_envs >= 1):
             raise BadInput(f"num_envs {num_envs!r}: must be 1 or more")
         if settings.get("render_mode") is not None:
-            raise BadInput("render_mode: many worlds draw no pictures; leave it out, or take one environment")
+            raise BadInput("render_mode: many worlds draw no images; leave it out, or take one environment")
         for name in _OF_GYMNASIUM & settings.keys():
             raise BadInput(
                 f"{name}: gymnasium's own ways to put worlds together have that; "
@@ -73,7 +73,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         self.single_observation_space = first.observation_space
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self._teller = first.teller
+        self._builder = first.builder
         self._kept: Arrays = {}
         self._together: WorldBatch | None = None  # until episodes have begun
 
@@ -116,12 +116,12 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         snapshot = self._step_together(np.flatnonzero(~is_over), shares)
         results = StepResults(self.num_envs)
         for each in snapshot:
-            results.take(each.numbers, self._episodes.judge(each, shares[each.numbers], self._track(each)))
+            results.take(each.numbers, self._episodes.evaluate(each, shares[each.numbers], self._track(each)))
         begun = self._begin(np.flatnonzero(is_over), results)
         ends = (results.terminations | results.truncations).tolist()
         metrics = [self._episodes.metrics(number) if is_end else None for number, is_end in enumerate(ends)]
         infos = results.infos([env.seed for env in self._envs], metrics)
-        found = self._tell(snapshot)  # at last, as images are being made meanwhile
+        found = self._observe(snapshot)  # at last, as images are being made meanwhile
         for number, observation in begun.items():
             _put(found, number, observation)
         self._keep(found)
@@ -163,8 +163,8 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         return self._together.step(active, (shares * self._episodes.records["limits"])[active])
 
     def _track(self, snapshot: Snapshot) -> list[int] | None:
-        """Let trackers look, if there are any; gives what `LiveEpisodes.judge` is to know of them."""
-        if not self._teller.tracks:
+        """Let trackers look, if there are any; returns what `LiveEpisodes.evaluate` needs to know of them."""
+        if not self._builder.tracks:
             return None
         return [
             self._envs[number].track(snapshot, row) for row, number in enumerate(snapshot.numbers.tolist())
@@ -179,24 +179,24 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
             self._together = None
         return found
 
-    def _tell(self, snapshot: Sequence[Snapshot]) -> Arrays:
-        """Tell what controllers are told of some snapshot; of other worlds it tells nothing yet."""
+    def _observe(self, snapshot: Sequence[Snapshot]) -> Arrays:
+        """Return the observations of some snapshots; those of other worlds are not filled yet."""
         found = self._empty()
         for name, images in self._kept.items():
             found[name][:] = images
         for each in snapshot:
             tracks = None
-            if self._teller.tracks:
+            if self._builder.tracks:
                 tracks = np.stack([self._envs[number].tracks for number in each.numbers.tolist()])
-            for name, array in self._teller.tell(each, self._episodes.records, tracks).items():
+            for name, array in self._builder.build(each, self._episodes.records, tracks).items():
                 found[name][each.numbers] = array
-            for name, (rows, array) in self._teller.show(each).items():
+            for name, (rows, array) in self._builder.images(each).items():
                 found[name][each.numbers[rows]] = array
         return found
 
     def _keep(self, found: Arrays) -> None:
         """Keep the images of cameras that do not take one at every step."""
-        self._kept = {name: found[name].copy() for name in self._teller.slow}
+        self._kept = {name: found[name].copy() for name in self._builder.slow}
 
     def _empty(self) -> Arrays:
         spaces = self.observation_space.spaces.items()  # type: ignore[attr-defined]  # it is a Dict

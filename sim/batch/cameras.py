@@ -163,7 +163,7 @@ class Exposures:
         for shot in self._shots:
             shot.end()
 
-    def of(self, row: int) -> Mapping[str, NDArray[Any]]:
+    def of_world(self, row: int) -> Mapping[str, NDArray[Any]]:
         """Give the images of one of the worlds by their names."""
         owners = {
             image: (shot, shot.rows.index(row))
@@ -178,7 +178,7 @@ class Exposures:
 
         return OnDemand(owners, make)
 
-    def together(self, camera: str) -> tuple[Sequence[int], Sequence[NDArray[Any]] | NDArray[Any]]:
+    def of_camera(self, camera: str) -> tuple[Sequence[int], Sequence[NDArray[Any]] | NDArray[Any]]:
         """Give the images of a camera's own name: in which of the worlds it takes one, and these."""
         return next(((shot.rows, shot.images()) for shot in self._shots if shot.name == camera), ((), ()))
 

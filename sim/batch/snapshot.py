@@ -20,11 +20,11 @@ Image = NDArray[Any]
 class BatchImages(Protocol):
     """The images of an instant in G worlds; see `Observation.images` for until when they can be had."""
 
-    def of(self, row: int) -> Mapping[str, Image]:
+    def of_world(self, row: int) -> Mapping[str, Image]:
         """Images by name of one of the worlds."""
         ...
 
-    def together(self, camera: str) -> tuple[Sequence[int], Sequence[Image] | Image]:
+    def of_camera(self, camera: str) -> tuple[Sequence[int], Sequence[Image] | Image]:
         """Images of a camera's own name: in which of the worlds it takes one, and these."""
         ...
 
@@ -35,12 +35,12 @@ class SeparateImages:
     def __init__(self, images: Sequence[Mapping[str, Image]]) -> None:
         self._images = images
 
-    def of(self, row: int) -> Mapping[str, Image]:
-        """See `BatchImages.of`."""
+    def of_world(self, row: int) -> Mapping[str, Image]:
+        """See `BatchImages.of_world`."""
         return self._images[row]
 
-    def together(self, camera: str) -> tuple[Sequence[int], Sequence[Image] | Image]:
-        """See `BatchImages.together`."""
+    def of_camera(self, camera: str) -> tuple[Sequence[int], Sequence[Image] | Image]:
+        """See `BatchImages.of_camera`."""
         rows = [row for row, images in enumerate(self._images) if camera in images]
         return rows, [self._images[row][camera] for row in rows]
 
@@ -54,7 +54,7 @@ class Snapshot(NamedTuple):
         odometry: (G, 3) x, y [m], heading [rad].
         wheel_speeds_m_s: (G, 2) [m/s] as in `Senses`.
         scenes: what is true.
-        pictures: None where there are no images.
+        images: None where there are no images.
     """
 
     numbers: Numbers
@@ -62,26 +62,26 @@ class Snapshot(NamedTuple):
     odometry: NDArray[np.float64]
     wheel_speeds_m_s: NDArray[np.float64]
     scenes: Scenes
-    pictures: BatchImages | None
+    images: BatchImages | None
 
     def senses(self, row: int) -> Senses:
         """What one robot senses; an `Observation` where there are images."""
         time_s, sonar_m = float(self.scenes.worlds["time_s"][row]), self.sonar_m[row]
         odometry = Pose2(*self.odometry[row].tolist())
         left, right = self.wheel_speeds_m_s[row].tolist()
-        if self.pictures is None:
+        if self.images is None:
             return Senses(
                 time_s=time_s, sonar_m=sonar_m, odometry=odometry, wheel_speeds_m_s=(left, right)
             )  # fmt: skip
         return Observation(
             time_s=time_s, sonar_m=sonar_m, odometry=odometry, wheel_speeds_m_s=(left, right),
-            images=self.pictures.of(row),
+            images=self.images.of_world(row),
         )  # fmt: skip
 
 
 def take_snapshot(world: World) -> Snapshot:
     """Sense once in one world, images included where there are any."""
-    senses, pictures = world.sense(), SeparateImages([world.take_images()]) if world.has_images else None
+    senses, images = world.sense(), SeparateImages([world.take_images()]) if world.has_images else None
     at = senses.odometry
     return Snapshot(
         numbers=np.zeros(1, np.int64),
@@ -89,5 +89,5 @@ def take_snapshot(world: World) -> Snapshot:
         odometry=np.array([[at.x, at.y, at.heading]]),
         wheel_speeds_m_s=np.array([senses.wheel_speeds_m_s]),
         scenes=world.scenes(),
-        pictures=pictures,
+        images=images,
     )

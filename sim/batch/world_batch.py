@@ -124,7 +124,7 @@ class KinematicBatch:
         scenes = np.zeros(len(active), SCENE)
         scenes["time_s"], scenes["robot"] = self._times(active), _planar(poses)
         scenes["velocity"] = self._speeds(active, poses)
-        pictures = self._take_images(active, poses, scenes["velocity"][:, 1])
+        images = self._take_images(active, poses, scenes["velocity"][:, 1])
         sonar_m = self._sonar.read(active, poses)
         people, first = self._visibility.look(active, poses, scenes["robot"])
         scenes["first"], scenes["end"] = first[:-1], first[1:]
@@ -137,7 +137,7 @@ class KinematicBatch:
             odometry=self._drives.gears.odometry[active],
             wheel_speeds_m_s=self._joined.motion.speeds[active] * WHEEL_RADIUS_M,
             scenes=Scenes(scenes, people, names, contacts),
-            pictures=pictures,
+            images=images,
         )
 
     def _take_images(self, active: Numbers, poses: Matrix, turn_rad_s: Array) -> BatchImages | None:
