@@ -1,4 +1,4 @@
-"""The cameras of many worlds, whose images are made together."""
+"""The cameras of many worlds: their images of an instant, made by threads ahead of time or on demand."""
 
 from __future__ import annotations
 
@@ -23,10 +23,6 @@ from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.physics.kinematic import turn_wheels
 from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.world import World
-
-# The images of one instant in many worlds: made ahead, or when somebody asks for one.
-
-# Threads that work for a fleet while Python goes on.
 
 Task = Callable[[], None]
 
@@ -61,7 +57,7 @@ class PendingWork:
         self._tasks = list(tasks)
 
     def finish(self) -> None:
-        """Do what nobody has begun with, the last first, and wait for the rest."""
+        """Do the tasks that no thread has begun, the last first, and wait for the rest."""
         begun = []
         while self._tasks:
             task, future = self._tasks.pop()
@@ -103,7 +99,7 @@ class Exposure:
         """Have the images made.
 
         Raises:
-            BadInput: the instant is over, and nobody had begun with them.
+            BadInput: the instant is over, and had not begun them.
         """
         if self._begun is None:
             if self._is_over:
@@ -155,7 +151,7 @@ class Exposures:
         return cls((), {})
 
     def asked_for(self) -> set[str]:
-        """Names of the cameras of which somebody asked for an image."""
+        """Names of the cameras whose images were asked for."""
         return {shot.name for shot in self._shots if shot.is_asked_for}
 
     def end(self) -> None:
@@ -189,11 +185,11 @@ _SHARES: Final = 2  # of a camera's images for each thread, so that none waits l
 class BatchCameras:
     """The cameras of B worlds, see `shared_cameras`; with the same bytes as those of each world by itself.
 
-    Images of a camera are made ahead, by threads while Python goes on, if somebody asked for those of the
+    Images of a camera are made ahead, by threads while Python goes on, if those were asked for of the
     instant before; all others when they are asked for.
 
     Args:
-        worlds: of one kind, all of a fleet.
+        worlds: of one kind, all of a batch.
         joined: where all of their parts are.
         wheels: (B, 2) numbers of the wheels among the parts of all worlds.
         workers: makes the images.
@@ -205,9 +201,9 @@ class BatchCameras:
         self._worlds, self._joined, self._crew = tuple(worlds), joined, workers
         self._wheels = wheels.reshape(-1)
         self._cameras = dict(worlds[0].cameras)
-        scenery = join_scenes([world.table for world in worlds], [world.looks for world in worlds])
-        self._studios = {
-            name: make_stage(name, config, scenery, worlds) for name, config in self._cameras.items()
+        scene = join_scenes([world.table for world in worlds], [world.looks for world in worlds])
+        self._stages = {
+            name: make_stage(name, config, scene, worlds) for name, config in self._cameras.items()
         }
         self._images = {name: image_names(name, config) for name, config in self._cameras.items()}
         first_body = np.repeat(joined.first_body[:-1], np.diff(joined.first_part))
@@ -239,7 +235,7 @@ class BatchCameras:
                     camera=robots[rows] @ config.camera.robot_from_camera,
                     turned=turn_rad_s[rows] * config.exposure_s,
                 )
-                shots.append(Exposure(name, config, rows, partial(self._shoot, name, active[rows], poses)))
+                shots.append(Exposure(name, config, rows, partial(self._render, name, active[rows], poses)))
         for shot in reversed(shots):  # as who looks at the first of them helps with that
             if shot.name in asked_for:
                 shot.begin()
@@ -247,11 +243,11 @@ class BatchCameras:
         return self._shots
 
     def finish(self) -> None:
-        """Wait for all images with which somebody has begun, as must be before the worlds change."""
+        """Wait for all images under way, as must be before the worlds change."""
         self._shots.end()
 
-    def _shoot(self, name: str, worlds: Numbers, poses: Poses) -> tuple[Images, PendingWork]:
-        images, fill = self._studios[name].shoot(worlds, poses)
+    def _render(self, name: str, worlds: Numbers, poses: Poses) -> tuple[Images, PendingWork]:
+        images, fill = self._stages[name].render(worlds, poses)
         count = min(_SHARES * self._crew.threads, len(worlds))
         ends = np.linspace(0, len(worlds), count + 1).round().astype(int).tolist()
         return images, self._crew.start([partial(fill, *share) for share in pairwise(ends)])

@@ -134,7 +134,7 @@ class BatchDrive:
     """The robots of B worlds, whose gears lie in arrays of all of them from now on.
 
     Args:
-        worlds: of a fleet.
+        worlds: of a batch.
         walks: where everybody goes.
         joined: where all is that they may run into.
         vehicle: what they roll on.

@@ -1,4 +1,4 @@
-"""What cameras of plain detail look at in many worlds (numba kernels)."""
+"""Thermal and colour images of cameras of plain detail in many worlds (numba kernels)."""
 
 from __future__ import annotations
 
@@ -19,8 +19,6 @@ from peopleboy.sim.rendering.canvas import Canvas, Lens, locate, shade
 from peopleboy.sim.rendering.raycast import draw
 from peopleboy.sim.shapes.joined_tables import JoinedTables, Numbers, ends, join_tables, table_of
 from peopleboy.sim.shapes.shape_table import ShapeTable
-
-# What there is to be seen in many worlds, one world after the other in arrays.
 
 Array = NDArray[np.float64]
 
@@ -44,38 +42,38 @@ class JoinedScene(NamedTuple):
 
     Attributes:
         tables: visible shapes of all worlds.
-        looks: of their parts.
+        materials: of their parts.
         part: (B + 1,) where each world's parts begin, and where the last end.
     """
 
     tables: JoinedTables
-    looks: Materials
+    materials: Materials
     part: Numbers
 
 
 def join_scenes(tables: Sequence[ShapeTable], materials: Sequence[MaterialTable]) -> JoinedScene:
-    """Copy tables and looks of worlds of plain detail into arrays of all of them."""
+    """Copy tables and materials of worlds of plain detail into arrays of all of them."""
     own = [(each.thermal, each.colour, each.kind, each.period, each.phase) for each in materials]
     first = materials[0]
     without = first.finish, first.texels, first.paint, first.paint_texels
-    looks = Materials._make([*map(np.concatenate, zip(*own, strict=True)), *without])
-    return JoinedScene(join_tables(tables), looks, ends([len(each.thermal) for each in materials]))
+    joined = Materials._make([*map(np.concatenate, zip(*own, strict=True)), *without])
+    return JoinedScene(join_tables(tables), joined, ends([len(each.thermal) for each in materials]))
 
 
 @njit(cache=True, nogil=True)
-def materials_of(scenery: JoinedScene, world: int) -> Materials:
+def materials_of(scene: JoinedScene, world: int) -> Materials:
     """How the parts of one of the worlds look."""
-    looks, p, p_end = scenery.looks, scenery.part[world], scenery.part[world + 1]
+    materials, p, p_end = scene.materials, scene.part[world], scene.part[world + 1]
     return Materials(
-        looks.thermal[p:p_end],
-        looks.colour[p:p_end],
-        looks.kind[p:p_end],
-        looks.period[p:p_end],
-        looks.phase[p:p_end],
-        looks.finish,
-        looks.texels,
-        looks.paint,
-        looks.paint_texels,
+        materials.thermal[p:p_end],
+        materials.colour[p:p_end],
+        materials.kind[p:p_end],
+        materials.period[p:p_end],
+        materials.phase[p:p_end],
+        materials.finish,
+        materials.texels,
+        materials.paint,
+        materials.paint_texels,
     )
 
 
@@ -113,6 +111,22 @@ class KernelCamera(NamedTuple):
     sweep: Array
 
 
+class Views(NamedTuple):
+    """What the cameras of G worlds look at, one camera each, all alike.
+
+    Attributes:
+        worlds: (G,) numbers of the worlds in the scene.
+        scene: of all worlds.
+        poses: where all is, and the cameras.
+        camera: the one of every world.
+    """
+
+    worlds: Numbers
+    scene: JoinedScene
+    poses: Poses
+    camera: KernelCamera
+
+
 class Buffers(NamedTuple):
     """Space for what one camera sees, (H, W), as in `peopleboy.sim.rendering.view.View`."""
 
@@ -122,9 +136,9 @@ class Buffers(NamedTuple):
 
 
 @njit(cache=True)
-def make_buffers(lens: Lens, scenery: JoinedScene) -> tuple[Canvas, Buffers]:
+def make_buffers(lens: Lens, scene: JoinedScene) -> tuple[Canvas, Buffers]:
     """Space for one image after the other."""
-    shape, surfaces, first = (lens.height, lens.width), 0, scenery.tables.surface
+    shape, surfaces, first = (lens.height, lens.width), 0, scene.tables.surface
     for world in range(len(first) - 1):
         surfaces = max(surfaces, first[world + 1] - first[world])
     canvas = Canvas(
@@ -141,24 +155,18 @@ def make_buffers(lens: Lens, scenery: JoinedScene) -> tuple[Canvas, Buffers]:
 
 
 @njit(cache=True)
-def render_view(
-    world: int,
-    row: int,
-    table: ShapeTable,
-    first_part: Numbers,
-    poses: Poses,
-    eye: KernelCamera,
-    canvas: Canvas,
-) -> Array:
-    """Draw one world; gives the matrices of `part_from_pixel`."""
-    first, end = first_part[world], first_part[world + 1]
+def render_view(views: Views, row: int, table: ShapeTable, canvas: Canvas) -> Array:
+    """Draw the shapes of one world; returns the matrices of `part_from_pixel`."""
+    world, poses = views.worlds[row], views.poses
+    first, end = views.scene.part[world], views.scene.part[world + 1]
     parts, camera = poses.part[first:end], poses.camera[row]
     camera_from_world = np.empty((4, 4))
     invert(camera, camera_from_world)
-    nobody = np.zeros(end - first, np.uint64)
+    no_person = np.zeros(end - first, np.uint64)
     canvas.nearness[:] = 0.0
-    draw(table, from_each(camera_from_world, parts), poses.hidden[first:end], nobody, eye.lens, canvas)
-    return combine(eye.rays, camera, parts)
+    lens, hidden = views.camera.lens, poses.hidden[first:end]
+    draw(table, from_each(camera_from_world, parts), hidden, no_person, lens, canvas)
+    return combine(views.camera.rays, camera, parts)
 
 
 @njit(cache=True)
@@ -175,14 +183,19 @@ def blur_by_rotation(lines: Image, sweep_of_one_rad: Array, turned_rad: float, c
     return weighted_sum(lines, weights, channels)
 
 
-# Colour images of many worlds, from poses to sRGB (numba kernels).
-
-
 class ColourResponse(NamedTuple):
-    """How a colour camera exposes: gain, and noise as in `LightConfig`; (3,) direction of the light."""
+    """How a colour camera exposes.
+
+    Attributes:
+        read_noise, shot_noise: as in `LightConfig`.
+        quantiles: of the noise.
+        light: (3,) direction of the light.
+        gamma: table from linear values to sRGB.
+    """
 
     read_noise: np.float32
     shot_noise: np.float32
+    quantiles: Image
     light: Array
     gamma: NDArray[np.uint8]
 
@@ -191,13 +204,9 @@ class ColourResponse(NamedTuple):
 def render_colour(
     first: int,
     end: int,
-    worlds: Numbers,
-    scenery: JoinedScene,
-    poses: Poses,
-    eye: KernelCamera,
-    film: ColourResponse,
+    views: Views,
+    response: ColourResponse,
     level: Array,
-    quantiles: Image,
     words: NDArray[np.uint64],
     image: NDArray[np.uint8],
 ) -> None:
@@ -206,37 +215,33 @@ def render_colour(
     Args:
         first: row of the first world of these.
         end: row after the last one.
-        worlds: (G,) their numbers in the scenery.
-        scenery: of all.
-        poses: of all.
-        eye: the camera, the same in all worlds.
-        film: how it exposes.
+        views: of all worlds.
+        response: how the camera exposes.
         level: (G,) of the light, times the camera's gain.
-        quantiles: of the noise.
         words: (end - first, N) random, of these rows.
         image: (G, H, W, 3) rows first..end-1 are filled.
     """
-    canvas, view = make_buffers(eye.lens, scenery)
-    noise = np.empty((eye.lens.height, eye.lens.width, 3), np.float32)
+    lens, scene = views.camera.lens, views.scene
+    canvas, view = make_buffers(lens, scene)
+    noise = np.empty((lens.height, lens.width, 3), np.float32)
     for row in range(first, end):
-        table, looks = table_of(scenery.tables, worlds[row]), materials_of(scenery, worlds[row])
-        matrices = render_view(worlds[row], row, table, scenery.part, poses, eye, canvas)
-        rotation = np.ascontiguousarray(poses.camera[row, :3, :3])
-        shade(table.surface_part, eye.lens, canvas, rotation, view.part, view.depth, view.normal)
+        table, own = table_of(scene.tables, views.worlds[row]), materials_of(scene, views.worlds[row])
+        matrices = render_view(views, row, table, canvas)
+        rotation = np.ascontiguousarray(views.poses.camera[row, :3, :3])
+        shade(table.surface_part, lens, canvas, rotation, view.part, view.depth, view.normal)
         linear = light_image(
-            view.part, view.depth, view.normal, matrices, looks.colour, looks.kind, looks.period, looks.phase,
-            looks.finish, looks.texels, looks.paint, looks.paint_texels, film.light, level[row],
+            view.part, view.depth, view.normal, matrices, own.colour, own.kind, own.period, own.phase,
+            own.finish, own.texels, own.paint, own.paint_texels, response.light, level[row],
         )  # fmt: skip
-        lines = linear.reshape(eye.lens.height, 3 * eye.lens.width)
-        smeared = blur_by_rotation(lines, eye.sweep, poses.turned[row], 3)
-        look_up(quantiles, words[row - first], noise.reshape(-1))
-        coded = encode(smeared.reshape(noise.shape), noise, film.gamma, film.read_noise, film.shot_noise)
+        lines = linear.reshape(lens.height, 3 * lens.width)
+        smeared = blur_by_rotation(lines, views.camera.sweep, views.poses.turned[row], 3)
+        look_up(response.quantiles, words[row - first], noise.reshape(-1))
+        coded = encode(
+            smeared.reshape(noise.shape), noise, response.gamma, response.read_noise, response.shot_noise
+        )
         source, target = coded.reshape(-1), image[row].reshape(-1)
         for i in range(len(target)):
             target[i] = source[i]
-
-
-# Thermal images of many worlds, from poses to greys (numba kernels).
 
 
 class RadianceTables(NamedTuple):
@@ -252,10 +257,7 @@ class RadianceTables(NamedTuple):
 def render_radiance(
     first: int,
     end: int,
-    worlds: Numbers,
-    scenery: JoinedScene,
-    poses: Poses,
-    eye: KernelCamera,
+    views: Views,
     tables: RadianceTables,
     surroundings: Array,
     margin: int,
@@ -266,29 +268,26 @@ def render_radiance(
     Args:
         first: row of the first world of these.
         end: row after the last one.
-        worlds: (G,) their numbers in the scenery.
-        scenery: of all.
-        poses: of all.
-        eye: the camera, the same in all worlds.
+        views: of all worlds.
         tables: of radiance.
         surroundings: (G,) radiance of what surfaces mirror.
         margin: M rows above and below each image.
         sheet: (end - first, H + 2 M, W) is filled, with those rows as `optics_blur_sheet` wants them.
     """
-    canvas, view = make_buffers(eye.lens, scenery)
+    lens, scene = views.camera.lens, views.scene
+    canvas, view = make_buffers(lens, scene)
     for row in range(first, end):
-        table, looks = table_of(scenery.tables, worlds[row]), materials_of(scenery, worlds[row])
-        matrices = render_view(worlds[row], row, table, scenery.part, poses, eye, canvas)
-        locate(table.surface_part, eye.lens, canvas, view.part, view.depth)
+        table, own = table_of(scene.tables, views.worlds[row]), materials_of(scene, views.worlds[row])
+        matrices = render_view(views, row, table, canvas)
+        locate(table.surface_part, lens, canvas, view.part, view.depth)
         radiance = sheet[row - first]
         image = radiance_image(
-            view.part, view.depth, matrices, looks.thermal, looks.kind, looks.period, looks.phase,
-            looks.finish, looks.texels, looks.paint, looks.paint_texels, tables.radiance, surroundings[row],
-            tables.span_c,
+            view.part, view.depth, matrices, own.thermal, own.kind, own.period, own.phase, own.finish,
+            own.texels, own.paint, own.paint_texels, tables.radiance, surroundings[row], tables.span_c,
         )  # fmt: skip
         for v in range(len(radiance)):
-            from_row = min(max(v - margin, 0), eye.lens.height - 1)
-            for u in range(eye.lens.width):
+            from_row = min(max(v - margin, 0), lens.height - 1)
+            for u in range(lens.width):
                 radiance[v, u] = image[from_row, u]
 
 
@@ -301,6 +300,7 @@ class Detectors(NamedTuple):
         netd_k: [K].
         lowest_c: [degC] of grey 0.
         grey_per_k: how many greys a kelvin has.
+        quantiles: of the noise.
     """
 
     offset_k: Image
@@ -309,20 +309,18 @@ class Detectors(NamedTuple):
     netd_k: np.float32
     lowest_c: np.float32
     grey_per_k: np.float32
+    quantiles: Image
 
 
 @njit(cache=True, nogil=True)
 def detect_thermal(
     first: int,
     end: int,
-    worlds: Numbers,
-    margin: int,
-    sheet: Image,
-    eye: KernelCamera,
-    turned: Array,
+    views: Views,
     tables: RadianceTables,
     detectors: Detectors,
-    quantiles: Image,
+    margin: int,
+    sheet: Image,
     words: NDArray[np.uint64],
     temperature_c: Image,
     grey: NDArray[np.uint8],
@@ -332,14 +330,11 @@ def detect_thermal(
     Args:
         first: row of the first world of these.
         end: row after the last one.
-        worlds: (G,) their numbers.
-        margin: M rows above and below each image.
-        sheet: (end - first, H + 2 M, W), what is read of it is lost.
-        eye: the camera.
-        turned: (G,) [rad] as in `Poses`.
+        views: of all worlds.
         tables: of radiance.
         detectors: of all worlds.
-        quantiles: of the noise.
+        margin: M rows above and below each image.
+        sheet: (end - first, H + 2 M, W), what is read of it is lost.
         words: (end - first, N) random, of these rows.
         temperature_c: (G, H, W) [degC] rows first..end-1 are filled.
         grey: (G, H, W) likewise.
@@ -348,12 +343,13 @@ def detect_thermal(
     noise = np.empty(height * width, np.float32)
     black, white = np.float32(0.0), np.float32(255.0)
     for row in range(first, end):
-        apparent = blur_by_rotation(sheet[row - first][margin : margin + height], eye.sweep, turned[row], 1)
+        lines, turned_rad = sheet[row - first][margin : margin + height], views.poses.turned[row]
+        apparent = blur_by_rotation(lines, views.camera.sweep, turned_rad, 1)
         to_apparent_c(apparent, tables.temperature, tables.span[0], tables.span[1])
-        look_up(quantiles, words[row - first], noise)
+        look_up(detectors.quantiles, words[row - first], noise)
         seen, found, greys = apparent.reshape(-1), temperature_c[row].reshape(-1), grey[row].reshape(-1)
-        offset_k = detectors.offset_k[worlds[row]].reshape(-1)
-        dead = detectors.dead[worlds[row]].reshape(-1)
+        offset_k = detectors.offset_k[views.worlds[row]].reshape(-1)
+        dead = detectors.dead[views.worlds[row]].reshape(-1)
         for i in range(height * width):
             read = noise[i] * detectors.netd_k + seen[i] + offset_k[i]
             found[i] = detectors.dead_c if dead[i] else read

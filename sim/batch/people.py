@@ -30,10 +30,10 @@ class BatchWalks:
 
     Attributes:
         first: (B + 1,) where the people of each world begin.
-        world: (Q,) number of everybody's world.
+        world: (Q,) number of each person's world.
         is_scripted: (B,) worlds in which all walk here; in others they walk by themselves.
-        makes_way: (B,) in which of these somebody makes way.
-        records: (Q,) WALK of everybody.
+        makes_way: (B,) those of them in which a person makes way.
+        records: (Q,) WALK of all people.
     """
 
     def __init__(self, worlds: Sequence[World]) -> None:
@@ -44,10 +44,15 @@ class BatchWalks:
         self.makes_way = np.array(
             [crowd.is_scripted and bool(crowd.walks["yields"].any()) for crowd in crowds], np.bool_
         )
-        self._walls = np.concatenate([np.empty((0, 4)), *(crowd.walls for crowd in crowds)])
-        self._first_wall = ends([len(crowd.walls) for crowd in crowds])
-        self._scripts = join_scripts([script for crowd in crowds for script in crowd.scripts])
         self.records = join_records([crowd.walks for crowd in crowds], WALK)
+        self._joined = JoinedWalks(
+            is_scripted=self.is_scripted,
+            first=self.first,
+            records=self.records,
+            scripts=join_scripts([script for crowd in crowds for script in crowd.scripts]),
+            walls=np.concatenate([np.empty((0, 4)), *(crowd.walls for crowd in crowds)]),
+            first_wall=ends([len(crowd.walls) for crowd in crowds]),
+        )
         for crowd, first, end in zip(crowds, self.first, self.first[1:], strict=False):
             crowd.rebind(self.records[first:end])
 
@@ -58,34 +63,33 @@ class BatchWalks:
             active: (G,) numbers of the worlds.
             times_s: (G,) [s] in each of them at the start of the step.
             dt_s: [s] length of the step.
-            robots: (G, 5) their robots, as of `RobotMotion`; velocities count where somebody makes way.
+            robots: (G, 5) their robots, as of `RobotMotion`; velocities count where a person makes way.
         """
-        _walk_worlds(
-            active, self.is_scripted, self.first, self.records, self._scripts, times_s, dt_s,
-            robots, self._walls, self._first_wall, _TWO,
-        )  # fmt: skip
+        _walk_worlds(active, self._joined, times_s, dt_s, robots, _TWO)
+
+
+class JoinedWalks(NamedTuple):
+    """All people and walls of B worlds, as kernels take them; see `BatchWalks`."""
+
+    is_scripted: NDArray[np.bool_]
+    first: Numbers
+    records: Records
+    scripts: Scripts
+    walls: Array
+    first_wall: Numbers
 
 
 @njit(cache=True, nogil=True)
 def _walk_worlds(
-    active: Numbers,
-    is_scripted: NDArray[np.bool_],
-    first: Numbers,
-    walks: Records,
-    scripts: Scripts,
-    times_s: Array,
-    dt_s: float,
-    robots: Array,
-    walls: Array,
-    first_wall: Numbers,
-    two: float,
+    active: Numbers, walks: JoinedWalks, times_s: Array, dt_s: float, robots: Array, two: float
 ) -> None:
     for row in range(len(active)):
         world = active[row]
-        if is_scripted[world]:
+        if walks.is_scripted[world]:
             robot = (robots[row, 0], robots[row, 1], robots[row, 2], robots[row, 3], robots[row, 4])
-            own = walls[first_wall[world] : first_wall[world + 1]]
-            walk_on(first[world], first[world + 1], walks, scripts, times_s[row], dt_s, robot, own, two)
+            walls = walks.walls[walks.first_wall[world] : walks.first_wall[world + 1]]
+            first, end = walks.first[world], walks.first[world + 1]
+            walk_on(first, end, walks.records, walks.scripts, times_s[row], dt_s, robot, walls, two)
 
 
 class Parts(NamedTuple):
@@ -110,7 +114,7 @@ class BatchLimbs:
     """Everybody in B worlds in which people are seen.
 
     Args:
-        worlds: of a fleet.
+        worlds: of a batch.
         walks: where everybody goes.
         joined: where all bodies are.
     """

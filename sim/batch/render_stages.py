@@ -1,4 +1,4 @@
-"""What makes the images of one camera of many worlds, some worlds at a time."""
+"""Render stages: what makes the images of one camera of many worlds, some worlds at a time."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from peopleboy.sim.batch.image_kernels import (
     KernelCamera,
     Poses,
     RadianceTables,
+    Views,
     detect_thermal,
     render_colour,
     render_radiance,
@@ -40,7 +41,7 @@ from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.world import World, light_level
 
 Images = tuple[NDArray[Any], ...]
-Shoot = Callable[[int, int], None]  # fills the rows from one to before another
+Fill = Callable[[int, int], None]  # fills the rows from one to before another
 
 _TABLES = RadianceTables(RADIANCE, (LOWEST_C, HIGHEST_C), TEMPERATURE, (DIMMEST, BRIGHTEST))
 
@@ -48,19 +49,17 @@ _TABLES = RadianceTables(RADIANCE, (LOWEST_C, HIGHEST_C), TEMPERATURE, (DIMMEST,
 class RenderStage(Protocol):
     """One camera, the same in B worlds."""
 
-    def shoot(self, worlds: Numbers, poses: Poses) -> tuple[Images, Shoot]:
-        """Give space for what the sensors of worlds of some numbers (G,) take now, and what fills it."""
+    def render(self, worlds: Numbers, poses: Poses) -> tuple[Images, Fill]:
+        """Return space for the images of worlds of some numbers (G,), and what fills it."""
         ...
 
 
 class ThermalStage:
-    """Does as `ThermalSensor` of a simple camera."""
+    """Renders the images of `ThermalSensor`, of a simple camera."""
 
-    def __init__(
-        self, name: str, config: ThermalConfig, scenery: JoinedScene, worlds: Sequence[World]
-    ) -> None:
-        self._name, self._config, self._scenery, self._worlds = name, config, scenery, tuple(worlds)
-        self._eye = _eye(config.camera)
+    def __init__(self, name: str, config: ThermalConfig, scene: JoinedScene, worlds: Sequence[World]) -> None:
+        self._name, self._config, self._scene, self._worlds = name, config, scene, tuple(worlds)
+        self._camera = _kernel_camera(config.camera)
         self._surroundings = np.array([mirrored(world.config.place.surroundings_c) for world in worlds])
         detectors = [_thermal(world, name).detector for world in worlds]
         self._detectors = Detectors(
@@ -70,75 +69,71 @@ class ThermalStage:
             netd_k=np.float32(config.netd_k),
             lowest_c=np.float32(config.lowest_c),
             grey_per_k=np.float32(255.0 / (config.highest_c - config.lowest_c)),
+            quantiles=QUANTILES,
         )
 
-    def shoot(self, worlds: Numbers, poses: Poses) -> tuple[Images, Shoot]:
-        """See `RenderStage.shoot`; of greys and temperatures [degC], (G, H, W)."""
+    def render(self, worlds: Numbers, poses: Poses) -> tuple[Images, Fill]:
+        """See `RenderStage.render`; of greys and temperatures [degC], (G, H, W)."""
         shape = (len(worlds), self._config.camera.height, self._config.camera.width)
         temperature_c, grey = np.empty(shape, np.float32), np.empty(shape, np.uint8)
         surroundings, blur_px = self._surroundings[worlds], self._config.blur_px
         margin = optics_margin(blur_px)
         sensors = [_thermal(self._worlds[number], self._name) for number in worlds.tolist()]
-        eye, scenery = self._eye, self._scenery
+        views = Views(worlds, self._scene, poses, self._camera)
 
         def fill(first: int, end: int) -> None:
             words = np.stack([sensor.draw_noise() for sensor in sensors[first:end]])
             sheet = np.empty((end - first, shape[1] + 2 * margin, shape[2]), np.float32)
-            render_radiance(first, end, worlds, scenery, poses, eye, _TABLES, surroundings, margin, sheet)
+            render_radiance(first, end, views, _TABLES, surroundings, margin, sheet)
             sheet = optics_blur_sheet(sheet, blur_px)
             detect_thermal(
-                first, end, worlds, margin, sheet, eye, poses.turned, _TABLES, self._detectors, QUANTILES,
-                words, temperature_c, grey,
-            )  # fmt: skip
+                first, end, views, _TABLES, self._detectors, margin, sheet, words, temperature_c, grey
+            )
 
         return (grey, temperature_c), fill
 
 
 class ColourStage:
-    """Does as `ColourSensor`."""
+    """Renders the images of `ColourSensor`."""
 
-    def __init__(
-        self, name: str, config: ColourConfig, scenery: JoinedScene, worlds: Sequence[World]
-    ) -> None:
-        self._name, self._config, self._scenery, self._worlds = name, config, scenery, tuple(worlds)
-        self._eye = _eye(config.camera)
-        self._film = ColourResponse(
-            np.float32(config.read_noise), np.float32(config.shot_noise), LIGHT, GAMMA
+    def __init__(self, name: str, config: ColourConfig, scene: JoinedScene, worlds: Sequence[World]) -> None:
+        self._name, self._config, self._scene, self._worlds = name, config, scene, tuple(worlds)
+        self._camera = _kernel_camera(config.camera)
+        self._response = ColourResponse(
+            np.float32(config.read_noise), np.float32(config.shot_noise), QUANTILES, LIGHT, GAMMA
         )
 
-    def shoot(self, worlds: Numbers, poses: Poses) -> tuple[Images, Shoot]:
-        """See `RenderStage.shoot`; of (G, H, W, 3) sRGB."""
+    def render(self, worlds: Numbers, poses: Poses) -> tuple[Images, Fill]:
+        """See `RenderStage.render`; of (G, H, W, 3) sRGB."""
         image = np.empty((len(worlds), self._config.camera.height, self._config.camera.width, 3), np.uint8)
         own = [self._worlds[number] for number in worlds.tolist()]
         sensors = [_colour(world, self._name) for world in own]
+        views = Views(worlds, self._scene, poses, self._camera)
         level = np.array([light_level(each.config.place, each.time_s) * self._config.gain for each in own])
 
         def fill(first: int, end: int) -> None:
             words = np.stack([sensor.draw_noise() for sensor in sensors[first:end]])
-            render_colour(
-                first, end, worlds, self._scenery, poses, self._eye, self._film, level, QUANTILES, words,
-                image,
-            )  # fmt: skip
+            render_colour(first, end, views, self._response, level, words, image)
 
         return (image,), fill
 
 
-def make_stage(name: str, config: CameraConfig, scenery: JoinedScene, worlds: Sequence[World]) -> RenderStage:
-    """Prepare for the images of a camera for which there `is_studio`."""
+def make_stage(name: str, config: CameraConfig, scene: JoinedScene, worlds: Sequence[World]) -> RenderStage:
+    """Prepare for the images of a camera that `has_stage`."""
     if isinstance(config, ThermalConfig):
-        return ThermalStage(name, config, scenery, worlds)
+        return ThermalStage(name, config, scene, worlds)
     assert isinstance(config, ColourConfig)
-    return ColourStage(name, config, scenery, worlds)
+    return ColourStage(name, config, scene, worlds)
 
 
 def has_stage(config: CameraConfig) -> bool:
-    """Whether there is a studio for a camera's images."""
+    """Return whether there is a render stage for a camera's images."""
     if not isinstance(config.camera, Pinhole):
         return False
     return isinstance(config, ColourConfig) or (isinstance(config, ThermalConfig) and config.is_simple)
 
 
-def _eye(camera: Pinhole) -> KernelCamera:
+def _kernel_camera(camera: Pinhole) -> KernelCamera:
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
     return KernelCamera(lens, rays_through(camera), sweep_of_one_rad(camera))
 

@@ -1,4 +1,4 @@
-"""Kinematic worlds that are stepped together."""
+"""Worlds stepped together: kinematic ones of a kind by kernels over all of them, others one by one."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class KinematicBatch:
     kernels over all worlds; people walk as in one.
 
     Args:
-        worlds: kinematic, and of one kind, see `batch_key`. A world is in one fleet at a time, the last
+        worlds: kinematic, and of one kind, see `batch_key`. A world is in one batch at a time, the last
             that it was put into.
         workers: makes images while Python goes on.
     """
@@ -159,7 +159,7 @@ class KinematicBatch:
 
 
 def batch_key(world: World) -> tuple[object, ...] | None:
-    """What all worlds of a fleet must share; None for a world that cannot be in one."""
+    """What all worlds of a batch must share; None for a world that cannot be in one."""
     config = world.config
     if config.physics != "kinematic":
         return None
@@ -179,11 +179,8 @@ def _kinematic(world: World) -> Kinematic:
     return world.physics
 
 
-# Any worlds, stepped together as far as they can be.
-
-
 class WorldBatch:
-    """Worlds by number: kinematic ones in a fleet for each kind, others each by itself."""
+    """Worlds by number: kinematic ones in a batch for each kind, others each by itself."""
 
     def __init__(self, worlds: Sequence[World], workers: WorkerPool) -> None:
         self._worlds = tuple(worlds)
@@ -191,7 +188,7 @@ class WorldBatch:
         for number, world in enumerate(worlds):
             kinds[batch_key(world)].append(number)
         self._alone = kinds.pop(None, [])
-        self._fleets = [
+        self._batches = [
             (KinematicBatch([worlds[number] for number in group], workers), np.array(group, np.int64))
             for group in kinds.values()
         ]
@@ -217,9 +214,9 @@ class WorldBatch:
                 found.append(take_snapshot(world)._replace(numbers=active[k : k + 1]))
         row = np.full(len(self._worlds), -1)
         row[active] = np.arange(len(active))
-        for fleet, group in self._fleets:
+        for batch, group in self._batches:
             own = np.flatnonzero(row[group] >= 0)
             if len(own):
-                fleet.step(own, commands[row[group[own]]])
-                found.append(fleet.look(own)._replace(numbers=group[own]))
+                batch.step(own, commands[row[group[own]]])
+                found.append(batch.look(own)._replace(numbers=group[own]))
         return found
