@@ -23,11 +23,10 @@ from peopleboy.scenarios.environments.episodes import (
     StepOutcomes,
     track_in,
 )
-from peopleboy.scenarios.environments.normalise import Normaliser
+from peopleboy.scenarios.environments.observation_builder import Normaliser, ObservationBuilder
 from peopleboy.scenarios.environments.observations import (
     KINDS,
     Arrays,
-    ObservationBuilder,
     observation_space,
     observe_tracks,
 )
@@ -90,7 +89,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         physics: "bullet" or "kinematic", which is quicker and needs no PyBullet; None for the scenario's.
         physics_hz: steps of physics a second, a multiple of 15; None is that of a run, 240. 60 is quicker by
             what `python -m benchmarks.speed.environments` prints, beside how far the robot's way is off then.
-        normalise: whether numbers are brought within -1..1, see `peopleboy.scenarios.environments.normalise`.
+        normalise: whether numbers are brought within -1..1, see `Normaliser` in
+            `peopleboy.scenarios.environments.observation_builder`.
 
     Raises:
         BadInput: an argument cannot be used.

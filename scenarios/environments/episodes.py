@@ -97,7 +97,7 @@ def track_in(scenes: Scenes, row: int, tracks: Iterable[Track], box: Box | None,
     spot = None
     if box is not None and len(target):
         x, y = target["position_m"][0].tolist()
-        spot = Spot(box, Pose2(*world["robot"].tolist()).locate((x, y)))
+        spot = Spot(box, Pose2(*world["robot"].tolist()).to_local((x, y)))
     return track_on(spot, tracks, before)
 
 

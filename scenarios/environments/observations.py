@@ -11,7 +11,6 @@ from gymnasium import spaces
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.environments.normalise import Normaliser
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import thermal_box
 from peopleboy.sim.batch.snapshot import Snapshot
@@ -21,7 +20,7 @@ from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.joined_tables import Numbers
-from peopleboy.sim.truth.scenes import SEEN, Records, Scenes
+from peopleboy.sim.truth.scenes import SEEN, Scenes
 from peopleboy.tracker.boxes import image_shares
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Status, Track
@@ -193,56 +192,3 @@ def _fill(
     found = np.empty((len(borders), MOST_TRACKS * len(COLUMNS)), np.float32)
     fill_tracks(people, borders, camera.width, camera.height, farthest, _LOWEST, _HIGHEST, found)
     return found
-
-
-class ObservationBuilder:
-    """Builds the observations of one kind, in one world as in many.
-
-    Args:
-        kind: one of `KINDS`.
-        robot: with the cameras of all worlds.
-        shown: names of those whose images `pixels` has.
-        normaliser: brings numbers within -1..1; None to leave them.
-
-    Attributes:
-        tracks: whether trackers look for people.
-        slow: names of the cameras that do not take an image at every step.
-    """
-
-    def __init__(
-        self, kind: str, robot: RobotConfig, shown: Sequence[str], normaliser: Normaliser | None
-    ) -> None:
-        self._kind, self._robot, self._normaliser = kind, robot, normaliser
-        self._shapes = {name: image_shape(robot.cameras[name]) for name in shown} if kind == "pixels" else {}
-        self.tracks = kind == "tracks"
-        self.slow = [name for name in self._shapes if robot.cameras[name].rate_hz]
-
-    def build(self, snapshot: Snapshot, episodes: Records, tracks: NDArray[np.float32] | None) -> Arrays:
-        """Return all but images, with worlds first.
-
-        Args:
-            snapshot: of G worlds, by their numbers.
-            episodes: (B,) records EPISODE.
-            tracks: (G, 35) where trackers look, None elsewhere.
-        """
-        numbers = snapshot.numbers
-        found = read_sensors(snapshot, episodes["start"][numbers])
-        if self._kind == "truth":
-            found["tracks"] = observe_truth(snapshot.scenes, self._robot)
-        elif tracks is not None:
-            found["tracks"] = tracks
-        if self._normaliser is not None:
-            holders = episodes["holders"][numbers]
-            found = self._normaliser(found, holders)
-            episodes["holders"][numbers] = holders
-        return found
-
-    def images(self, snapshot: Snapshot) -> dict[str, tuple[Sequence[int], NDArray[Any]]]:
-        """Return the images of `pixels`: for each camera which of the worlds have a new one, and these."""
-        found = {}
-        for name, shape in self._shapes.items():
-            assert snapshot.images is not None
-            rows, images = snapshot.images.of_camera(name)
-            if rows:
-                found[name] = rows, np.asarray(images).reshape(-1, *shape)
-        return found
