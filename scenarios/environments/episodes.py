@@ -10,6 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.environments.rewards import (
     ENDS,
     EPISODE,
@@ -24,7 +25,6 @@ from peopleboy.scenarios.scores.corridor_metrics import score_way
 from peopleboy.scenarios.scores.following_metrics import FollowingTask
 from peopleboy.scenarios.scores.following_score import TARGET, Spot, score_instants, track_on
 from peopleboy.sim.batch.snapshot import Snapshot
-from peopleboy.geometry.pose2 import Pose2
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.shapes.joined_tables import Numbers, ends
 from peopleboy.sim.truth.scenes import ImageFreeTruth, Scenes

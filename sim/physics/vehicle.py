@@ -11,7 +11,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.geometry.angles import remainder
+from peopleboy.sim.geometry.vectors import remainder
 from peopleboy.sim.physics.footprints import (
     APART,
     MOST_POINTS,

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.sim.geometry.vectors import remainder
 from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.geometry.vectors import remainder
 from peopleboy.sim.physics.physics import Physics
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.robot.robot_body import (
