@@ -28,7 +28,7 @@ CAMERAS: Final = {
         "width_px": _COLUMNS,
         "height_px": _ROWS,
         "vertical_fov_deg": _FOV_DEG,
-        "mount_m": [FORWARD_M, 0.0, HEIGHT_M],
+        "mount_m": (FORWARD_M, 0.0, HEIGHT_M),
         "pitch_deg": 0.0,
         "yaw_deg": yaw_deg,
     }
