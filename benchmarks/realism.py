@@ -20,10 +20,10 @@ from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.scenario_file import to_data
 from peopleboy.scenarios.loop.loop import closed_loop
-from peopleboy.scenarios.loop.tracker_by_name import make_eyes
+from peopleboy.scenarios.loop.tracker_by_name import make_named_tracker
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
+from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.scenarios.run_folder.image_files import image_file, write_png
-from peopleboy.scenarios.run_folder.output import whole
 from peopleboy.scenarios.run_folder.truth_files import gt_lines
 from peopleboy.scenarios.sim_to_real.compare import compare_footage
 from peopleboy.scenarios.sim_to_real.page import auc_words, write_comparison
@@ -122,7 +122,7 @@ def film(scenarios: Sequence[tuple[Scenario, int]], folder: Path) -> None:
     for scenario, seed in scenarios:
         clip = folder / f"{scenario.name}-{seed}"
         if not clip.exists():
-            with whole(clip) as part:
+            with atomic(clip) as part:
                 _film(scenario, seed, part)
 
 
@@ -131,7 +131,7 @@ def _film(scenario: Scenario, seed: int, clip: Path) -> None:
     config = scenario.world(seed)
     frames = round(scenario.duration_s * config.control_hz)
     with World(config) as world, (clip / "gt.txt").open("w", encoding="utf-8") as truth:
-        eyes = make_eyes(ORACLE, seed, world.truth)
+        eyes = make_named_tracker(ORACLE, seed, world.truth)
         for tick in closed_loop(world, eyes, scenario.make_behaviour(), frames):
             write_png(clip / "thermal" / image_file(tick.frame), tick.observation.images["thermal"])
             truth.writelines(gt_lines(tick))

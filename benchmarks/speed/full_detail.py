@@ -24,7 +24,7 @@ from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.scenario_file import to_data
 from peopleboy.scenarios.loop.loop import closed_loop
-from peopleboy.scenarios.loop.tracker_by_name import make_eyes
+from peopleboy.scenarios.loop.tracker_by_name import make_named_tracker
 from peopleboy.sim.cameras.presets import THERMAL_PRESETS
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
@@ -115,7 +115,9 @@ def _commands(scenario: Scenario, instants: int | None) -> list[Command]:
     config = scenario.world(SEED)
     frames = round(scenario.duration_s * config.control_hz) if instants is None else instants + COMPILED
     with World(config) as world:
-        ticks = closed_loop(world, make_eyes(ORACLE, SEED, world.truth), scenario.make_behaviour(), frames)
+        ticks = closed_loop(
+            world, make_named_tracker(ORACLE, SEED, world.truth), scenario.make_behaviour(), frames
+        )
         return [tick.command for tick in ticks]
 
 

@@ -21,7 +21,7 @@ def report(runs: Sequence[Path], out: Path | None) -> None:
     Two to four RUNs stand side by side; more are taken together by tracker. A folder that holds folders of
     runs, such as that of a sweep, is taken together too.
     """
-    from peopleboy.scenarios.report.page import write_report
+    from peopleboy.scenarios.report.report_page import write_report
 
     page = out if out is not None else (runs[0] / "report.html" if len(runs) == 1 else Path("report.html"))
     for line in write_report(runs, page):

@@ -53,8 +53,8 @@ def scene_model(folder: Path, out: Path | None, no_heat: bool, no_rrd: bool) -> 
     which `view` shows over the run's recording.
     """
     from peopleboy.scenarios.progress_bar import progress_bar
+    from peopleboy.scenarios.run_folder.atomic_output import check_named, writing_to
     from peopleboy.scenarios.run_folder.finished_run import open_run
-    from peopleboy.scenarios.run_folder.output import check_named, writing_to
     from peopleboy.scenarios.scene_model_runs.watch_run import FOLDER, WatchOptions, watch_run
 
     run = open_run(folder)

@@ -33,7 +33,7 @@ from peopleboy.scenarios.drawing.overlay import (
 from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, track_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine
-from peopleboy.scenarios.run_folder.output import writing_to
+from peopleboy.scenarios.run_folder.atomic_output import writing_to
 from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.robot.robot_config import RobotConfig

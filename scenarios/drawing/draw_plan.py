@@ -22,12 +22,12 @@ from peopleboy.scenarios.drawing.plan_place import (
     draw_floor,
     draw_things,
     draw_walls,
-    label_things,
+    name_things,
 )
 from peopleboy.scenarios.drawing.plan_robot import draw_robot
 from peopleboy.scenarios.drawing.plan_sheet import INK, PAPER, Labels, lay_out, sections
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.run_folder.output import writing_to
+from peopleboy.scenarios.run_folder.atomic_output import writing_to
 from peopleboy.sim.config import WorldConfig
 
 _PERSON, _ROBOT = "#1f6fb4", "#c0392b"
@@ -127,7 +127,7 @@ def _draw_section(axes: Axes, scenario: Scenario, config: WorldConfig) -> None:
     draw_moves(axes, labels, scenario.place)
     for index, person in enumerate(config.people):
         draw_person(axes, labels, person, scenario.duration_s, _PEOPLE[index % len(_PEOPLE)])
-    label_things(labels, scenario.place)
+    name_things(labels, scenario.place)
 
 
 def _caption(figure: Figure, scenario: Scenario, seed: int) -> None:

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Polygon
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.drawing.plan_place import outlines
+from peopleboy.scenarios.drawing.plan_place import footprints
 from peopleboy.scenarios.drawing.plan_sheet import Labels
 from peopleboy.sim.people.person import PersonConfig
 from peopleboy.sim.people.walking.surroundings import ALONE
@@ -177,7 +177,7 @@ def _legs(mover: Mover) -> Iterator[_Leg]:
 def _draw_ghost(axes: Axes, fixtures: list[Fixture], stance: Stance) -> None:
     for fixture in fixtures:
         moved = replace(fixture, position=stance.position_m, orientation=stance.orientation)
-        for corners in outlines(moved):
+        for corners in footprints(moved):
             axes.add_patch(
                 Polygon(corners, facecolor="none", edgecolor=COLOUR, lw=0.7, ls=(0, (2, 1.5)), zorder=5)
             )

@@ -22,7 +22,7 @@ _CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)],
 _CIRCLE = np.linspace(0.0, 2.0 * np.pi, 36, endpoint=False)
 
 
-def outlines(fixture: Fixture) -> list[Outline]:
+def footprints(fixture: Fixture) -> list[Outline]:
     """Outline every shape of a fixture from above; furniture from a file by the box around it."""
     if fixture.part is None:
         low, high = fixture_extent(fixture)[:, :2]
@@ -81,11 +81,11 @@ def draw_walls(axes: Axes, labels: Labels, place: Place) -> None:
         name = fixture.name
         if name.startswith("wall_") or name.endswith("/leaf"):
             colour = _LEAF if name.endswith("/leaf") else _WALL
-            for corners in outlines(fixture):
+            for corners in footprints(fixture):
                 axes.add_patch(Polygon(corners, facecolor=colour, edgecolor=colour, lw=0.4, zorder=3))
                 labels.taken.append((*corners.min(axis=0), *corners.max(axis=0)))
         elif name.endswith("/lintel"):
-            for corners in outlines(fixture):
+            for corners in footprints(fixture):
                 axes.add_patch(
                     Polygon(corners, facecolor="none", edgecolor=_EDGE, lw=0.6, ls=(0, (2, 2)), zorder=3)
                 )
@@ -98,7 +98,7 @@ def draw_things(axes: Axes, labels: Labels, place: Place) -> None:
     for fixture in sorted(things, key=lambda f: float(fixture_extent(f)[1, 2])):
         temperature = _temperature(fixture)
         is_overhead = _is_overhead([fixture])
-        for corners in outlines(fixture):
+        for corners in footprints(fixture):
             axes.add_patch(
                 Polygon(
                     corners,
@@ -111,7 +111,7 @@ def draw_things(axes: Axes, labels: Labels, place: Place) -> None:
             )
 
 
-def label_things(labels: Labels, place: Place) -> None:
+def name_things(labels: Labels, place: Place) -> None:
     """Name every thing, with its temperature if it is not the room's; the smallest first."""
     things = {name: fixtures for name, fixtures in _things(place).items() if not _is_overhead(fixtures)}
     for name, fixtures in sorted(things.items(), key=lambda item: _area(_box(item[1]))):

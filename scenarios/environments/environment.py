@@ -38,7 +38,7 @@ from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
-from peopleboy.scenarios.loop.tracker_by_name import camera_names, make_checked_eyes
+from peopleboy.scenarios.loop.tracker_by_name import make_checked_tracker, tracker_cameras
 from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.scores.following_score import TARGET, following_task
@@ -127,7 +127,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self.vary_by({} if randomise is None else randomise)
         first = self._moved(_random_episode(0) if scenario is None else load_scenario(scenario))
         self._tracker_name = first.tracker if tracker is None else tracker
-        self._wanted = camera_names(self._tracker_name)  # refuses an unknown name now
+        self._wanted = tracker_cameras(self._tracker_name)  # refuses an unknown name now
         self.task, self._kind, self._size = task, observation, image_size
         self.render_mode = render_mode
         usual = first.world(0)
@@ -166,7 +166,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._tracker: Tracker | None = None
         if self._kind == "tracks":
             name, cameras = self._tracker_name, config.robot.cameras
-            self._tracker = make_checked_eyes(name, self._seed, self._world.truth, cameras)
+            self._tracker = make_checked_tracker(name, self._seed, self._world.truth, cameras)
         self._tracks: tuple[Track, ...] = ()
         self._before: Pose2 | None = None
         self._track = 0  # that lay on the person to follow last

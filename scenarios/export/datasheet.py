@@ -19,12 +19,12 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.export.checks import Check
+from peopleboy.scenarios.export.dataset_checks import Check
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.random_worlds.distribution import ODDS, RANGES, SHARES
 from peopleboy.scenarios.run_folder.finished_run import cameras_of
 from peopleboy.scenarios.run_folder.image_files import describe_images
-from peopleboy.scenarios.run_folder.tables import is_in_image
+from peopleboy.scenarios.run_folder.run_tables import is_in_image
 from peopleboy.scenarios.scores.suite_table import add_up, count
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import KINDS, image_folders, kind_of

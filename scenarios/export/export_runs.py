@@ -10,9 +10,9 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.export.formats import FORMATS, takes
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.export.splits import by_split
+from peopleboy.scenarios.run_folder.atomic_output import atomic_folder
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.folder import versions
-from peopleboy.scenarios.run_folder.output import whole_folder
 from peopleboy.scenarios.scores.reference_boxes import CALLED, boxed_cameras, kind_of_boxes
 from peopleboy.tracker.footage.box_kinds import BoxKind
 
@@ -57,7 +57,7 @@ def export(
     about |= {"splits": splits} if splits else {}
     asked: dict[str, Any] = {"camera": camera, "least_px": least_px, "boxes": boxes}
     chosen = {name: value for name, value in asked.items() if value is not None}
-    with whole_folder(out, about | chosen, overwrite=overwrite) as folder:
+    with atomic_folder(out, about | chosen, overwrite=overwrite) as folder:
         FORMATS[form](runs, folder, play, **chosen)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.export.checks import Check, check_set
+from peopleboy.scenarios.export.dataset_checks import Check, check_set
 from peopleboy.scenarios.export.datasheet import Statistics, measure, write_datasheet
 from peopleboy.scenarios.export.splits import (
     ABOUT,
@@ -24,8 +24,8 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.random_worlds.drawn_values import drawn_values, histograms
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
+from peopleboy.scenarios.run_folder.atomic_output import check_named, writing_to
 from peopleboy.scenarios.run_folder.folder import versions
-from peopleboy.scenarios.run_folder.output import check_named, writing_to
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import RunTask, play, unfinished
 from peopleboy.scenarios.running.run import RunOptions

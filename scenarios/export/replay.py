@@ -18,7 +18,7 @@ from peopleboy.scenarios.loop.faults import FaultySensors
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.folder import versions
-from peopleboy.scenarios.run_folder.tables import Row, truth_rows
+from peopleboy.scenarios.run_folder.run_tables import Row, truth_rows
 
 Play = Callable[[FinishedRun], Iterator[Tick]]
 

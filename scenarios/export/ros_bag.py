@@ -28,10 +28,10 @@ def write_mcap(runs: Sequence[FinishedRun], folder: Path, play: Play) -> None:
 def _write_bag(run: FinishedRun, folder: Path, play: Play) -> None:
     from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
-    from peopleboy.scenarios.export.ros_messages import Messenger, message_types, nanoseconds
+    from peopleboy.scenarios.export.ros_messages import RosMessages, message_types, nanoseconds
 
     types = message_types()
-    messenger = Messenger(run.robot, types)
+    messenger = RosMessages(run.robot, types)
     bag = Writer(folder, version=_VERSION, storage_plugin=StoragePlugin.MCAP)
     bag.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
     topics: dict[str, Any] = {}

@@ -33,7 +33,7 @@ from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import FloorPlace, Status, Track, confirmed
 
 
-class OdometryNoise:
+class OdometryCovariance:
     """Adds up what encoders miscount, to first order; slip of the wheels is none of it.
 
     Args:
@@ -105,7 +105,7 @@ def message_types() -> Typestore:
     return store
 
 
-class Messenger:
+class RosMessages:
     """Turns ticks, in their order, into messages.
 
     Args:
@@ -118,7 +118,7 @@ class Messenger:
         self._cameras = robot.cameras
         self._sonar_height_m = robot.sonar.height_m
         self._further = further_cameras(robot.cameras)
-        self._noise = OdometryNoise(robot.drive.encoder_noise_m)
+        self._noise = OdometryCovariance(robot.drive.encoder_noise_m)
 
     def fixed(self, time_s: float) -> Iterator[Message]:
         """Say once where the cameras are on the robot."""

@@ -36,7 +36,7 @@ from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.export.splits import by_split
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.run_files import read_table
-from peopleboy.scenarios.run_folder.tables import TRUTH, Row
+from peopleboy.scenarios.run_folder.run_tables import TRUTH, Row
 from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.people.body.skeleton import JOINT_NAMES
 from peopleboy.sim.truth.truth import Box

@@ -27,7 +27,7 @@ from peopleboy.scenarios.drawing.overlay import (
 )
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.views import Views
-from peopleboy.scenarios.run_folder.tables import TRACKS, Row, track_row, write_table
+from peopleboy.scenarios.run_folder.run_tables import TRACKS, Row, track_row, write_table
 from peopleboy.tracker.boxes import Box
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks, track_line, write_truth

@@ -12,8 +12,8 @@ from peopleboy.own_code import at_frame, traceback_to
 from peopleboy.scenarios.footage.footage_output import FootageLog
 from peopleboy.scenarios.footage.options import RgbdOptions, TrackOptions
 from peopleboy.scenarios.footage.views import Views, open_views
+from peopleboy.scenarios.run_folder.atomic_output import atomic_folder, check_named
 from peopleboy.scenarios.run_folder.folder import versions
-from peopleboy.scenarios.run_folder.output import check_named, whole_folder
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.contour.variants import VARIANTS
@@ -71,7 +71,7 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
     trace = options.out.with_name(f"{options.out.name}-traceback.txt")
     with (
         traceback_to(trace),
-        whole_folder(options.out, about, overwrite=options.overwrite, kind="run") as folder,
+        atomic_folder(options.out, about, overwrite=options.overwrite, kind="run") as folder,
     ):
         log = FootageLog(folder, options, views, truth)
         with log:

@@ -15,10 +15,10 @@ from peopleboy.scenarios.files.own_files import keep_own_files
 from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.import_tracks.foreign_tracks import UNKNOWN, foreign_tracks
 from peopleboy.scenarios.recording.recorder import Recorder
+from peopleboy.scenarios.run_folder.atomic_output import atomic, check_out, writing_to
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_whole_runs, read_run
 from peopleboy.scenarios.run_folder.folder import RunFolder
 from peopleboy.scenarios.run_folder.image_files import about_gains
-from peopleboy.scenarios.run_folder.output import check_out, whole, writing_to
 from peopleboy.scenarios.running.run import Watchers
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
 from peopleboy.tracker.footage.box_kinds import BoxKind
@@ -70,7 +70,7 @@ def adopt(what: Adoption, report: Callable[[int, int], None]) -> RunScores:
     whys = {line.frame: line.why for line in run.events if line.kind == "mode"}
     with writing_to(what.out), ExitStack() as stack:
         check_out(what.out, "run", overwrite=what.overwrite)
-        part = stack.enter_context(whole(what.out))
+        part = stack.enter_context(atomic(what.out))
         part.mkdir(parents=True)
         cameras, has_images = run.robot.cameras, run.about.images
         folder = RunFolder(part, run.played, _about(what, run), cameras, frames=has_images)

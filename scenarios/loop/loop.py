@@ -107,7 +107,7 @@ class TrackerDown(RuntimeError):  # noqa: N818
     """A tracker is out of order, which the robot is to get over: it drives on without anybody in sight."""
 
 
-class Eyes:
+class Perception:
     """The tracker, and whether what it says can be relied on: images may stay out, and it may be down.
 
     Attributes:
@@ -122,7 +122,7 @@ class Eyes:
         self._images: Images = {}
         self.tracks: tuple[Track, ...] = ()
 
-    def look(self, observation: Observation) -> Percept:
+    def perceive(self, observation: Observation) -> Percept:
         """Let the tracker see the images if they are new, and tell the behaviour.
 
         Images equal to the last ones to the bit are no new ones: the noise of a camera never repeats. Before
@@ -155,16 +155,16 @@ def closed_loop(world: Stage, tracker: Tracker, behaviour: Behaviour, frames: in
         BadInput: tracker or behaviour gave what cannot be used; it is said at which frame.
         OwnCodeFailed: one that is checked failed.
     """
-    eyes = Eyes(tracker, calibrations_of(world.cameras))
+    perception = Perception(tracker, calibrations_of(world.cameras))
     for frame in range(1, frames + 1):
         with at_frame(frame):
             observation = world.observe()
-            command = behaviour.command(eyes.look(observation))
+            command = behaviour.command(perception.perceive(observation))
             tick = Tick(
                 frame=frame,
                 observation=observation,
                 truths=world.truths(),
-                tracks=eyes.tracks,
+                tracks=perception.tracks,
                 explanation=explanation_of(tracker),
                 mode=behaviour.mode,
                 command=command,

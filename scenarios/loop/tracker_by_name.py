@@ -58,7 +58,7 @@ def _place(person: PersonTruth, robot: Pose2) -> FloorPlace:
     return FloorPlace(position_m=robot.to_local(person.position_m), covariance_m2=(0.0, 0.0, 0.0))
 
 
-def make_eyes(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:
+def make_named_tracker(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:
     """Make a tracker by its name; "truth" is none, but knows.
 
     Raises:
@@ -67,7 +67,7 @@ def make_eyes(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:
     return OracleTracker(truth) if name == ORACLE else _make(name, seed)
 
 
-def make_checked_eyes(
+def make_checked_tracker(
     name: str, seed: int, truth: Callable[[], Truth], cameras: Mapping[str, CameraConfig]
 ) -> Tracker:
     """Make a tracker by its name, which may refuse the cameras; each answer of one of your own is looked at.
@@ -75,7 +75,7 @@ def make_checked_eyes(
     Raises:
         BadInput: an unknown name, or a tracker of your own that cannot be made, or cameras that it refuses.
     """
-    tracker = make_eyes(name, seed, truth)
+    tracker = make_named_tracker(name, seed, truth)
     check_cameras(tracker, cameras)
     return CheckedTracker(tracker, f"tracker {name!r}", cameras) if is_own(name) else tracker
 
@@ -90,7 +90,7 @@ def check_cameras(tracker: Tracker, cameras: Mapping[str, CameraConfig]) -> None
         tracker.check_cameras(calibrations_of(cameras))
 
 
-def camera_names(name: str) -> tuple[str, ...]:
+def tracker_cameras(name: str) -> tuple[str, ...]:
     """Name the cameras that the tracker of a name wants.
 
     Raises:

@@ -32,7 +32,7 @@ _HALF = 0.5  # share of a section that must be in view
 
 
 @singledispatch
-def explained_lines(explanation: object, tick: Tick) -> Lines:  # noqa: ARG001
+def draw_explained_lines(explanation: object, tick: Tick) -> Lines:  # noqa: ARG001
     """Give the lines on the thermal image that explain a tick's tracks; none for a kind nobody can draw.
 
     A new kind of explanation registers here, and below, how it is drawn in recordings.
@@ -40,13 +40,13 @@ def explained_lines(explanation: object, tick: Tick) -> Lines:  # noqa: ARG001
     return Lines(lines_of([], 2), colours_of([]))
 
 
-@explained_lines.register
+@draw_explained_lines.register
 def _(explanation: ContourExplanation, tick: Tick) -> Lines:
     evidence = evidence_of(tick.observation.images["thermal"], tick.tracks, explanation)
     return section_marks(tick.tracks, evidence, explanation)
 
 
-@explained_lines.register
+@draw_explained_lines.register
 def _(explanation: DetectionExplanation, tick: Tick) -> Lines:  # noqa: ARG001
     shades = [LIKELY if score > 0.0 else UNLIKELY for score in explanation.scores.tolist()]
     return Lines(
@@ -55,29 +55,29 @@ def _(explanation: DetectionExplanation, tick: Tick) -> Lines:  # noqa: ARG001
     )
 
 
-@explained_lines.register
+@draw_explained_lines.register
 def _(explanation: BothExplanations, tick: Tick) -> Lines:
     warm = tuple(track for track in tick.tracks if track.id in explanation.thermal.ellipses)
-    return explained_lines(explanation.thermal, replace(tick, tracks=warm))
+    return draw_explained_lines(explanation.thermal, replace(tick, tracks=warm))
 
 
-@explained_lines.register
+@draw_explained_lines.register
 def _(explanation: FusedExplanation, tick: Tick) -> Lines:
-    return explained_lines(explanation.both, tick)
+    return draw_explained_lines(explanation.both, tick)
 
 
-@explained_lines.register
+@draw_explained_lines.register
 def _(explanation: AttentiveExplanation, tick: Tick) -> Lines:
-    return explained_lines(explanation.below, tick)
+    return draw_explained_lines(explanation.below, tick)
 
 
 @singledispatch
-def explained_points(explanation: object) -> Mapping[str, Points]:  # noqa: ARG001
+def draw_explained_points(explanation: object) -> Mapping[str, Points]:  # noqa: ARG001
     """Give the points on the thermal image that explain a tick's tracks, by the layer that they lie in."""
     return {}
 
 
-@explained_points.register
+@draw_explained_points.register
 def _(explanation: ContourExplanation) -> Mapping[str, Points]:
     clouds = explanation.particles
     people = {number: cloud for number, cloud in clouds.items() if number != DETECTOR_KEY}
@@ -85,28 +85,28 @@ def _(explanation: ContourExplanation) -> Mapping[str, Points]:
     return {"particles/people": particle_points(people), "particles/detector": particle_points(detector)}
 
 
-@explained_points.register
+@draw_explained_points.register
 def _(explanation: BothExplanations) -> Mapping[str, Points]:
-    return explained_points(explanation.thermal)
+    return draw_explained_points(explanation.thermal)
 
 
-@explained_points.register
+@draw_explained_points.register
 def _(explanation: FusedExplanation) -> Mapping[str, Points]:
-    return explained_points(explanation.both)
+    return draw_explained_points(explanation.both)
 
 
-@explained_points.register
+@draw_explained_points.register
 def _(explanation: AttentiveExplanation) -> Mapping[str, Points]:
-    return explained_points(explanation.below)
+    return draw_explained_points(explanation.below)
 
 
 @singledispatch
-def explained_likeness(explanation: object) -> Mapping[int, float]:  # noqa: ARG001
+def likeness_by_track(explanation: object) -> Mapping[int, float]:  # noqa: ARG001
     """Give how much people look like who they are said to be, 0..1, by track; of trackers that compare."""
     return {}
 
 
-@explained_likeness.register
+@likeness_by_track.register
 def _(explanation: AttentiveExplanation) -> Mapping[int, float]:
     return explanation.likeness
 

@@ -18,9 +18,9 @@ from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine, describe_fully
 from peopleboy.scenarios.recording import marks
 from peopleboy.scenarios.recording.explanations import (
-    explained_likeness,
-    explained_lines,
-    explained_points,
+    draw_explained_lines,
+    draw_explained_points,
+    likeness_by_track,
 )
 from peopleboy.scenarios.recording.layout import (
     BACKGROUND,
@@ -38,7 +38,7 @@ from peopleboy.scenarios.recording.layout import (
 from peopleboy.scenarios.recording.marks import Arrows, believed_arrows, true_arrows, world_arrows
 from peopleboy.scenarios.recording.recording_file import pack
 from peopleboy.scenarios.recording.rows import METRE_STEP, PIXEL_STEP, TURN_STEP, RowBuffer, rounded
-from peopleboy.scenarios.recording.sketches import explained_sketches
+from peopleboy.scenarios.recording.sketches import draw_explained_sketches
 from peopleboy.scenarios.recording.solids import NOBODY, body_capsules
 from peopleboy.scenarios.recording.still import JPEG, Still
 from peopleboy.sim.cameras.camera_config import DepthConfig
@@ -181,7 +181,7 @@ class Recorder:
         self._rows.add(points_path(name), rr.Points3D, positions=rounded(world, METRE_STEP), colors=colours)
 
     def _log_tracks(self, tick: Tick) -> None:
-        contours = explained_lines(tick.explanation, tick)
+        contours = draw_explained_lines(tick.explanation, tick)
         strips, colours = _from_corner(contours.line), contours.colour
         self._rows.add(f"{THERMAL}/tracks/contours", rr.LineStrips2D, strips=strips, colors=colours)
         self._tracked |= {camera for track in tick.tracks for camera in track.boxes}
@@ -214,13 +214,13 @@ class Recorder:
         )  # fmt: skip
 
     def _log_points(self, tick: Tick) -> None:
-        for layer, points in explained_points(tick.explanation).items():
+        for layer, points in draw_explained_points(tick.explanation).items():
             place, colour = _from_corner(points.place), points.colour
             self._rows.add(f"{THERMAL}/{layer}", rr.Points2D, positions=place, colors=colour)
 
     def _log_sketches(self, tick: Tick) -> None:
         """Log what the tracker explains of further cameras' new images, and the empty scenes that are new."""
-        sketches = explained_sketches(tick.explanation, tick.tracks, self._cameras)
+        sketches = draw_explained_sketches(tick.explanation, tick.tracks, self._cameras)
         for camera, sketch in ((c, s) for c, s in sketches.items() if c in tick.observation.images):
             path = camera_path(camera)
             empty = sketch.background
@@ -304,7 +304,7 @@ class Recorder:
             box = track.boxes.get("thermal")  # a number that is none interrupts the line
             offset = math.nan if box is None else marks.box_offset(box, self._width)
             curves[f"curves/offset/track_{track.id}"] = [offset]
-        for number, likeness in explained_likeness(tick.explanation).items():
+        for number, likeness in likeness_by_track(tick.explanation).items():
             if number not in self._compared:
                 self._compared.add(number)
                 self._still.log_track(number, ("likeness",))

@@ -16,8 +16,8 @@ from rerun.chunk import RrdReader
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.recording.layout import camera_path
+from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.scenarios.run_folder.finished_run import runs_in
-from peopleboy.scenarios.run_folder.output import whole
 
 # What a file of rerun's begins with, and what ends one that was closed.
 _HEAD, _FOOT, _FOOT_BYTES = b"RRF2", b"RRF2FOOT", 12
@@ -73,7 +73,7 @@ def pack(path: Path) -> None:
     fails.
     """
     # Rerun's program takes it for no failure if it can make nothing of its input, and then leaves nothing.
-    with whole(path) as packed:
+    with atomic(path) as packed:
         command = [sys.executable, "-m", "rerun_cli", "rrd", "optimize", str(path), "--output", str(packed)]
         done = subprocess.run(
             command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,

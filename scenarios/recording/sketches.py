@@ -50,7 +50,7 @@ class Sketch:
 
 
 @singledispatch
-def explained_sketches(
+def draw_explained_sketches(
     explanation: object,  # noqa: ARG001
     tracks: Sequence[Track],  # noqa: ARG001
     cameras: Mapping[str, CameraConfig],  # noqa: ARG001
@@ -62,7 +62,7 @@ def explained_sketches(
     return {}
 
 
-@explained_sketches.register
+@draw_explained_sketches.register
 def _(
     explanation: PanoramicExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
 ) -> Mapping[str, Sketch]:
@@ -84,7 +84,7 @@ def _(
     return {PANORAMA: sketch}
 
 
-@explained_sketches.register
+@draw_explained_sketches.register
 def _(
     explanation: PeopleExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
 ) -> Mapping[str, Sketch]:
@@ -100,14 +100,14 @@ def _(
     return {PANORAMA: sketch}
 
 
-@explained_sketches.register
+@draw_explained_sketches.register
 def _(
     explanation: BothExplanations, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
 ) -> Mapping[str, Sketch]:
-    return explained_sketches(explanation.panoramic, tracks, cameras)
+    return draw_explained_sketches(explanation.panoramic, tracks, cameras)
 
 
-@explained_sketches.register
+@draw_explained_sketches.register
 def _(
     explanation: RgbdExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
 ) -> Mapping[str, Sketch]:
@@ -122,21 +122,23 @@ def _(
     return {DEPTH: sketch}
 
 
-@explained_sketches.register
+@draw_explained_sketches.register
 def _(
     explanation: FusedExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
 ) -> Mapping[str, Sketch]:
     parts = (explanation.both, explanation.depth)
     return {
-        name: sketch for part in parts for name, sketch in explained_sketches(part, tracks, cameras).items()
+        name: sketch
+        for part in parts
+        for name, sketch in draw_explained_sketches(part, tracks, cameras).items()
     }
 
 
-@explained_sketches.register
+@draw_explained_sketches.register
 def _(
     explanation: AttentiveExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
 ) -> Mapping[str, Sketch]:
-    below, attended = explained_sketches(explanation.below, tracks, cameras), explanation.attended
+    below, attended = draw_explained_sketches(explanation.below, tracks, cameras), explanation.attended
     if attended is None or attended.camera in below:
         return below
     focus, own = attended.focus(), track_colour(attended.number)

@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.report.findings.highlights import headline
-from peopleboy.scenarios.report.findings.run_findings import RunFindings, analyse_run
+from peopleboy.scenarios.report.findings.run_findings import RunFindings, analyse_run, headline
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_run, runs_in
 from peopleboy.scenarios.scores.by_tracker import check_same_scenes
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs

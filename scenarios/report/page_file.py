@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.run_folder.output import whole, writing_to
+from peopleboy.scenarios.run_folder.atomic_output import atomic, writing_to
 
 _ENDINGS = (".html", ".htm")
 _REPORT = re.compile(rb"<title>[^<]*: PeopleBoy report</title>")
@@ -34,7 +34,7 @@ def write_page(text: str, out: Path) -> None:
     Raises:
         BadInput: it cannot be written there.
     """
-    with writing_to(out), whole(out) as part:
+    with writing_to(out), atomic(out) as part:
         part.write_text(text, encoding="utf-8")
 
 

@@ -17,8 +17,7 @@ from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.report.charts.stills import DrawnFrame, Origin, images_of, show_frames
 from peopleboy.scenarios.report.columns import Column, are_same_scene
-from peopleboy.scenarios.report.findings.highlights import BadMoment, worst_moments
-from peopleboy.scenarios.report.findings.run_findings import RunFindings
+from peopleboy.scenarios.report.findings.run_findings import BadMoment, RunFindings, worst_moments
 from peopleboy.scenarios.report.findings.sentences import seconds
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.tracker.attention.attend import Focus

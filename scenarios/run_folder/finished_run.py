@@ -18,7 +18,7 @@ from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.validation import validated
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.scenarios.run_folder.run_files import RunFiles, read_files
-from peopleboy.scenarios.run_folder.tables import ROBOT, TRUTH
+from peopleboy.scenarios.run_folder.run_tables import ROBOT, TRUTH
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.robot.robot_config import RobotConfig

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.run_files import read_table
-from peopleboy.scenarios.run_folder.tables import PLACE, TRUTH
+from peopleboy.scenarios.run_folder.run_tables import PLACE, TRUTH
 from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.floor import Places, floor_squares
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes

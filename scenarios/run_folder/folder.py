@@ -17,9 +17,14 @@ import yaml
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import OwnCodeFailed, in_one_line, traceback_of
 from peopleboy.scenarios.loop.loop import Tick
-from peopleboy.scenarios.run_folder.image_files import Behind, images_to_write, make_image_folders, write_png
-from peopleboy.scenarios.run_folder.output import check_out, writing_to
-from peopleboy.scenarios.run_folder.tables import (
+from peopleboy.scenarios.run_folder.atomic_output import check_out, writing_to
+from peopleboy.scenarios.run_folder.image_files import (
+    BackgroundQueue,
+    images_to_write,
+    make_image_folders,
+    write_png,
+)
+from peopleboy.scenarios.run_folder.run_tables import (
     ROBOT,
     TRACKS,
     TRUTH,
@@ -81,7 +86,7 @@ class RunFolder:
         self._further = {name: CameraTruth(path / "truth", name) for name in further_cameras(cameras)}
         self._results = {THERMAL: self._open("tracks.txt")}
         self._events = self._open("events.jsonl")
-        self._images = Behind()
+        self._images = BackgroundQueue()
 
     def __enter__(self) -> RunFolder:
         return self

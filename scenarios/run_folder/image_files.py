@@ -91,7 +91,7 @@ MOST: Final = 64
 """How much work may wait; whoever brings more waits until some is done."""
 
 
-class Behind:
+class BackgroundQueue:
     """Does one piece of work after the other, in the order in which they came, and drops none.
 
     What a piece of work raises is raised by the next call of `add` or `flush` that finds it.

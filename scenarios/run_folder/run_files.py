@@ -15,7 +15,7 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.run_folder.tables import (
+from peopleboy.scenarios.run_folder.run_tables import (
     MAY_BE_EMPTY,
     ROBOT,
     TRACKS,

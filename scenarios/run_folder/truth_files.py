@@ -12,7 +12,7 @@ import pyarrow as pa
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.image_files import millimetres, write_png
 from peopleboy.scenarios.run_folder.run_files import WRITTEN_TRUTH, read_table, written_truth
-from peopleboy.scenarios.run_folder.tables import TRUTH, Row, truth_rows, write_table
+from peopleboy.scenarios.run_folder.run_tables import TRUTH, Row, truth_rows, write_table
 from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig
 from peopleboy.sim.cameras.kinds import with_boxes
 from peopleboy.sim.truth.backgrounds import Backgrounds

@@ -20,7 +20,7 @@ from rich.table import Table
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.registry import make_behaviour
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.tracker_by_name import camera_names
+from peopleboy.scenarios.loop.tracker_by_name import tracker_cameras
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import RunTask, play, unfinished
 from peopleboy.scenarios.running.run import RunOptions
@@ -56,7 +56,7 @@ def parse_controller(text: str) -> Controller:
     behaviour, at, eyes = text.strip().partition("@")
     make_behaviour(behaviour)
     controller = Controller(behaviour, eyes if at else DEFAULT_TRACKER)
-    camera_names(controller.eyes)  # refuses an unknown name
+    tracker_cameras(controller.eyes)  # refuses an unknown name
     return controller
 
 

@@ -24,9 +24,9 @@ from peopleboy import sim
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop, make_frame
+from peopleboy.scenarios.run_folder.atomic_output import atomic, writing_to
 from peopleboy.scenarios.run_folder.folder import versions
-from peopleboy.scenarios.run_folder.output import whole, writing_to
-from peopleboy.scenarios.run_folder.tables import TRUTH, truth_rows
+from peopleboy.scenarios.run_folder.run_tables import TRUTH, truth_rows
 from peopleboy.scenarios.run_folder.truth_files import gt_lines, true_boxes
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.observation import Observation
@@ -72,7 +72,7 @@ class Film:
         return true_boxes(self.folder / "gt.txt", self.folder / "truth.parquet", boxes)
 
     def people(self) -> pa.Table:
-        """Read the whole truth: one row per frame and person (`run_folder.tables.TRUTH`)."""
+        """Read the whole truth: one row per frame and person (`run_folder.run_tables.TRUTH`)."""
         return pq.read_table(self.folder / "truth.parquet")
 
 
@@ -164,7 +164,7 @@ class _Blind:
 
 def _shoot(scenario: Scenario, seed: int, home: Path, report: Callable[[int, int], None] | None) -> None:
     """Render a film beside its place, and put it there when it is whole."""
-    with whole(home, stays=(home / "about.json").is_file) as part:  # another process may be quicker
+    with atomic(home, stays=(home / "about.json").is_file) as part:  # another process may be quicker
         with writing_to(home.parent, "--films"):
             part.mkdir(parents=True)
         about = _render(scenario, seed, part, report)

@@ -12,9 +12,9 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.suite import load_suite, runs_of
-from peopleboy.scenarios.loop.tracker_by_name import camera_names
+from peopleboy.scenarios.loop.tracker_by_name import tracker_cameras
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
-from peopleboy.scenarios.run_folder.output import check_out
+from peopleboy.scenarios.run_folder.atomic_output import check_out
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.task import Task, Tell, Workers
 from peopleboy.scenarios.running.frame_cache import Film, film
@@ -56,7 +56,7 @@ def unfinished(tasks: Sequence[RunTask]) -> list[RunTask]:
         BadInput: a run cannot be done, or something else is in its place.
     """
     for task in tasks:
-        camera_names(tracker_name(task.scenario, task.options))  # refuses an unknown name
+        tracker_cameras(tracker_name(task.scenario, task.options))  # refuses an unknown name
     waiting = [task for task in tasks if not is_finished(task.scenario, task.options)]
     for task in waiting:
         check_out(task.options.out, "run", overwrite=True)

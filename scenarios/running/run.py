@@ -18,15 +18,15 @@ from peopleboy.scenarios.files.scenario_file import FaultSpec
 from peopleboy.scenarios.loop.faults import FaultySensors, FaultyTracker
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.scenarios.loop.run_events import LogLine, RunEvents
-from peopleboy.scenarios.loop.tracker_by_name import camera_names, check_cameras, make_eyes
+from peopleboy.scenarios.loop.tracker_by_name import check_cameras, make_named_tracker, tracker_cameras
 from peopleboy.scenarios.recording.recorder import Recorder
+from peopleboy.scenarios.run_folder.atomic_output import left_by_sigterm
 from peopleboy.scenarios.run_folder.finished_run import open_run, read_run
 from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versions
 from peopleboy.scenarios.run_folder.image_files import about_gains
-from peopleboy.scenarios.run_folder.output import left_by_sigterm
 from peopleboy.scenarios.scores.comfort_metrics import ComfortLog
 from peopleboy.scenarios.scores.corridor_metrics import CorridorLog
-from peopleboy.scenarios.scores.following_score import FollowingLog, following_task, whose_tracks
+from peopleboy.scenarios.scores.following_score import FollowingLog, following_task, tracks_on_target
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.world import World
@@ -70,7 +70,7 @@ class Watchers:
     def update(self, tick: Tick) -> list[LogLine]:
         """Look at one tick and return what happened at it."""
         events = self._events.update(tick)
-        track, is_wrong = whose_tracks(tick, self._boxes, self._track)
+        track, is_wrong = tracks_on_target(tick, self._boxes, self._track)
         self._track = track or self._track
         self.following.add(tick.truth, track, None if self._is_secret else is_wrong)
         self.corridor.add(tick.truth)
@@ -146,7 +146,7 @@ def run(
         raise BadInput(f"--seed {options.seed}: must be 0 or more")
     world: World  # the oracle looks at it only once it is built
     name, given = tracker_name(scenario, options), scenario.robot.cameras
-    tracker = make_eyes(name, options.seed, lambda: world.truth())
+    tracker = make_named_tracker(name, options.seed, lambda: world.truth())
     scenario = scenario.mounting(tracker.cameras)
     mounted = [camera for camera in scenario.robot.cameras if camera not in given]
     config = scenario.world(options.seed, options.renderer)
@@ -245,7 +245,7 @@ def is_finished(scenario: Scenario, options: RunOptions) -> bool:
         raise BadInput(f"{options.out}: was run with behaviour {was!r}; give --overwrite, or another --out")
     if options.frames and not run.about.images:
         return False
-    mounted = scenario.mounting(camera_names(tracker))
+    mounted = scenario.mounting(tracker_cameras(tracker))
     resolved = _as_read(mounted.resolved(options.seed, versions()))
     if (run.played, run.about.renderer) != (resolved, options.renderer) or not are_kept(
         scenario.kept_files(), options.out

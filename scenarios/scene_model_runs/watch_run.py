@@ -14,8 +14,8 @@ import pyarrow.parquet as pq
 
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.recording.scene_layer import SceneRecording
+from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
-from peopleboy.scenarios.run_folder.output import whole
 from peopleboy.scenarios.scene_model_runs.bodies import Bodies
 from peopleboy.scenarios.scene_model_runs.run_frames import check_frames, run_frames
 from peopleboy.scenarios.scene_model_runs.scene_files import (
@@ -73,7 +73,7 @@ def watch_run(
         BadInput: the run has no images of a depth camera, or they are spoilt.
     """
     check_frames(run)
-    with whole(out) as folder:
+    with atomic(out) as folder:
         folder.mkdir(parents=True)
         return _watched(run, folder, options, report)
 

@@ -17,7 +17,7 @@ from peopleboy.scenarios.run_folder.finished_run import read_run
 from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
-from peopleboy.scenarios.scores.reference_boxes import Yardstick
+from peopleboy.scenarios.scores.reference_boxes import BoxReference
 from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.evaluation.table import FIGURES, spread, to_json
@@ -113,7 +113,7 @@ class ScoredRun:
     tracker: str
     scene: Scene | None
     scores: Scores
-    by: Yardstick | None = None
+    by: BoxReference | None = None
     notes: tuple[str, ...] = ()
 
 

@@ -19,13 +19,13 @@ from peopleboy.scenarios.run_folder.floor_places import (
     places_of_tracks,
 )
 from peopleboy.scenarios.run_folder.run_files import check_end, check_whole, read_table
-from peopleboy.scenarios.run_folder.tables import ROBOT, TRACKS, TRUTH
+from peopleboy.scenarios.run_folder.run_tables import ROBOT, TRACKS, TRUTH
 from peopleboy.scenarios.scores.reference_boxes import (
-    Yardstick,
-    boxes_held,
+    BoxReference,
     kind_of_boxes,
     notes_on,
     own_camera,
+    read_reference_boxes,
 )
 from peopleboy.sim.config import CONTROL_HZ
 from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE
@@ -48,7 +48,7 @@ class ScoredPeople:
     """
 
     scores: Scores
-    by: Yardstick | None = None
+    by: BoxReference | None = None
     notes: tuple[str, ...] = ()
 
 
@@ -56,7 +56,7 @@ def score_people(
     folder: Path,
     held: tuple[TrueBoxes, TrackBoxes],
     frames: int,
-    by: Yardstick,
+    by: BoxReference,
     min_visible: float = MIN_VISIBLE,
 ) -> ScoredPeople:
     """Score the tracks of a run: their boxes in a camera's image, and where they say that people stand.
@@ -68,7 +68,7 @@ def score_people(
 
     Args:
         folder: of the run, with its tables.
-        held: `boxes_held` of the run: who was there, and the boxes that the tracker gave.
+        held: `read_reference_boxes` of the run: who was there, and the boxes that the tracker gave.
         frames: how many.
         by: what boxes are held against.
         min_visible: people of whom at most this fraction is visible do not count.
@@ -149,12 +149,12 @@ def _evaluate_run(
     if "footage" in about or not (folder / "truth.parquet").is_file():
         return _evaluate_texts(folder, about["frames"], min_visible, camera, boxes)
     image = camera or own_camera(folder)
-    by = Yardstick(image, boxes or _said(folder, image, about))
-    if by == Yardstick():
+    by = BoxReference(image, boxes or _said(folder, image, about))
+    if by == BoxReference():
         given, found = _read_texts(folder, about["frames"])
         held = (given.truth, found)
     else:
-        held = boxes_held(folder, by)
+        held = read_reference_boxes(folder, by)
     return score_people(folder, held, about["frames"], by, min_visible)
 
 

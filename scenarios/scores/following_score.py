@@ -94,7 +94,7 @@ class Spot(NamedTuple):
     place_m: tuple[float, float]
 
 
-def whose_tracks(tick: Tick, boxes: BoxKind = BoxKind.TORSO, before: int = 0) -> tuple[int, bool]:
+def tracks_on_target(tick: Tick, boxes: BoxKind = BoxKind.TORSO, before: int = 0) -> tuple[int, bool]:
     """Give the number of the track on the person to follow, 0 for none; and whether another is followed.
 
     Args:

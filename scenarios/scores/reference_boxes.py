@@ -11,7 +11,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.finished_run import cameras_of
 from peopleboy.scenarios.run_folder.floor_places import BELIEFS, is_on_floor_alone
 from peopleboy.scenarios.run_folder.run_files import read_table
-from peopleboy.scenarios.run_folder.tables import TRACKS
+from peopleboy.scenarios.run_folder.run_tables import TRACKS
 from peopleboy.scenarios.run_folder.truth_files import true_boxes, truth_files
 from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.tracker.evaluation.mot_files import read_tracks
@@ -29,7 +29,7 @@ CALLED: Final = {BoxKind.TORSO: "torsos", BoxKind.WHOLE: "whole people"}
 
 
 @dataclass(frozen=True, slots=True)
-class Yardstick:
+class BoxReference:
     """What boxes are held against.
 
     Attributes:
@@ -49,7 +49,7 @@ class Yardstick:
         return {"camera": self.camera, "boxes": str(self.boxes)}
 
 
-def boxes_held(folder: Path, by: Yardstick) -> tuple[TrueBoxes, TrackBoxes]:
+def read_reference_boxes(folder: Path, by: BoxReference) -> tuple[TrueBoxes, TrackBoxes]:
     """Read the truth of a run and the boxes that its tracker gave; in a panorama they go on over the seam.
 
     Raises:
@@ -105,7 +105,7 @@ def boxed_cameras(folder: Path) -> tuple[str, ...]:
     return tuple(camera for camera, path in named if path.is_file() and path.stat().st_size)
 
 
-def notes_on(folder: Path, by: Yardstick, truth: TrueBoxes, tracks: TrackBoxes) -> tuple[str, ...]:
+def notes_on(folder: Path, by: BoxReference, truth: TrueBoxes, tracks: TrackBoxes) -> tuple[str, ...]:
     """Say where the boxes are if not where they are looked for, and whether they are of another kind."""
     cameras = boxed_cameras(folder)
     if not cameras:
@@ -121,7 +121,7 @@ def notes_on(folder: Path, by: Yardstick, truth: TrueBoxes, tracks: TrackBoxes) 
     )
 
 
-def _of_other_kind(folder: Path, by: Yardstick, truth: TrueBoxes, tracks: TrackBoxes) -> str:
+def _of_other_kind(folder: Path, by: BoxReference, truth: TrueBoxes, tracks: TrackBoxes) -> str:
     """Say so if boxes are wider than any people, or nearly as wide as the truth's of the other kind."""
     other = BoxKind.TORSO if by.boxes is BoxKind.WHOLE else BoxKind.WHOLE
     there = true_boxes(*truth_files(folder, by.camera), other)

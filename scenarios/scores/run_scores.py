@@ -14,7 +14,12 @@ from peopleboy.scenarios.scores.evaluate_runs import ScoredPeople, score_people
 from peopleboy.scenarios.scores.following_metrics import (
     FollowingScore,
 )
-from peopleboy.scenarios.scores.reference_boxes import Yardstick, boxes_held, kind_of_boxes, own_camera
+from peopleboy.scenarios.scores.reference_boxes import (
+    BoxReference,
+    kind_of_boxes,
+    own_camera,
+    read_reference_boxes,
+)
 from peopleboy.sim.truth.truth import (
     COUNTED_FARTHEST_M,
     COUNTED_NEAREST_M,
@@ -45,7 +50,7 @@ class RunScores:
     corridor: CorridorScore | None = None
     comfort: ComfortScore | None = None
     further: Mapping[str, Scores] = field(default_factory=dict)
-    by: Yardstick | None = None
+    by: BoxReference | None = None
     notes: tuple[str, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
@@ -79,8 +84,8 @@ def score_run(
     """
 
     def scored(camera: str) -> ScoredPeople:
-        by = Yardstick(camera, kind_of_boxes(folder, camera, tracker, boxes))
-        return score_people(folder, boxes_held(folder, by), frames, by)
+        by = BoxReference(camera, kind_of_boxes(folder, camera, tracker, boxes))
+        return score_people(folder, read_reference_boxes(folder, by), frames, by)
 
     people = scored(own_camera(folder))
     further = sorted(path.stem for path in (folder / "tracks").glob("*.txt"))

@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.run_folder.tables import is_in_image
+from peopleboy.scenarios.run_folder.run_tables import is_in_image
 from peopleboy.sim.truth.events import OCCLUSION_STARTS
 from peopleboy.tracker.evaluation.box_matching import counts
 
@@ -63,7 +63,7 @@ def count(people: pa.Table, frames: int, rate_hz: float) -> Content:
     """Count one run.
 
     Args:
-        people: its truth, as `peopleboy.scenarios.run_folder.tables.TRUTH`.
+        people: its truth, as `peopleboy.scenarios.run_folder.run_tables.TRUTH`.
         frames: how many it has.
         rate_hz: frames a second.
     """

@@ -21,7 +21,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import thermal_box
 from peopleboy.scenarios.running.run import RunOptions
 from peopleboy.scenarios.running.run import run as run_scenario
-from peopleboy.scenarios.scores.reference_boxes import Yardstick, boxes_held
+from peopleboy.scenarios.scores.reference_boxes import BoxReference, read_reference_boxes
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.kinds import KINDS
 from peopleboy.sim.geometry.pinhole import Pinhole
@@ -193,7 +193,7 @@ def test_a_camera_that_it_wants_is_mounted_and_nothing_else_changes(
     assert run_cli("evaluate", more, "--camera", "rear") == 0
     assert run_cli("evaluate", plain, "--camera", "rear") == 2
     with refused("'front'", "thermal, colour, rear"):
-        boxes_held(more, Yardstick("front"))
+        read_reference_boxes(more, BoxReference("front"))
     assert run_cli("export", more, "--format", "mot", "--camera", "rear", "--out", tmp_path / "mot") == 0
     given = next((tmp_path / "mot" / "trackers").rglob("standing-0.txt")).read_text(encoding="utf-8")
     assert given == (more / "tracks" / "rear.txt").read_text(encoding="utf-8")

@@ -24,7 +24,7 @@ from peopleboy.scenarios.loop.calibrations import calibration_of
 from peopleboy.scenarios.report.findings.run_findings import analyse_run
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
-from peopleboy.scenarios.scores.reference_boxes import Yardstick
+from peopleboy.scenarios.scores.reference_boxes import BoxReference
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.geometry.panorama import MIRRORS, Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
@@ -162,9 +162,9 @@ def test_who_is_near_counts_all_round_and_our_own_boxes_there_are_whole_ones(tra
     (on_floor,) = evaluate_runs([tracked])
     assert on_floor.scores.counts.targets == len(rows)
     (in_panorama,) = evaluate_runs([tracked], camera="panorama")
-    assert in_panorama.by == Yardstick("panorama", BoxKind.WHOLE)
+    assert in_panorama.by == BoxReference("panorama", BoxKind.WHOLE)
     (asked,) = evaluate_runs([tracked], camera="panorama", boxes=BoxKind.TORSO)
-    assert asked.by == Yardstick("panorama", BoxKind.TORSO)
+    assert asked.by == BoxReference("panorama", BoxKind.TORSO)
     metrics = json.loads((tracked / "metrics.json").read_text(encoding="utf-8"))
     assert metrics["cameras"]["panorama"] == to_json(in_panorama.scores)
     assert analyse_run(open_run(tracked)).due == 1

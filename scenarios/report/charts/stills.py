@@ -32,7 +32,7 @@ from peopleboy.scenarios.drawing.overlay import (
 from peopleboy.scenarios.report.findings.run_findings import RunFindings
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file
-from peopleboy.scenarios.run_folder.tables import Row, read_explanation
+from peopleboy.scenarios.run_folder.run_tables import Row, read_explanation
 from peopleboy.sim.cameras.kinds import kind_of, layers_of
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.tracker.boxes import Box

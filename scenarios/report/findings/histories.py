@@ -17,14 +17,14 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun, cameras_of
 from peopleboy.scenarios.run_folder.floor_places import as_squares, is_on_floor_alone
 from peopleboy.scenarios.run_folder.run_files import RunFiles, read_table
-from peopleboy.scenarios.run_folder.tables import TRUTH
+from peopleboy.scenarios.run_folder.run_tables import TRUTH
 from peopleboy.scenarios.run_folder.truth_files import truth_files
 from peopleboy.scenarios.scores.reference_boxes import (
-    Yardstick,
+    BoxReference,
     boxed_cameras,
-    boxes_held,
     kind_of_boxes,
     own_camera,
+    read_reference_boxes,
 )
 from peopleboy.sim.cameras.camera_config import CameraConfig, ThermalConfig
 from peopleboy.sim.truth.events import (
@@ -181,11 +181,11 @@ class RunHistory:
         return is_on_floor_alone(self.files.beliefs)
 
     @cached_property
-    def yardstick(self) -> Yardstick:
+    def yardstick(self) -> BoxReference:
         """What the tracker's boxes are held against, as in the scores of the run."""
         about, camera = self.run.about, own_camera(self.run.folder)
         tracker = None if about.adopted else about.tracker
-        return Yardstick(camera, kind_of_boxes(self.run.folder, camera, tracker, BoxKind(about.boxes)))
+        return BoxReference(camera, kind_of_boxes(self.run.folder, camera, tracker, BoxKind(about.boxes)))
 
     @cached_property
     def camera(self) -> str:
@@ -234,9 +234,9 @@ class RunHistory:
         files = self.files
         if self.is_on_floor:
             return as_squares(self.run.folder, files.people, files.beliefs, files.robot)
-        if self.yardstick == Yardstick():
+        if self.yardstick == BoxReference():
             return files.truth, files.tracks
-        return boxes_held(self.run.folder, self.yardstick)
+        return read_reference_boxes(self.run.folder, self.yardstick)
 
     @cached_property
     def people(self) -> tuple[PersonHistory, ...]:

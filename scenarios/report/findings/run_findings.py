@@ -1,12 +1,25 @@
-"""What is found out about a run."""
+"""Find what went wrong in a run, and choose what a reader sees first: the headline and the worst moments.
+
+Numbers that passed to another person come first, as nothing is graver.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.scenarios.report.findings.causes import Outcome, outcome_of
-from peopleboy.scenarios.report.findings.histories import RunHistory, read_files
+from peopleboy.scenarios.report.findings.histories import (
+    PersonHistory,
+    RunHistory,
+    TrackingState,
+    read_files,
+    spans,
+)
 from peopleboy.scenarios.report.findings.identity_changes import (
     ChangeKind,
     IdentityChange,
@@ -14,7 +27,7 @@ from peopleboy.scenarios.report.findings.identity_changes import (
     find_changes,
     find_transfers,
 )
-from peopleboy.scenarios.report.findings.sentences import spoken
+from peopleboy.scenarios.report.findings.sentences import MOMENTS, Finding, listed, seconds, spoken
 from peopleboy.scenarios.report.findings.track_losses import (
     FalseTrack,
     Loss,
@@ -24,6 +37,8 @@ from peopleboy.scenarios.report.findings.track_losses import (
     find_losses,
 )
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
+from peopleboy.sim.truth.scenes import SEEN
+from peopleboy.wording import counted
 
 
 class RunFindings(RunHistory):
@@ -91,3 +106,151 @@ def analyse_run(run: FinishedRun) -> RunFindings:
         BadInput: a table is missing or spoilt.
     """
     return RunFindings(run=run, files=read_files(run))
+
+
+_APART_S = 1.0  # two moments of one person nearer than this are one
+
+
+def headline(runs: Sequence[RunFindings]) -> str:
+    """Say who was tracked to the end, and where identities were lost, in one run or in several."""
+    is_of_many = len(runs) > 1
+    text = "; ".join(finding.sentence(is_of_many_runs=is_of_many) for finding in _findings(runs))
+    return f"{counted(len(runs), 'run')}: {text}." if is_of_many else f"{text}."
+
+
+def _findings(runs: Sequence[RunFindings]) -> Iterator[Finding]:
+    """Yield what was found, the gravest first."""
+    transfers = [one for run in runs for one in run.transfers]
+    if transfers:
+        one = transfers[0]
+        values = {"number": one.number, "person": spoken(one.giver), "other": spoken(one.receiver)}
+        when = {"time": seconds(one.time_s), "cause": one.cause, "runs": _runs_with(runs, "transfers")}
+        yield Finding("transfer", len(transfers), values | when)
+    due = sum(run.due for run in runs)
+    yield Finding("people", due, _people(runs, due)) if due else Finding("no people", 1)
+    lost = [change for run in runs for change in run.lost]
+    if lost:
+        values = {"time": seconds(lost[0].time_s), "person": spoken(lost[0].person), "cause": lost[0].cause}
+        yield Finding("lost", len(lost), values | {"runs": _runs_with(runs, "lost")})
+    elif due and not transfers:
+        yield Finding("none lost", 1)
+    known = [change for run in runs for change in run.reidentified]
+    if known:
+        first, longest_s = known[0], max(change.reidentified_after_s for change in known)
+        values = {"person": spoken(first.person), "old": first.old, "new": first.new}
+        times = {"duration": seconds(first.reidentified_after_s), "longest": seconds(longest_s)}
+        yield Finding("reidentified", len(known), values | times)
+    count = sum(len(run.false_tracks) for run in runs)
+    if count or len(runs) > 1:
+        yield Finding("false tracks", max(count, 1), {"tracks": counted(count, "false track")})
+    contacts = [line for run in runs for line in run.contacts]
+    if contacts:
+        names = listed(list(dict.fromkeys(spoken(line.other) for line in contacts)))
+        values = {"names": names, "time": seconds(contacts[0].time_s)}
+        yield Finding("contacts", len(contacts), values | {"contacts": counted(len(contacts), "contact")})
+
+
+def _runs_with(runs: Sequence[RunFindings], what: str) -> str:
+    return counted(sum(bool(getattr(run, what)) for run in runs), "run")
+
+
+def _people(runs: Sequence[RunFindings], due: int) -> dict[str, object]:
+    """Give the values of the sentence about people: how many were tracked to the end, and which were not."""
+    hidden = [name for run in runs for name in run.people_with(Outcome.HIDDEN)]
+    others = [name for run in runs for name in run.people_with(Outcome.LOST, Outcome.HIDDEN)]
+    tracked, first = due - len(others), runs[0]
+    asides = [f"{listed(hidden)} hidden until the end"] if hidden and due > 1 else []
+    never = len(first.people) - first.due
+    if never:
+        nearest_m, farthest_m = first.counted_m
+        asides.append(f"{never} more never came within {nearest_m:g} to {farthest_m:g} m in sight")
+    all_of_them = "both" if due == 2 else "all"
+    return {
+        "aside": f" ({'; '.join(asides)})" if asides else "",
+        "how": "hidden until" if hidden else "tracked to" if tracked else "not tracked to",
+        "which": {0: "none", due: all_of_them}.get(tracked, f"all but {listed(others)}"),
+        "people": counted(due, "person", "people"),
+        "tracked": tracked,
+        "hidden": f", {len(hidden)} hidden until the end" if hidden else "",
+    }
+
+
+class BadMoment(NamedTuple):
+    """What went wrong, and when."""
+
+    # To choose by: a number on another person is worst, then a lost identity, contacts, false tracks, ...
+    badness: float
+    frames: tuple[int, ...]  # one or two to look at, from 1
+    title: str
+    text: str
+    subject: str  # the person or thing that it is about
+
+
+def worst_moments(found: RunFindings, count: int) -> list[BadMoment]:
+    """Choose at most `count` moments, in time; where nothing went wrong, the boxes that fit worst."""
+    moments = [*_identity_moments(found), *_contacts(found), *_false_tracks(found)]
+    for person in found.people:
+        moments += _gaps(found, person)
+    if len(moments) < count:
+        moments += [_worst_fit(person) for person in found.people if np.isfinite(person.iou).any()]
+    chosen: list[BadMoment] = []
+    for moment in sorted(moments, key=lambda moment: -moment.badness):
+        if len(chosen) < count and not any(_is_same(found, moment, other) for other in chosen):
+            chosen.append(moment)
+    return sorted(chosen, key=lambda moment: moment.frames)
+
+
+def _is_same(found: RunFindings, one: BadMoment, other: BadMoment) -> bool:
+    gap = abs(one.frames[-1] - other.frames[-1]) / found.run.rate_hz
+    return one.subject == other.subject and gap < _APART_S
+
+
+def _moment(kind: str, badness: float, frames: tuple[int, ...], subject: str, **values: Any) -> BadMoment:
+    """Render a moment of a kind of `MOMENTS`."""
+    named = {"person": spoken(subject)} | values
+    title, text = (template.format(**named) for template in MOMENTS[kind])
+    return BadMoment(badness, frames, title, text, subject)
+
+
+def _identity_moments(found: RunFindings) -> Iterator[BadMoment]:
+    for one in found.transfers:
+        names = {"person": spoken(one.giver), "other": spoken(one.receiver)}
+        frames = (one.last_frame, one.first_frame)
+        yield _moment("transfer", 200.0, frames, one.receiver, number=one.number, cause=one.cause, **names)
+    for change in found.lost:
+        frames, numbers = (change.last_frame, change.first_frame), {"old": change.old, "new": change.new}
+        badness = 40.0 if change.is_return else 100.0
+        yield _moment("lost", badness, frames, change.person, cause=change.cause, **numbers)
+
+
+def _contacts(found: RunFindings) -> Iterator[BadMoment]:
+    for line in found.contacts:
+        yield _moment("contact", 90.0, (line.frame,), line.other)
+
+
+def _false_tracks(found: RunFindings) -> Iterator[BadMoment]:
+    for one in found.false_tracks:
+        lasts_s = (one.last_frame - one.first_frame + 1) / found.run.rate_hz
+        frames, values = ((one.first_frame + one.last_frame) // 2,), {"duration": seconds(lasts_s)}
+        badness = min(lasts_s * 10.0, 80.0)
+        yield _moment("false track", badness, frames, f"track {one.track}", number=one.track, **values)
+
+
+def _gaps(found: RunFindings, person: PersonHistory) -> Iterator[BadMoment]:
+    """Times at which a person who was seen had no box."""
+    for span in spans(person.state):
+        seen = person.visible[span.start : span.end]
+        well = np.flatnonzero(seen > SEEN).tolist()
+        if span.value not in (TrackingState.MISSED, TrackingState.ADRIFT) or not well:
+            continue
+        lasts_s, is_missed = span.length / found.run.rate_hz, span.value == TrackingState.MISSED
+        kind, badness = ("missed", 8.0) if is_missed else ("adrift", 4.0)
+        frames = (span.start + well[len(well) // 2] + 1,)
+        values = {"duration": seconds(lasts_s), "share": f"{seen.max():.0%}"}
+        yield _moment(kind, min(lasts_s * badness, 50.0), frames, person.name, **values)
+
+
+def _worst_fit(person: PersonHistory) -> BadMoment:
+    at = int(np.nanargmin(person.iou))
+    iou, share = float(person.iou[at]), f"{person.visible[at]:.0%}"
+    return _moment("worst fit", 1.0 - iou, (at + 1,), person.name, iou=f"{iou:.0%}", share=share)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from peopleboy.scenarios.loop.track_events import KNOWN
+from peopleboy.scenarios.loop.run_events import KNOWN
 from peopleboy.scenarios.report.findings.causes import BEFORE_S, Outcome, find_cause, outcome_of, steady_due
 from peopleboy.scenarios.report.findings.histories import (
     STEADY_S,

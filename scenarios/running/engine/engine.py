@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.progress_bar import Show, progress_bar
-from peopleboy.scenarios.run_folder.output import left_by_sigterm
+from peopleboy.scenarios.run_folder.atomic_output import left_by_sigterm
 from peopleboy.scenarios.running.engine.processes import in_processes
 from peopleboy.scenarios.running.engine.task import Failure, Task, TasksFailed, Tell, Workers, attempt
 

@@ -18,7 +18,7 @@ from typing import Any
 import joblib
 from joblib.externals.loky.process_executor import BrokenProcessPool
 
-from peopleboy.scenarios.run_folder.output import left_by_sigterm
+from peopleboy.scenarios.run_folder.atomic_output import left_by_sigterm
 from peopleboy.scenarios.running.engine.task import Failure, Task, attempt
 
 ATTEMPTS = 3  # how often a task's process may be killed

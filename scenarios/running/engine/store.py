@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from peopleboy import sim, tracker
+from peopleboy.scenarios.run_folder.atomic_output import writing_to
 from peopleboy.scenarios.run_folder.folder import versions
-from peopleboy.scenarios.run_folder.output import writing_to
 
 Result = dict[str, Any]
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop
-from peopleboy.scenarios.loop.tracker_by_name import OracleTracker, make_eyes
+from peopleboy.scenarios.loop.tracker_by_name import OracleTracker, make_named_tracker
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.studies.reproductions.evaluations.playback import play
@@ -259,7 +259,7 @@ def watch_follower(scenario: Scenario, seed: int, name: str) -> dict[str, Any]:
     from peopleboy.sim.world import World  # here, as stored results can be read without PyBullet
 
     world: World  # the tracker looks at it only once it is built
-    tracker = make_eyes(name, seed, lambda: world.truth())
+    tracker = make_named_tracker(name, seed, lambda: world.truth())
     scenario = scenario.mounting(tracker.cameras)
     config = scenario.world(seed)
     leader = config.people[0].name

@@ -8,7 +8,7 @@ from pathlib import Path
 import yaml
 
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.run_folder.output import whole
+from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.scenarios.running.engine.task import Tell
 from peopleboy.studies.training.foreground_learning.masked_film import film_people
 from peopleboy.studies.training.foreground_learning.random_scene import random_scene
@@ -40,6 +40,6 @@ class FilmTask:
     def __call__(self, tell: Tell) -> None:  # noqa: ARG002
         """Film it, and leave its scenario beside the film."""
         path = self.film.with_suffix(".yaml")
-        with whole(path) as part:
+        with atomic(path) as part:
             part.write_text(yaml.safe_dump(random_scene(self.seed), sort_keys=False), encoding="utf-8")
         film_people(load_scenario(path), self.seed).save(self.film)

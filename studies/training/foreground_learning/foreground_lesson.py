@@ -13,7 +13,7 @@ from rich.console import Console
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.run_folder.output import whole, writing_to
+from peopleboy.scenarios.run_folder.atomic_output import atomic, writing_to
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.training.foreground_learning.film_task import FilmTask
@@ -77,7 +77,7 @@ def give_foreground_lesson(out: Path, workers: Workers, lessons: ForegroundLesso
     model = _teach([task.film for task in tasks], calibration, lessons)
     judged = _print_judgements([task.film for task in tests], model, calibration)
     path = SHIPPED if ship else out / SHIPPED.name
-    with writing_to(path.parent), whole(path) as part:
+    with writing_to(path.parent), atomic(path) as part:
         path.parent.mkdir(parents=True, exist_ok=True)
         ForegroundModel(network=model.network, view=model.view, about=model.about | judged).save(part)
     return path

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.run_folder.output import whole
+from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import PANORAMA, Odometry
@@ -51,7 +51,7 @@ class MaskedFilm:
 
     def save(self, path: Path) -> None:
         """Write the film, whole or not at all."""
-        with whole(path) as part, part.open("wb") as file:
+        with atomic(path) as part, part.open("wb") as file:
             np.savez(
                 file,
                 images=self.images,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from peopleboy.scenarios.run_folder.output import writing_to
+from peopleboy.scenarios.run_folder.atomic_output import writing_to
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.training.people_learning.people_film_task import PeopleFilmTask

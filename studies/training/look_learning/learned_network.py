@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from peopleboy.scenarios.run_folder.output import whole, writing_to
+from peopleboy.scenarios.run_folder.atomic_output import atomic, writing_to
 from peopleboy.studies.training.look_learning.examples import LookExamples
 from peopleboy.tracker.boxes import Floats, iou
 from peopleboy.tracker.proposals.looks.closer_look import CloserLook
@@ -43,7 +43,7 @@ def write_network(network: CropNetwork, path: Path) -> Path:
     Raises:
         BadInput: a path that cannot be used.
     """
-    with writing_to(path.parent), whole(path) as part:
+    with writing_to(path.parent), atomic(path) as part:
         path.parent.mkdir(parents=True, exist_ok=True)
         network.save(part)
     return path

@@ -7,7 +7,7 @@ from pathlib import Path
 from rich.console import Console
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.run_folder.output import writing_to
+from peopleboy.scenarios.run_folder.atomic_output import writing_to
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.store import Store, code_digest
 from peopleboy.scenarios.running.engine.task import Workers

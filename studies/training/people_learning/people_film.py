@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.run_folder.output import whole
+from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.truth.truth import PersonTruth
@@ -64,7 +64,7 @@ class PeopleFilm:
     def save(self, path: Path) -> None:
         """Write the film, whole or not at all."""
         arrays = {name: getattr(self, name) for name in self.__dataclass_fields__}
-        with whole(path) as part, part.open("wb") as file:
+        with atomic(path) as part, part.open("wb") as file:
             np.savez_compressed(file, **arrays)
 
     @classmethod

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from peopleboy.scenarios.run_folder.output import whole, writing_to
+from peopleboy.scenarios.run_folder.atomic_output import atomic, writing_to
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.training.people_learning.boosting import Boosting
@@ -106,7 +106,7 @@ def give_people_lesson(
     before = shipped_model() if only_places or len(taught) < len(Kind) else PeopleModel({})
     model = PeopleModel({**before.trees, **taught}, {**before.about, **learned_from})
     path = WEIGHTS if ship else out / WEIGHTS.name
-    with writing_to(path.parent), whole(path) as part:
+    with writing_to(path.parent), atomic(path) as part:
         path.parent.mkdir(parents=True, exist_ok=True)
         told = _judged(model, [task.film for task in tests])
         replace(model, about={**model.about, **told}).save(part)

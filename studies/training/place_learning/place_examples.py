@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.run_folder.output import whole
+from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.studies.training.foreground_learning.masked_film import MaskedFilm
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.foreground.foreground import Foreground
@@ -75,7 +75,7 @@ class PlaceExamples:
 
     def save(self, path: Path) -> None:
         """Write them, whole or not at all."""
-        with whole(path) as part, part.open("wb") as file:
+        with atomic(path) as part, part.open("wb") as file:
             np.savez_compressed(
                 file, patches=self.patches, distance_m=self.distance_m, offset_m=self.offset_m
             )

@@ -12,7 +12,7 @@ import numpy as np
 from rich.console import Console
 
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.run_folder.output import writing_to
+from peopleboy.scenarios.run_folder.atomic_output import writing_to
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.training.foreground_learning.foreground_lesson import FIRST_SEED

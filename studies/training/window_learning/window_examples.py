@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.run_folder.output import whole
+from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR
@@ -62,7 +62,7 @@ class WindowExamples:
         """Write them, whole or not at all."""
         arrays: dict[str, Any] = {f"{kind}_features": self.features[kind] for kind in Range}
         arrays |= {f"{kind}_is_person": self.is_person[kind].astype(np.float16) for kind in Range}
-        with whole(path) as part, part.open("wb") as file:
+        with atomic(path) as part, part.open("wb") as file:
             np.savez(file, **arrays)
 
     @classmethod

@@ -10,7 +10,7 @@ from typing import Final
 
 from rich.console import Console
 
-from peopleboy.scenarios.run_folder.output import writing_to
+from peopleboy.scenarios.run_folder.atomic_output import writing_to
 from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.training.window_learning.teach_windows import judgement, teach_windows

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.scenarios.export.checks import _check_images
+from peopleboy.scenarios.export.dataset_checks import _check_images
 from peopleboy.scenarios.export.splits import SPLITS, lacking_splits, split_lines, split_of
 from peopleboy.tracker.evaluation.mot_files import read_truth
 from tests.helpers.calls.command_line import refusal, run_cli

@@ -9,7 +9,7 @@ import pytest
 
 from peopleboy.scenarios.export import coco
 from peopleboy.scenarios.export.formats import FORMATS, takes
-from peopleboy.scenarios.run_folder.output import whole_folder
+from peopleboy.scenarios.run_folder.atomic_output import atomic_folder
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.runs.exported import export
@@ -87,7 +87,7 @@ def test_an_export_that_fails_leaves_nothing_and_keeps_the_earlier_one(
     crossing: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "coco"
-    with whole_folder(out, {}, overwrite=False) as folder:
+    with atomic_folder(out, {}, overwrite=False) as folder:
         (folder / "earlier").touch()
 
     def fail(*_: object) -> None:

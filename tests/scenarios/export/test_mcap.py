@@ -20,7 +20,7 @@ from rosbags.highlevel import AnyReader
 from scipy.spatial.transform import Rotation
 
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.scenarios.export.ros_messages import OdometryNoise, drift
+from peopleboy.scenarios.export.ros_messages import OdometryCovariance, drift
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from tests.helpers.runs.exported import export
@@ -314,7 +314,7 @@ def drives(advance_m: float, turn_rad: float, count: int) -> np.ndarray:
 
 @pytest.mark.parametrize(("advance_m", "turn_rad"), [(0.03, 0.0), (0.03, 0.02), (0.0, 0.05), (-0.02, -0.01)])
 def test_the_covariance_is_that_of_many_drives(advance_m: float, turn_rad: float) -> None:
-    noise, pose = OdometryNoise(NOISE_M), Pose2(0.0, 0.0, 0.0)
+    noise, pose = OdometryCovariance(NOISE_M), Pose2(0.0, 0.0, 0.0)
     assert not noise.carry(pose).any()
     for _ in range(60):
         middle = pose.heading + turn_rad / 2.0
@@ -327,7 +327,7 @@ def test_the_covariance_is_that_of_many_drives(advance_m: float, turn_rad: float
 
 
 def test_who_stands_stays_as_sure() -> None:
-    noise = OdometryNoise(0.002)
+    noise = OdometryCovariance(0.002)
     noise.carry(Pose2(0.0, 0.0, 0.0))
     driven = noise.carry(Pose2(1.0, 0.0, 0.0))
     # Both wheels have miscounted on 1 m.

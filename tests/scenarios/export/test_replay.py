@@ -13,7 +13,7 @@ import pytest
 from peopleboy.scenarios.export.replay import replay
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import open_run
-from peopleboy.scenarios.run_folder.tables import TRACKS, robot_row, track_rows, truth_rows
+from peopleboy.scenarios.run_folder.run_tables import TRACKS, robot_row, track_rows, truth_rows
 from peopleboy.sim.cameras.thermal import encode_16bit
 from tests.helpers.calls.refused import refused
 

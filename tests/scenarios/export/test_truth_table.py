@@ -12,7 +12,7 @@ import pytest
 from peopleboy.scenarios.export import viper
 from peopleboy.scenarios.export.coco import annotations_file
 from peopleboy.scenarios.loop.run_events import LogLine
-from peopleboy.scenarios.run_folder.tables import ROBOT, TRACKS, TRUTH
+from peopleboy.scenarios.run_folder.run_tables import ROBOT, TRACKS, TRUTH
 
 PAGE = Path(__file__).parents[3] / "docs" / "truth.md"
 ROWS = [

@@ -1,6 +1,6 @@
 from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.loop import Eyes, thermal_box
+from peopleboy.scenarios.loop.loop import Perception, thermal_box
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
 from peopleboy.tracker.contour.box_interaction import standing_box
@@ -33,11 +33,11 @@ def test_images_of_a_cold_wall_are_new_ones_though_all_of_them_are_black(tmp_pat
     scenario = parse_scenario(EMPTY, source="test", folder=tmp_path)
     tracker = Counter()
     with World(scenario.world(0)) as world:
-        eyes = Eyes(tracker, calibrations_of(world.cameras))
+        perception = Perception(tracker, calibrations_of(world.cameras))
         for _ in range(3):
             observation = world.observe()
             assert not observation.images["thermal"].any()
-            assert eyes.look(observation).image_age_s == 0.0
+            assert perception.perceive(observation).image_age_s == 0.0
             world.step(0.0, 0.0)
     assert tracker.images == 3
 

@@ -11,11 +11,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.scenarios.drawing.palette import track_colour
-from peopleboy.scenarios.recording.explanations import LIKELY, UNLIKELY, explained_lines, explained_points
+from peopleboy.scenarios.recording.explanations import (
+    LIKELY,
+    UNLIKELY,
+    draw_explained_lines,
+    draw_explained_points,
+)
 from peopleboy.scenarios.recording.sketches import (
     NOBODYS,
     column_bars,
-    explained_sketches,
+    draw_explained_sketches,
     floor_ellipse,
     outlines_of,
     row_bars,
@@ -39,7 +44,7 @@ def test_only_who_has_a_contour_is_drawn_and_in_the_colour_of_the_shared_number(
     alone = made.make_tick(10)
     both = BothExplanations.of(alone.explanation, None, {1: 4})
     tick = replace(alone, tracks=(track(2), replace(made.TRACK, id=4), track(9)), explanation=both)
-    told, usual = explained_lines(both, tick), explained_lines(alone.explanation, alone)
+    told, usual = draw_explained_lines(both, tick), draw_explained_lines(alone.explanation, alone)
     assert np.array_equal(told.line, usual.line)
     assert tuple(told.colour[-1]) == track_colour(4)
     assert np.array_equal(told.colour[:-1], usual.colour[:-1])
@@ -47,8 +52,8 @@ def test_only_who_has_a_contour_is_drawn_and_in_the_colour_of_the_shared_number(
 
 def test_samples_are_those_of_the_thermal_tracker() -> None:
     contours = made.make_tick(10).explanation
-    told = explained_points(BothExplanations.of(contours, None, {1: 4}))
-    usual = explained_points(contours)
+    told = draw_explained_points(BothExplanations.of(contours, None, {1: 4}))
+    usual = draw_explained_points(contours)
     assert told.keys() == usual.keys()
     detector = "particles/detector"
     assert np.array_equal(told[detector].place, usual[detector].place)
@@ -57,18 +62,18 @@ def test_samples_are_those_of_the_thermal_tracker() -> None:
 
 def test_with_nobody_in_the_thermal_image_nothing_is_drawn_there() -> None:
     both = BothExplanations.of(made.make_tick(10, None).explanation, None, {})
-    assert len(explained_lines(both, replace(made.make_tick(10), tracks=(track(2),))).line) == 0
+    assert len(draw_explained_lines(both, replace(made.make_tick(10), tracks=(track(2),))).line) == 0
 
 
 def test_of_other_explanations_nothing_is_drawn() -> None:
-    assert len(explained_lines(None, made.make_tick(10)).line) == 0
-    assert explained_points(object()) == {}
+    assert len(draw_explained_lines(None, made.make_tick(10)).line) == 0
+    assert draw_explained_points(object()) == {}
 
 
 def test_what_is_proposed_has_its_corners_drawn_blue_if_it_is_rather_somebody_than_not() -> None:
     boxes = np.array([(20.0, 30.0, 10.0, 40.0), (100.0, 50.0, 20.0, 60.0)])
     proposed = DetectionExplanation(boxes=boxes, scores=np.array([1.5, -0.5]))
-    told = explained_lines(proposed, replace(made.make_tick(10), explanation=proposed))
+    told = draw_explained_lines(proposed, replace(made.make_tick(10), explanation=proposed))
     assert told.line.shape == (8, 3, 2)
     assert told.colour.tolist() == [list(LIKELY)] * 4 + [list(UNLIKELY)] * 4
     for corners, (left, top, width, height) in zip(np.split(told.line, 2), boxes.tolist(), strict=True):
@@ -137,7 +142,7 @@ def test_people_all_round_are_drawn_as_outlines_and_where_each_stands() -> None:
         {"panorama": PanoramaConfig()},
         (track(3, (3.0, 1.0)), track(5, (-3.0, 0.0)), track(6, None)),
     )
-    (sketch,) = explained_sketches(people(), tracks, cameras).values()
+    (sketch,) = draw_explained_sketches(people(), tracks, cameras).values()
     assert np.array_equal(sketch.background, people().background)
     outlines = outlines_of(across())
     assert all((one == other).all() for one, other in zip(sketch.lines, outlines, strict=False))
@@ -149,22 +154,22 @@ def test_people_all_round_are_drawn_as_outlines_and_where_each_stands() -> None:
 
 def test_of_the_handover_the_panoramas_part_is_drawn() -> None:
     cameras, tracks = {"panorama": PanoramaConfig()}, (track(3),)
-    both = explained_sketches(BothExplanations.of(explain(), people(), {}), tracks, cameras)
-    alone = explained_sketches(people(), tracks, cameras)
+    both = draw_explained_sketches(BothExplanations.of(explain(), people(), {}), tracks, cameras)
+    alone = draw_explained_sketches(people(), tracks, cameras)
     assert both.keys() == alone.keys() == {"panorama"}
     assert np.array_equal(both["panorama"].colour, alone["panorama"].colour)
-    assert explained_sketches(BothExplanations.of(explain(), None, {}), tracks, cameras) == {}
+    assert draw_explained_sketches(BothExplanations.of(explain(), None, {}), tracks, cameras) == {}
 
 
 def test_of_other_explanations_no_sketch_is_drawn() -> None:
-    assert explained_sketches(object(), (), {}) == {}
+    assert draw_explained_sketches(object(), (), {}) == {}
 
 
 def test_of_attention_the_focus_and_the_score_of_every_place_are_drawn() -> None:
     image = np.full((240, 320, 3), (120, 125, 130), np.uint8)
     image[60:210, 100:160] = (200, 40, 40)
     attended = Attended.learned(2, View(COLOUR, image, (100.0, 60.0, 60.0, 150.0)))
-    sketch = explained_sketches(AttentiveExplanation(None, {}, attended), [], {})[COLOUR]
+    sketch = draw_explained_sketches(AttentiveExplanation(None, {}, attended), [], {})[COLOUR]
     assert sketch.background is not None
     assert sketch.background.shape == (240, 320)
     assert np.unravel_index(sketch.background.argmax(), (240, 320))[1] == pytest.approx(130, abs=12)

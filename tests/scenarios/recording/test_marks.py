@@ -8,8 +8,8 @@ import pytest
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.recording.explanations import (
     OUT_OF_VIEW,
-    explained_lines,
-    explained_points,
+    draw_explained_lines,
+    draw_explained_points,
     section_marks,
 )
 from peopleboy.scenarios.recording.marks import (
@@ -153,5 +153,5 @@ def test_a_tracker_that_looks_at_no_feet_has_seven_sections() -> None:
 
 def test_a_tracker_that_explains_nothing_has_neither_lines_nor_points() -> None:
     tick = replace(made.make_tick(10), explanation=None)
-    assert explained_lines(tick.explanation, tick).line.shape == (0, 2, 2)
-    assert explained_points(tick.explanation) == {}
+    assert draw_explained_lines(tick.explanation, tick).line.shape == (0, 2, 2)
+    assert draw_explained_points(tick.explanation) == {}

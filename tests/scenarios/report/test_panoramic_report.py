@@ -9,8 +9,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.report.charts.error_curves import curve, distance_edges, samples
 from peopleboy.scenarios.report.charts.stills import Origin, show_frames
 from peopleboy.scenarios.report.findings.causes import find_cause
-from peopleboy.scenarios.report.findings.highlights import headline
-from peopleboy.scenarios.report.findings.run_findings import RunFindings, analyse_run
+from peopleboy.scenarios.report.findings.run_findings import RunFindings, analyse_run, headline
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.running.run import RunOptions, run
 

@@ -24,12 +24,11 @@ from peopleboy.scenarios.report.charts.timeline_rows import ASIDE, hidden_words,
 from peopleboy.scenarios.report.charts.timelines import rgb, track_edges
 from peopleboy.scenarios.report.columns import are_same_scene, lacking, read_columns
 from peopleboy.scenarios.report.findings.causes import Outcome
-from peopleboy.scenarios.report.findings.highlights import headline, worst_moments
 from peopleboy.scenarios.report.findings.histories import TrackingState, Visibility, between, settle, spans
 from peopleboy.scenarios.report.findings.identity_changes import ChangeKind
-from peopleboy.scenarios.report.findings.run_findings import RunFindings, analyse_run
-from peopleboy.scenarios.report.page import write_report
-from peopleboy.scenarios.report.tables import drive_figures, plain_figures
+from peopleboy.scenarios.report.findings.run_findings import RunFindings, analyse_run, headline, worst_moments
+from peopleboy.scenarios.report.page_tables import drive_figures, plain_figures
+from peopleboy.scenarios.report.report_page import write_report
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.running.run import RunOptions, run
 from peopleboy.tracker.evaluation.occlusion_scores import TOTAL_ENDS, find_occlusions

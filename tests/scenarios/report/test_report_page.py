@@ -13,7 +13,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.cli import main
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.report.charts.stills import Origin
-from peopleboy.scenarios.report.page import write_report
+from peopleboy.scenarios.report.report_page import write_report
 from peopleboy.scenarios.run_folder.folder import versions
 from tests.helpers.runs import toy_runs as toy
 from tests.helpers.some_of import some_of
@@ -253,7 +253,7 @@ def test_a_report_without_pybullet_draws_boxes_and_says_so(
 
 @pytest.mark.thorough
 def test_the_simulator_is_not_loaded_for_a_report() -> None:
-    code = "import sys, peopleboy.scenarios.report.page; print('peopleboy.sim.world' in sys.modules)"
+    code = "import sys, peopleboy.scenarios.report.report_page; print('peopleboy.sim.world' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"
 

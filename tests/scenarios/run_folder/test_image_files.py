@@ -8,7 +8,7 @@ from typing import get_args
 import pytest
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.run_folder.image_files import MOST, Behind, about_gains, thermal_span_c
+from peopleboy.scenarios.run_folder.image_files import MOST, BackgroundQueue, about_gains, thermal_span_c
 from peopleboy.sim.cameras.camera_config import ColourConfig, GainName, ThermalConfig
 
 
@@ -19,43 +19,43 @@ def _wait(for_what: threading.Event) -> None:
 def test_work_is_done_in_order_and_none_is_dropped_however_much_waits() -> None:
     done: list[int] = []
     begins = threading.Event()
-    behind = Behind()
-    behind.add(partial(_wait, begins))
+    queue = BackgroundQueue()
+    queue.add(partial(_wait, begins))
     threading.Timer(0.05, begins.set).start()
     for number in range(3 * MOST):  # which waits until some is done
-        behind.add(partial(done.append, number))
+        queue.add(partial(done.append, number))
     assert begins.is_set()
-    behind.flush()
+    queue.flush()
     assert done == list(range(3 * MOST))
-    behind.close()
+    queue.close()
 
 
-@pytest.mark.parametrize("finds_it", [Behind.flush, partial(Behind.add, work=lambda: None)])
+@pytest.mark.parametrize("finds_it", [BackgroundQueue.flush, partial(BackgroundQueue.add, work=lambda: None)])
 def test_an_error_is_raised_where_more_is_asked_for(finds_it) -> None:
     def fail() -> None:
         raise BadInput("the disk is full")
 
-    behind, after = Behind(), []
-    behind.add(fail)
-    behind._waiting[0].exception()  # waits for it
+    queue, after = BackgroundQueue(), []
+    queue.add(fail)
+    queue._waiting[0].exception()  # waits for it
     with pytest.raises(BadInput, match="the disk is full"):
-        finds_it(behind)
-    behind.add(partial(after.append, 1))
-    behind.close()
+        finds_it(queue)
+    queue.add(partial(after.append, 1))
+    queue.close()
     assert after == [1]
 
 
 def test_closing_does_what_is_left_and_tells_of_no_error() -> None:
-    behind, begins, done = Behind(), threading.Event(), []
+    queue, begins, done = BackgroundQueue(), threading.Event(), []
 
     def fail() -> None:
         begins.wait(10)
         raise BadInput("the disk is full")
 
-    behind.add(fail)
-    behind.add(partial(done.append, 1))
+    queue.add(fail)
+    queue.add(partial(done.append, 1))
     begins.set()
-    behind.close()
+    queue.close()
     assert done == [1]
 
 

@@ -13,7 +13,7 @@ from peopleboy.scenarios.drawing.draw_plan import draw_plan
 from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.loop.run_events import describe
 from peopleboy.scenarios.report.columns import read_columns
-from peopleboy.scenarios.report.tables import moves
+from peopleboy.scenarios.report.page_tables import moves
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.run_folder.truth_files import THINGS, things_camera
 from peopleboy.scenarios.running.run import RunOptions

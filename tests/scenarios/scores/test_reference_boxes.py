@@ -12,10 +12,9 @@ import pyarrow.parquet as pq
 import pytest
 
 from peopleboy.registry import Entry
-from peopleboy.scenarios.report.findings.highlights import headline
-from peopleboy.scenarios.report.findings.run_findings import analyse_run
+from peopleboy.scenarios.report.findings.run_findings import analyse_run, headline
 from peopleboy.scenarios.run_folder.finished_run import open_run
-from peopleboy.scenarios.scores.following_score import whose_tracks
+from peopleboy.scenarios.scores.following_score import tracks_on_target
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Status, Track
@@ -213,8 +212,8 @@ def test_a_tracker_of_whole_people_is_seen_to_follow_the_right_one() -> None:
     truth = replace(tick.truth, people=people)
     track = replace(made.with_box(wide), id=7)
     tick = replace(tick, truths={"thermal": truth}, tracks=(track,), following=7)
-    assert whose_tracks(tick)[0] == 0
-    assert whose_tracks(tick, BoxKind.WHOLE) == (7, False)
+    assert tracks_on_target(tick)[0] == 0
+    assert tracks_on_target(tick, BoxKind.WHOLE) == (7, False)
 
 
 def test_a_track_stays_on_a_person_on_whom_another_one_lies_better_for_a_moment() -> None:
@@ -226,7 +225,7 @@ def test_a_track_stays_on_a_person_on_whom_another_one_lies_better_for_a_moment(
         for number, aside in ((3, 0.2), (5, 0.1))
     )
     tick = replace(tick, tracks=(own, other))
-    assert [whose_tracks(tick, before=before)[0] for before in (0, 3, 5, 8)] == [5, 3, 5, 5]
+    assert [tracks_on_target(tick, before=before)[0] for before in (0, 3, 5, 8)] == [5, 3, 5, 5]
 
 
 def test_a_kind_of_boxes_is_asked_for_runs_of_scenarios_alone(

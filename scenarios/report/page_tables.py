@@ -14,8 +14,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.loop.run_events import describe_move
 from peopleboy.scenarios.report.charts.timeline_rows import THING
 from peopleboy.scenarios.report.columns import Column
-from peopleboy.scenarios.report.findings.highlights import headline
-from peopleboy.scenarios.report.findings.run_findings import RunFindings
+from peopleboy.scenarios.report.findings.run_findings import RunFindings, headline
 from peopleboy.scenarios.report.findings.sentences import seconds, spoken
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.scores.bootstrap import bootstrap

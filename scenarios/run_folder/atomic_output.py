@@ -44,7 +44,7 @@ def _leave(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
 
 
 @contextmanager
-def whole(path: Path, stays: Callable[[], bool] = lambda: False) -> Iterator[Path]:
+def atomic(path: Path, stays: Callable[[], bool] = lambda: False) -> Iterator[Path]:
     """Give a path beside the one asked for, at which to make a file or folder that then takes its place.
 
     It does so when the block ends well and has made something. Nothing of it is left if the block ends
@@ -149,10 +149,10 @@ def writing_to(path: Path, option: str = "--out") -> Iterator[None]:
 
 
 @contextmanager
-def whole_folder(
+def atomic_folder(
     path: Path, about: dict[str, Any], *, overwrite: bool, kind: str = "export"
 ) -> Iterator[Path]:
-    """Give a folder to write to, which takes its place when the block ends well, see `whole`.
+    """Give a folder to write to, which takes its place when the block ends well, see `atomic`.
 
     A file KIND.json says what the folder is.
 
@@ -167,7 +167,7 @@ def whole_folder(
     """
     with writing_to(path):
         check_out(path, kind, overwrite=overwrite)
-        with whole(path) as part:
+        with atomic(path) as part:
             part.mkdir(parents=True)
             yield part
             (part / f"{kind}.json").write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")

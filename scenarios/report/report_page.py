@@ -12,7 +12,7 @@ from markupsafe import Markup
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.palette import TRACK_COLOURS
-from peopleboy.scenarios.report import tables
+from peopleboy.scenarios.report import page_tables
 from peopleboy.scenarios.report.charts.error_curves import draw_error_curves
 from peopleboy.scenarios.report.charts.paths import draw_paths
 from peopleboy.scenarios.report.charts.stills import Origin
@@ -21,6 +21,7 @@ from peopleboy.scenarios.report.columns import Column, lacking, read_columns
 from peopleboy.scenarios.report.findings.run_findings import RunFindings
 from peopleboy.scenarios.report.findings.sentences import listed
 from peopleboy.scenarios.report.page_file import check_place, write_page
+from peopleboy.scenarios.report.page_tables import PageTable
 from peopleboy.scenarios.report.pictures import (
     PagePicture,
     PicturedMoment,
@@ -28,10 +29,9 @@ from peopleboy.scenarios.report.pictures import (
     contact_sheet,
     pictured_moments,
 )
-from peopleboy.scenarios.report.tables import PageTable
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import describe_images
-from peopleboy.scenarios.scores.reference_boxes import Yardstick
+from peopleboy.scenarios.scores.reference_boxes import BoxReference
 from peopleboy.tracker.frame import THERMAL
 
 HERE = Path(__file__).parent
@@ -149,17 +149,17 @@ def make_page(
         title=_title(columns),
         columns=columns,
         singles=[_section(column) for column in singles],
-        crowds=[(c, tables.runs_of(c), len(c.runs) > tables.LONGEST) for c in crowds],
+        crowds=[(c, page_tables.runs_of(c), len(c.runs) > page_tables.LONGEST) for c in crowds],
         lacking=lines,
         moments=moments,
         timelines=timelines(columns),
         first_repeated=_first_repeated(singles),
-        lengths=tables.identities_kept(columns),
-        figures=tables.plain_figures(columns),
-        drives={title: tables.drive_figures(columns, name) for name, title in _DRIVES.items()},
+        lengths=page_tables.identities_kept(columns),
+        figures=page_tables.plain_figures(columns),
+        drives={title: page_tables.drive_figures(columns, name) for name, title in _DRIVES.items()},
         curves=draw_error_curves(columns),
         settings=[(column.label, _settings(column)) for column in columns],
-        all_figures=tables.all_figures(columns),
+        all_figures=page_tables.all_figures(columns),
     )
 
 
@@ -168,13 +168,13 @@ def _section(column: Column) -> RunSection:
     return RunSection(
         label=column.label,
         found=found,
-        losses=tables.losses(found),
-        occlusions=tables.occlusions(column),
+        losses=page_tables.losses(found),
+        occlusions=page_tables.occlusions(column),
         plan=draw_paths(found, column.label),
         attention=attention_strip(found),
         things=draw_things(found, column.label),
-        moves=tables.moves(found),
-        modes=tables.modes(found),
+        moves=page_tables.moves(found),
+        modes=page_tables.modes(found),
         tiles=contact_sheet(found.run),
     )
 
@@ -241,7 +241,7 @@ def _settings(column: Column) -> list[tuple[str, str]]:
         ("seed" if column.is_single else "seeds", seeds),
         ("tracker", about.tracker),
         ("tracks", "" if adopted is None else f"{adopted.tracks}, made elsewhere"),
-        ("boxes", "" if found.yardstick == Yardstick() else f"scored against {found.yardstick}"),
+        ("boxes", "" if found.yardstick == BoxReference() else f"scored against {found.yardstick}"),
         ("robot", about.behaviour or (str(behaviour) if played else "")),
         ("robot driven by", "" if adopted is None else adopted.driven_by),
         ("images", _images(run)),

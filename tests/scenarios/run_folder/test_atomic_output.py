@@ -11,8 +11,8 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.draw_plan import draw_plan
 from peopleboy.scenarios.export.make_dataset import of_scenarios, render_set
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.run_folder.atomic_output import atomic, atomic_folder
 from peopleboy.scenarios.run_folder.folder import claim_folder
-from peopleboy.scenarios.run_folder.output import whole, whole_folder
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.frame_cache import film
 from peopleboy.studies.reproductions.units import open_store
@@ -30,8 +30,8 @@ from tests.helpers.images.footage_files import write_folder
 WAIT = """
 import sys, time
 from pathlib import Path
-from peopleboy.scenarios.run_folder.output import whole_folder
-with whole_folder(Path(sys.argv[1]), {}, overwrite=True) as folder:
+from peopleboy.scenarios.run_folder.atomic_output import atomic_folder
+with atomic_folder(Path(sys.argv[1]), {}, overwrite=True) as folder:
     (folder / "half").touch()
     print("begun", flush=True)
     time.sleep(60)
@@ -54,7 +54,7 @@ def end(process: "subprocess.Popen[str]", how: signal.Signals) -> int:
 
 @pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGINT])
 def test_a_process_told_to_end_leaves_nothing_behind_and_the_earlier_folder_whole(tmp_path, how):
-    with whole_folder(tmp_path / "out", {}, overwrite=False) as folder:
+    with atomic_folder(tmp_path / "out", {}, overwrite=False) as folder:
         (folder / "earlier").touch()
     assert end(begin(tmp_path / "out"), how) in (128 + how, -how)
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
@@ -67,7 +67,7 @@ def test_what_a_killed_process_has_left_goes_with_the_next_call_and_a_running_on
     end(begin(out), signal.SIGKILL)
     assert len(list(tmp_path.iterdir())) == 2
     running = begin(out)
-    with whole_folder(out, {}, overwrite=False):
+    with atomic_folder(out, {}, overwrite=False):
         left = {path.name for path in tmp_path.iterdir()}
     assert left == {".out.tex.1.new", f".out.{running.pid}.new", f".out.{os.getpid()}.new"}
     end(running, signal.SIGTERM)
@@ -76,14 +76,14 @@ def test_what_a_killed_process_has_left_goes_with_the_next_call_and_a_running_on
 
 def test_an_earlier_folder_is_back_if_the_new_one_cannot_take_its_place(tmp_path, monkeypatch):
     out = tmp_path / "out"
-    with whole_folder(out, {}, overwrite=False):
+    with atomic_folder(out, {}, overwrite=False):
         pass
 
     def fail(*_: Path) -> Path:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(Path, "replace", fail)
-    with pytest.raises(BadInput, match="No space left"), whole_folder(out, {}, overwrite=True):
+    with pytest.raises(BadInput, match="No space left"), atomic_folder(out, {}, overwrite=True):
         pass
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
     assert (out / "export.json").is_file()
@@ -92,15 +92,15 @@ def test_an_earlier_folder_is_back_if_the_new_one_cannot_take_its_place(tmp_path
 def test_a_file_is_replaced_whole_or_stays_as_it_is(tmp_path):
     page = tmp_path / "page.html"
     for text in ("first", "second"):
-        with whole(page) as part:
+        with atomic(page) as part:
             part.write_text(text)
         assert page.read_text() == text
-    with suppress(KeyboardInterrupt), whole(page) as part:
+    with suppress(KeyboardInterrupt), atomic(page) as part:
         part.write_text("half")
         raise KeyboardInterrupt
-    with whole(page):
+    with atomic(page):
         pass  # made nothing
-    with whole(page, stays=page.exists) as part:
+    with atomic(page, stays=page.exists) as part:
         part.write_text("too late")
     assert page.read_text() == "second"
     assert list(tmp_path.iterdir()) == [page]
@@ -108,13 +108,13 @@ def test_a_file_is_replaced_whole_or_stays_as_it_is(tmp_path):
 
 def test_handlers_of_sigterm_are_as_before(tmp_path):
     before = signal.getsignal(signal.SIGTERM)
-    with whole_folder(tmp_path / "out", {}, overwrite=False):
+    with atomic_folder(tmp_path / "out", {}, overwrite=False):
         assert signal.getsignal(signal.SIGTERM) != before
     assert signal.getsignal(signal.SIGTERM) == before
 
 
 def write_run(path):
-    with whole_folder(path, {}, overwrite=False, kind="run"):
+    with atomic_folder(path, {}, overwrite=False, kind="run"):
         pass
 
 

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from peopleboy.scenarios.loop.track_events import TrackEvent, TrackEvents
+from peopleboy.scenarios.loop.run_events import TrackEvent, TrackEvents
 from peopleboy.tracker.track import Status, Track
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.runs import synthetic_ticks as made
