@@ -107,10 +107,10 @@ def _watched(
         happenings += [one for one in model.finish() if not bodies.are_at(one)]
         write_map(model.static_map(), folder / MAP)
         write_background(scene.background_m, folder / BACKGROUND)
-        told = _told(happenings, who, true_events(run), first)
+        told = _known(happenings, who, true_events(run), first)
         if layer is not None:
             layer.log_map(model.static_map())
-            layer.log_events([(happening.told_s, line) for happening, line in told])
+            layer.log_events([(happening.known_s, line) for happening, line in told])
     return [line for _, line in sorted(told, key=lambda one: one[0].time_s)]
 
 
@@ -133,7 +133,7 @@ def _next(places: Sequence[tuple[int, Spot]], frame: int) -> Spot:
     return places[min(at, len(places) - 1)][1]
 
 
-def _told(
+def _known(
     happenings: Sequence[Happening], who: WhoIsWho, events: Sequence[TrueEvent], first: Pose2
 ) -> list[tuple[Happening, str]]:
     """Put what happened into words, with the names of the things that it truly happened to."""

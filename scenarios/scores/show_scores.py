@@ -24,7 +24,7 @@ def print_scores(scores: Scores, who: str = "people") -> None:
         _console().print(f"{_single_person(scores)}\n", soft_wrap=True)
     table = _table(who, "figure", "value", "meaning")
     for row in rows(scores):
-        if row.figure.is_told_by(scores):
+        if row.figure.is_defined_for(scores):
             table.add_row(row.figure.name, _number(row.value, row.figure.unit), row.figure.meaning)
     _print(table)
     _tell_unknown(scores)
@@ -76,7 +76,7 @@ def _print_spread(tracker: str, sequences: Sequence[Scores], who: str) -> None:
     table = _table(title, "figure", "all frames", "mean of runs", "deviation", "meaning")
     whole = combine(sequences)
     for row, over in zip(rows(whole), spread(sequences), strict=True):
-        if not row.figure.is_told_by(whole):
+        if not row.figure.is_defined_for(whole):
             continue
         unit = row.figure.unit
         numbers = [_number(value, unit) for value in (row.value, over.mean, over.sd)]
@@ -96,7 +96,7 @@ def _print_beside(groups: Groups, who: str) -> None:
         *[f"{one.tracker} - {one.other}, {counted(one.pairs, 'pair')}" for one in compared],
     )
     for figure in FIGURES:
-        if not any(figure.is_told_by(whole) for whole in wholes):
+        if not any(figure.is_defined_for(whole) for whole in wholes):
             continue
         values = [_number(figure.of(whole), figure.unit) for whole in wholes]
         apart = [_interval(one.figures[figure.name], figure.unit) for one in compared]

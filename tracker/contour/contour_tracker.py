@@ -27,8 +27,8 @@ from peopleboy.tracker.contour.estimated_mount import (
     MountBelief,
     believed_from,
     is_learnable,
+    reports_mount,
     seen_from,
-    tells_mount,
 )
 from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanation, ellipse_of
 from peopleboy.tracker.contour.measurement.likelihood import ContourModel, clutter_of, settled_clutter
@@ -167,7 +167,7 @@ class ContourTracker:
         """Learn from those who are seen well how a camera sits that nobody calibrated."""
         if self._belief is None:
             return
-        telling = [person for person in self._persons if tells_mount(person, rows)]
+        telling = [person for person in self._persons if reports_mount(person, rows)]
         for person in telling:
             self._belief = self._belief.learnt(person.belief.estimate, rows)
         if telling:

@@ -90,7 +90,7 @@ def is_learnable(config: TrackerConfig) -> bool:
     return all(map(math.isfinite, config.detector.limits.y_below_horizon))
 
 
-def tells_mount(person: TrackedPerson, rows: int) -> bool:
+def reports_mount(person: TrackedPerson, rows: int) -> bool:
     """Tell whether a person is seen well enough, and is surely one: whole, and walking."""
     state = person.belief.estimate
     top, bottom = state[Y] - CROWN * state[H], state[Y] + FOOT * state[H]

@@ -19,7 +19,7 @@ FARTHEST = 5.0  # square that place counts at most: people turn back, and come i
 LOOKS2 = 12.0  # squared distance of looks of the same person, where they are not known
 # Logistic regression over reappearances in the data sets and the library, of the same person and of others.
 PLACE_WEIGHT = 0.56
-LOOKS_WEIGHT = 1.76
+APPEARANCE_WEIGHT = 1.76
 WORST = 6.8
 GROWTH = 0.7  # largest change of the logarithm of the height
 COMPARED = 0.5  # share of somebody's known looks that must be seen of who may be the same person
@@ -74,7 +74,7 @@ def mismatch(found: TrackedPerson, person: TrackedPerson, view: FrameView, confi
     place = (PLACE_PX + PLACE_PX_S * person.hidden_s) * view.size
     away = (found.shown - person.shown)[[X, Y]] / place
     appearance = appearance_distance(found, person, config)
-    return PLACE_WEIGHT * min(float(away @ away), FARTHEST) + LOOKS_WEIGHT * float(np.log1p(appearance))
+    return PLACE_WEIGHT * min(float(away @ away), FARTHEST) + APPEARANCE_WEIGHT * float(np.log1p(appearance))
 
 
 def appearance_distance(found: TrackedPerson, person: TrackedPerson, config: TrackerConfig) -> float:

@@ -33,7 +33,7 @@ class Figure:
         """Family of the figure: counts, thesis, paper, mot or floor."""
         return self.where.partition(".")[0]
 
-    def is_told_by(self, scores: Scores) -> bool:
+    def is_defined_for(self, scores: Scores) -> bool:
         """Tell whether truth and tracks of these scores have what the figure needs."""
         if self.group == FLOOR:
             return len(scores.floor) > 0
@@ -41,7 +41,7 @@ class Figure:
 
     def of(self, scores: Scores) -> float:
         """Look the figure up; NaN if it is undefined."""
-        if not self.is_told_by(scores):
+        if not self.is_defined_for(scores):
             return math.nan
         value: float = attrgetter(self.where)(scores)
         return value
@@ -146,7 +146,7 @@ def to_json(scores: Scores) -> dict[str, dict[str, float | int | None]]:
     """Give the figures by group and name, as JSON can hold them: None for undefined."""
     groups: dict[str, dict[str, float | int | None]] = {}
     for row in rows(scores):
-        if row.figure.group == FLOOR and not row.figure.is_told_by(scores):
+        if row.figure.group == FLOOR and not row.figure.is_defined_for(scores):
             continue
         value = None if math.isnan(row.value) else row.value
         groups.setdefault(row.figure.group, {})[row.figure.name] = value

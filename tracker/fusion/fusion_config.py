@@ -57,7 +57,7 @@ class FusionConfig:
     loyalty: float = 6.0
     loyalty_heat: float = 12.0
     beside_m: float = 0.3
-    looks_weight: float = 20.0
+    appearance_weight: float = 20.0
     height_sd_m: float = 0.08
     most_height: float = 4.0
     floor_m: float = 0.12

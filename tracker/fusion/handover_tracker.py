@@ -37,7 +37,7 @@ class Introductions:
     """Remembers who has been pointed out of late."""
 
     def __init__(self) -> None:
-        self._told_s: dict[int, float] = {}
+        self._reported_s: dict[int, float] = {}
 
     def next(
         self, around: Sequence[Track], warm: Sequence[Track], linked: Collection[int], frame: Frame
@@ -58,10 +58,10 @@ class Introductions:
             return None
         width = frame.images[THERMAL].shape[1]
         for track in around:
-            is_due = frame.time_s - self._told_s.get(track.id, -math.inf) >= PAUSE_S
+            is_due = frame.time_s - self._reported_s.get(track.id, -math.inf) >= PAUSE_S
             box = thermal_view(track, calibration, width)
             if is_due and track.id not in linked and box is not None and not _is_taken(box, warm):
-                self._told_s[track.id] = frame.time_s
+                self._reported_s[track.id] = frame.time_s
                 return box
         return None
 

@@ -91,8 +91,8 @@ class Depth:
             person = people[track.id]
             is_found = frame.time_s - person.seen_s < _MISSED_S
             body = _body_of(person, explanation.detections) if is_found else None
-            has_looks = self.is_lit and is_found
-            appearance = colours(person.place_m, person.body.head_m, frame) if has_looks else None
+            has_appearance = self.is_lit and is_found
+            appearance = colours(person.place_m, person.body.head_m, frame) if has_appearance else None
             if not self._is_cold(track, person, frame):
                 reported.append(_deep(track, person, body, appearance, pose, is_found=is_found))
         return reported

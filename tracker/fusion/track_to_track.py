@@ -61,7 +61,7 @@ def _unlikeness(person: Person, reported: SensorTrack, config: FusionConfig) -> 
     """Rate how different looks and height are; 0 as far as they are not known."""
     found = 0.0
     if reported.appearance is not None and person.appearance is not None:
-        found += config.looks_weight * (1.0 - similarity(person.appearance, reported.appearance))
+        found += config.appearance_weight * (1.0 - similarity(person.appearance, reported.appearance))
     if reported.tall_m is not None and reported.is_clear and person.depth is not None:
         found += min(((reported.tall_m - person.tall_m) / config.height_sd_m) ** 2, config.most_height)
     return found

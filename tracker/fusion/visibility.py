@@ -81,7 +81,7 @@ REACH_M: Final = 0.4  # from that surface, within which readings belong to it
 _COLUMNS: Final = 8
 _ROWS: Final = 16
 _LEAST: Final = 12  # readings from which on shares mean anything
-_NO_LOOKS: Final = np.zeros(BINS)
+_NO_COLOURS: Final = np.zeros(BINS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +154,7 @@ def surface_m(view: DepthView, place_m: Floats) -> float:
 
 
 def _body(wide_m: float, high_m: float, low_m: float) -> Body:
-    return Body(width_m=wide_m, head_m=high_m, low_m=low_m, appearance=_NO_LOOKS)
+    return Body(width_m=wide_m, head_m=high_m, low_m=low_m, appearance=_NO_COLOURS)
 
 
 # What colours somebody has, by those readings of the depth image that are its own.

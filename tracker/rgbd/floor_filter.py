@@ -68,7 +68,7 @@ class FloorFilter:
         best = float(np.sort(kernel)[-count:].mean())
         if config.has_hold and best < _HOLD_BELOW:
             return Update(self, self.place_m, 0.0, glance, is_held=True)
-        weight = kernel * _by_looks(glance.similarity, config.sharpness)
+        weight = kernel * _by_appearance(glance.similarity, config.sharpness)
         total = float(weight.sum())
         if total <= 0.0:
             return Update(self, self.place_m, 0.0, glance, is_held=True)
@@ -99,7 +99,7 @@ class Update:
     is_held: bool
 
 
-def _by_looks(similarity: Floats, sharpness: float) -> Floats:
+def _by_appearance(similarity: Floats, sharpness: float) -> Floats:
     if sharpness <= 0.0:
         return similarity
     return np.asarray(np.exp(-(1.0 - similarity) / (2.0 * sharpness**2)))

@@ -150,12 +150,12 @@ def box_at(geometry: DepthView, place_m: Floats, body: Body) -> Box:
     return left, top, width, height
 
 
-def looks_in(view: RgbdView, box: Box) -> Floats:
+def colours_in(view: RgbdView, box: Box) -> Floats:
     """Give the histogram (BINS,) of what stands out in a box (SA eq. 4.24).
 
     Its readings are parted into two by their depths; the nearer ones are taken.
     """
-    return np.asarray(_foreground_looks(view.depth, view.colour, np.array(box), bin_of_colour()))
+    return np.asarray(_foreground_colours(view.depth, view.colour, np.array(box), bin_of_colour()))
 
 
 @njit(cache=True, nogil=True)
@@ -272,7 +272,7 @@ def _miss(rotation: Floats, origin: Floats, place: Floats, x: float, z: float) -
 
 
 @njit(cache=True, nogil=True)
-def _foreground_looks(depth: Depth, colour: Image, box: Floats, table: NDArray[np.uint8]) -> Floats:
+def _foreground_colours(depth: Depth, colour: Image, box: Floats, table: NDArray[np.uint8]) -> Floats:
     readings = np.zeros(4 * ROWS * COLUMNS)
     bins = np.zeros(4 * ROWS * COLUMNS, np.int64)
     n = 0

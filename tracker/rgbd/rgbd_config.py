@@ -72,7 +72,7 @@ class HypothesesConfig:
     outside_s: float = 1.0
     hidden_s: float = 6.0
     has_see_through: bool = True
-    looks_weight: float = 0.5
+    appearance_weight: float = 0.5
     uses_odometry: bool = True
     body_m: float = 0.115
 
@@ -123,7 +123,7 @@ PRINTED: Final = RgbdConfig(
         outside_s=2.0,
         hidden_s=2.0,
         has_see_through=False,
-        looks_weight=0.0,
+        appearance_weight=0.0,
         body_m=0.0,
     ),
 )

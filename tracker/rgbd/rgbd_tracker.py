@@ -12,7 +12,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Calibration, Floats, Frame, PinholeCalibration
 from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.rgbd.hypothesis import Detection, Hypothesis
-from peopleboy.tracker.rgbd.observation_model import Body, RgbdView, box_at, looks_in
+from peopleboy.tracker.rgbd.observation_model import Body, RgbdView, box_at, colours_in
 from peopleboy.tracker.rgbd.pre_detection import Layout, PreDetection, PreDetector
 from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
 from peopleboy.tracker.rgbd.track_management import Management, associate, occluder_of
@@ -140,7 +140,7 @@ class RgbdTracker:
             width_m=found.width_m,
             head_m=head,
             low_m=max(head - found.height_m, 0.0),
-            appearance=looks_in(view, found.box),
+            appearance=colours_in(view, found.box),
         )
         return Detection(
             found=found, place_m=_place(found, view), body=body, score=score, is_verified=is_verified

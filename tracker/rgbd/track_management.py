@@ -232,7 +232,7 @@ def associate(
                 unlike = 1.0 - similarity(person.body.appearance, detection.body.appearance)
                 # Whoever is believed in goes first.
                 doubt = 0.0 if person.id else 0.5
-                cost[row, column] = apart / gate + config.looks_weight * unlike + doubt
+                cost[row, column] = apart / gate + config.appearance_weight * unlike + doubt
     rows, columns = linear_sum_assignment(cost)
     return {int(r): int(c) for r, c in zip(rows, columns, strict=True) if cost[r, c] < _NEVER}
 

@@ -31,7 +31,7 @@ class _Half:
 
     thing: Thing
     since_s: float
-    is_told: bool = False
+    is_known: bool = False
     is_paired: bool = False
 
 
@@ -46,7 +46,7 @@ class Ledger:
         self._config = config
         self._gone: list[_Half] = []
         self._come: list[_Half] = []
-        self._told: list[_Half] = []
+        self._known: list[_Half] = []
         self._first: dict[int, tuple[float, tuple[float, float]]] = {}
         self._people: deque[tuple[float, tuple[SeenPerson, ...]]] = deque()
 
@@ -94,21 +94,21 @@ class Ledger:
                 half.is_paired = origin.is_paired = True
                 happenings.append(self._moved(origin.thing, half.thing, time_s))
             elif waited_s >= config.wait_s:
-                half.is_told = True
+                half.is_known = True
                 happenings.append(self._single(Change.APPEARED, half.thing, time_s))
         for half in self._gone:
-            arrived = None if half.is_paired or half.is_told else self._arrived(half.thing)
+            arrived = None if half.is_paired or half.is_known else self._arrived(half.thing)
             if arrived is not None:
                 half.is_paired = arrived.is_paired = True
                 happenings.append(self._moved(half.thing, arrived.thing, time_s))
             waited_s = math.inf if is_over else time_s - half.since_s
-            if not half.is_told and not half.is_paired and waited_s >= config.wait_s:
-                half.is_told = True
+            if not half.is_known and not half.is_paired and waited_s >= config.wait_s:
+                half.is_known = True
                 happenings.append(self._single(Change.VANISHED, half.thing, time_s))
         limit = time_s - self._config.pair_s - self._config.wait_s
-        self._told = [one for one in (*self._told, *self._come) if one.is_told and one.since_s > limit]
-        self._told = [one for one in self._told if not one.is_paired]
-        self._come = [one for one in self._come if not (one.is_told or one.is_paired)]
+        self._known = [one for one in (*self._known, *self._come) if one.is_known and one.since_s > limit]
+        self._known = [one for one in self._known if not one.is_paired]
+        self._come = [one for one in self._come if not (one.is_known or one.is_paired)]
         self._gone = [one for one in self._gone if not one.is_paired and one.since_s > limit]
         return happenings
 
@@ -138,9 +138,9 @@ class Ledger:
 
     def _arrived(self, thing: Thing) -> _Half | None:
         """Find what appeared and may be what vanished, as somebody hid that it did: the most alike."""
-        likeness = {k: self._alike(thing, one.thing) for k, one in enumerate(self._told)}
-        likely = {k: value for k, value in likeness.items() if value > 0.0 and not self._told[k].is_paired}
-        return self._told[max(likely, key=lambda k: likely[k])] if likely else None
+        likeness = {k: self._alike(thing, one.thing) for k, one in enumerate(self._known)}
+        likely = {k: value for k, value in likeness.items() if value > 0.0 and not self._known[k].is_paired}
+        return self._known[max(likely, key=lambda k: likely[k])] if likely else None
 
     def _alike(self, gone: Thing, come: Thing) -> float:
         config = self._config
@@ -160,7 +160,7 @@ class Ledger:
         span = min(gone.span_s[0], come.span_s[0]), max(gone.span_s[1], come.span_s[1])
         return Happening(
             time_s=_middle(gone),
-            told_s=time_s,
+            known_s=time_s,
             change=Change.MOVED,
             object=gone.id,
             from_m=gone.place_m,
@@ -172,7 +172,7 @@ class Ledger:
         place = thing.place_m
         return Happening(
             time_s=_middle(thing),
-            told_s=time_s,
+            known_s=time_s,
             change=change,
             object=thing.id,
             from_m=place if change is Change.VANISHED else None,

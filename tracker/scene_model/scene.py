@@ -80,7 +80,7 @@ class Happening:
     """
 
     time_s: float
-    told_s: float
+    known_s: float
     change: Change
     object: int
     from_m: Place | None = None

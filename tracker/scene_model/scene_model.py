@@ -110,7 +110,7 @@ class SceneModel:
         """Tell what was held back, as no frame will follow."""
         if self._newest is None:
             return ()
-        return tuple(self._told(one) for one in self._ledger.finished(self._newest.time_s))
+        return tuple(self._known(one) for one in self._ledger.finished(self._newest.time_s))
 
     def static_map(self) -> Surface:
         """Give what stands, seen from every place until now.
@@ -242,7 +242,7 @@ class SceneModel:
             things=things,
             persons=tuple(self._placed(one) for one in people.persons),
             objects=tuple(self._object(one, things) for one in self._standing.things.values()),
-            happenings=tuple(self._told(one) for one in happenings),
+            happenings=tuple(self._known(one) for one in happenings),
             vista=self._vista,
         )
 
@@ -261,7 +261,7 @@ class SceneModel:
     def _placed(self, person: SeenPerson) -> SeenPerson:
         return replace(person, place_m=self._pose.transform_point(person.place_m))
 
-    def _told(self, one: Happening) -> Happening:
+    def _known(self, one: Happening) -> Happening:
         return replace(one, from_m=self._in_first(one.from_m), to_m=self._in_first(one.to_m))
 
     def _in_first(self, place_m: Place | None) -> Place | None:

@@ -68,14 +68,14 @@ def describe_colours(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
     whose torso is not seen a row is 0, and so is the half of legs that are mostly outside the image of a
     camera that is known.
     """
-    told = np.zeros((len(boxes), FEATURES), np.float32)
+    result = np.zeros((len(boxes), FEATURES), np.float32)
     if COLOUR not in frame.images or len(boxes) == 0:
-        return told
+        return result
     image = frame.rgb(COLOUR)
     there = _seen_there(frame, boxes, view, (image.shape[0], image.shape[1]))
     least = -np.inf if view.floor_m is None else _LEAST_INSIDE
-    _describe(image, there, np.array(_PARTS), least, *_BIN_OF, told)
-    return told
+    _describe(image, there, np.array(_PARTS), least, *_BIN_OF, result)
+    return result
 
 
 def colour_similarity(one: Colours, other: Colours) -> float:
@@ -96,9 +96,9 @@ def colour_similarities(some: Colours, others: Colours) -> tuple[Colours, NDArra
 
 def blend_colours(before: Colours, now: Colours, share: float) -> Colours:
     """Give the colours that are remembered after others are seen, by the parts that are."""
-    told = np.empty_like(before)
-    _blend(before, now, np.float32(share), told)
-    return told
+    result = np.empty_like(before)
+    _blend(before, now, np.float32(share), result)
+    return result
 
 
 def _are_seen(colours: Colours) -> NDArray[np.bool_]:
@@ -137,18 +137,18 @@ def _describe(
     of_light: NDArray[np.uint8],
     of_red: NDArray[np.uint8],
     of_blue: NDArray[np.uint8],
-    told: Colours,
+    result: Colours,
 ) -> None:  # pragma: no cover
     """Describe boxes (M, 4) of an image (H, W, 3) by parts (2, 2), of which so much must be in the image."""
     rows = float(image.shape[0])
-    size = told.shape[1] // len(parts)
+    size = result.shape[1] // len(parts)
     for number, (left, top, width, height) in enumerate(boxes):
         inset = (1.0 - _WIDE) / 2.0 * width
         begin, end = max(round(left + inset), 0), max(round(left + width - inset), 0)
         for part, (first, last) in enumerate(parts):
             upper, lower = top + first * height, top + last * height
             pixels = image[max(round(upper), 0) : max(round(lower), 0), begin:end]
-            bins = told[number, part * size : (part + 1) * size]
+            bins = result[number, part * size : (part + 1) * size]
             is_seen = _histogram(pixels, of_light, of_red, of_blue, bins)
             if part == 0 and not is_seen:
                 break
@@ -195,11 +195,11 @@ def _common_parts(one: Colours, other: Colours) -> int:  # pragma: no cover
 
 
 @njit(cache=True, nogil=True)
-def _blend(before: Colours, now: Colours, share: np.float32, told: Colours) -> None:  # pragma: no cover
+def _blend(before: Colours, now: Colours, share: np.float32, result: Colours) -> None:  # pragma: no cover
     size = len(before) // PARTS
     for first in range(0, len(before), size):
         part = slice(first, first + size)
-        was, seen, put = before[part], now[part], told[part]
+        was, seen, put = before[part], now[part], result[part]
         gain = np.float32(0.0)
         if seen.any():
             gain = share if was.any() else np.float32(1.0)

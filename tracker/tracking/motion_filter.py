@@ -98,9 +98,9 @@ def mahalanobis_distances(
     """Give the Mahalanobis distances (K, M) of proposals (M, 4) from where people are expected."""
     expected, slope = _expected(paths, view)
     deviation = np.maximum(expected[:, 2:] - expected[:, 1:2], 1.0) * _deviations(config)
-    told = np.empty((len(paths), len(boxes)))
-    _measure(paths.covariance, slope, np.square(deviation), expected, _ends(boxes), told)
-    return told
+    result = np.empty((len(paths), len(boxes)))
+    _measure(paths.covariance, slope, np.square(deviation), expected, _ends(boxes), result)
+    return result
 
 
 def update_states(
@@ -221,18 +221,18 @@ def _multiply(one: Floats, other: Floats, product: Floats) -> None:  # pragma: n
 
 @njit(cache=True, nogil=True)
 def _measure(
-    covariance: Floats, slope: Floats, noise: Floats, expected: Floats, seen: Floats, told: Floats
+    covariance: Floats, slope: Floats, noise: Floats, expected: Floats, seen: Floats, result: Floats
 ) -> None:  # pragma: no cover
     """Tell the Mahalanobis distances (K, M) of what is seen (M, 3) from what is expected (K, 3)."""
     across, root = np.empty((STATE, 3)), np.zeros((3, 3))
     gap = np.empty(3)
-    for number in range(len(told)):
+    for number in range(len(result)):
         _root_of_spread(covariance[number], slope[number], noise[number], across, root)
         for column in range(len(seen)):
             for axis in range(3):
                 gap[axis] = seen[column, axis] - expected[number, axis]
             _solve(root, gap)
-            told[number, column] = math.sqrt(gap[0] ** 2 + gap[1] ** 2 + gap[2] ** 2)
+            result[number, column] = math.sqrt(gap[0] ** 2 + gap[1] ** 2 + gap[2] ** 2)
 
 
 @njit(cache=True, nogil=True)
@@ -272,9 +272,9 @@ def _root_of_spread(
 
 
 @njit(cache=True, nogil=True)
-def _solve(root: Floats, told: Floats) -> None:  # pragma: no cover
+def _solve(root: Floats, result: Floats) -> None:  # pragma: no cover
     """Divide three numbers by a lower root (3, 3)."""
     for i in range(3):
         for j in range(i):
-            told[i] -= root[i, j] * told[j]
-        told[i] /= root[i, i]
+            result[i] -= root[i, j] * result[j]
+        result[i] /= root[i, i]

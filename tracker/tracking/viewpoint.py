@@ -74,9 +74,9 @@ class Viewpoint:
             feet_m: (K, 3) where they stand.
             build: (K,) logarithm of their stature over the usual one.
         """
-        told = np.empty((len(feet_m), 3))
-        _see(feet_m, build, self.camera_from_level, self.focal_px, self.centre_px, told)
-        return told
+        result = np.empty((len(feet_m), 3))
+        _see(feet_m, build, self.camera_from_level, self.focal_px, self.centre_px, result)
+        return result
 
     def slopes(self, feet_m: Floats, build: Floats) -> Floats:
         """Give the derivatives (K, 3, 4) of `seen` by x, y, z of the feet, and the build."""
@@ -115,16 +115,16 @@ def _see(
     camera_from_level: Floats,
     focal_px: tuple[float, float],
     centre_px: tuple[float, float],
-    told: Floats,
+    result: Floats,
 ) -> None:  # pragma: no cover
     for number in range(len(feet_m)):
         x, y, z = feet_m[number]
         foot = _seen_from(x, y, z, camera_from_level)
         head = _seen_from(x, y - STATURE_M * math.exp(build[number]), z, camera_from_level)
         middle = (foot[0] / foot[2] + head[0] / head[2]) / 2.0
-        told[number, 0] = middle * focal_px[0] + centre_px[0]
-        told[number, 1] = head[1] / head[2] * focal_px[1] + centre_px[1]
-        told[number, 2] = foot[1] / foot[2] * focal_px[1] + centre_px[1]
+        result[number, 0] = middle * focal_px[0] + centre_px[0]
+        result[number, 1] = head[1] / head[2] * focal_px[1] + centre_px[1]
+        result[number, 2] = foot[1] / foot[2] * focal_px[1] + centre_px[1]
 
 
 @njit(cache=True, nogil=True)

@@ -46,7 +46,7 @@ robot:
     depth: {kind: depth, preset: tof}
 """
 
-GONE = Happening(time_s=3.5, told_s=6.0, change=Change.VANISHED, object=2, from_m=(2.8, 0.0, 0.25), person=1)
+GONE = Happening(time_s=3.5, known_s=6.0, change=Change.VANISHED, object=2, from_m=(2.8, 0.0, 0.25), person=1)
 
 
 @pytest.fixture(scope="module")
@@ -141,7 +141,12 @@ def test_a_true_name_goes_to_what_matches_it_alone_and_only_once() -> None:
     teddy = TrueEvent(thing="teddy", by="anna", from_s=5.0, to_s=7.4, from_m=(4.6, -0.8), to_m=(4.5, 0.3))
     fern = TrueEvent(thing="fern", by="", from_s=12.0, to_s=12.0, to_m=(6.0, 0.4))
     moved = Happening(
-        time_s=5.4, told_s=10.9, change=Change.MOVED, object=1, from_m=(3.7, -0.8, 0.9), to_m=(3.6, 0.3, 0.2)
+        time_s=5.4,
+        known_s=10.9,
+        change=Change.MOVED,
+        object=1,
+        from_m=(3.7, -0.8, 0.9),
+        to_m=(3.6, 0.3, 0.2),
     )
     gone = replace(GONE, time_s=8.8, object=5, from_m=(3.375, -0.19, 1.06))
     taken = replace(GONE, time_s=12.0, object=6, from_m=(5.1, 0.4, 0.8))

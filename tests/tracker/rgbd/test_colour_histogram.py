@@ -14,7 +14,7 @@ from peopleboy.tracker.rgbd.observation_model import (
     SATURATIONS,
     RgbdView,
     bin_of_colour,
-    looks_in,
+    colours_in,
     similarity,
 )
 from tests.helpers.depth_scene import HEIGHT, WIDTH, Block, depth_of, make_view
@@ -48,6 +48,6 @@ def test_only_the_nearer_of_two_depths_is_looked_at() -> None:
     depth = depth_of([Block(0.0, 3.0)])
     colour = np.full((HEIGHT, WIDTH, 3), (220, 20, 20), np.uint8)
     colour[depth == 3000] = (20, 20, 220)
-    appearance = looks_in(RgbdView(depth, as_taken(colour), make_view(), 0.0), (120.0, 80.0, 80.0, 70.0))
+    appearance = colours_in(RgbdView(depth, as_taken(colour), make_view(), 0.0), (120.0, 80.0, 80.0, 70.0))
     assert appearance[bin_of(20, 20, 220)] == pytest.approx(1.0, abs=0.02)
     assert appearance.sum() == pytest.approx(1.0)

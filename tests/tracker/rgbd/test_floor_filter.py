@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.rgbd.floor_filter import FloorFilter
-from peopleboy.tracker.rgbd.observation_model import Body, RgbdView, looks_in
+from peopleboy.tracker.rgbd.observation_model import Body, RgbdView, colours_in
 from peopleboy.tracker.rgbd.rgbd_config import FloorFilterConfig
 from tests.helpers.depth_scene import HEIGHT, WIDTH, Block, depth_of, make_view
 from tests.helpers.images.as_taken import as_taken
@@ -32,7 +32,7 @@ def view_of(*blocks: Block) -> RgbdView:
 def body_in(view: RgbdView) -> Body:
     reds = np.flatnonzero((view.colour[..., 0] == 200).any(axis=0))
     box = (float(reds[0]), 90.0, float(len(reds)), 60.0)
-    return Body(0.45, 1.65, 0.0, looks_in(view, box))
+    return Body(0.45, 1.65, 0.0, colours_in(view, box))
 
 
 @given(x=st.floats(-5, 5), y=st.floats(-5, 5), advance=small, aside=small, turn=st.floats(-0.5, 0.5))

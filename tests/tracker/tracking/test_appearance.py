@@ -92,16 +92,16 @@ def test_legs_are_remembered_while_the_torso_is_learned() -> None:
 def test_colours_are_the_shares_of_numpys_own_bins(pixels: NDArray[np.uint8]) -> None:
     red, green, blue = pixels.reshape(-1, 3).T.astype(np.float64)
     light = (red + green + blue) / 3.0
-    told = np.zeros(FEATURES // PARTS, np.float32)
-    is_confirmed = _histogram(pixels, *_BIN_OF, told)
+    result = np.zeros(FEATURES // PARTS, np.float32)
+    is_confirmed = _histogram(pixels, *_BIN_OF, result)
     assert is_confirmed == (light.mean() >= 24.0)
     if not is_confirmed:
-        assert not told.any()
+        assert not result.any()
         return
     axes = [light, np.clip(red - green, -59.9, 59.9), np.clip(blue - (red + green) / 2.0, -59.9, 59.9)]
     edges = [np.linspace(0.0, 256.0, 5), np.linspace(-60.0, 60.0, 9), np.linspace(-60.0, 60.0, 9)]
     counts, _ = np.histogramdd(np.stack(axes, axis=1), edges)
-    np.testing.assert_allclose(PARTS * told**2, counts.ravel() / len(light), atol=1e-6)
+    np.testing.assert_allclose(PARTS * result**2, counts.ravel() / len(light), atol=1e-6)
 
 
 @given(st.integers(0, 10_000), st.sampled_from([0.1, 0.2, 1.0]))
@@ -111,8 +111,8 @@ def test_colours_are_blended_by_the_parts_that_are_seen(seed: int, share: float)
         (rng.random((PARTS, FEATURES // PARTS)) * rng.integers(0, 2, (PARTS, 1))).astype(np.float32)
         for _ in range(2)
     )
-    told = blend_colours(before.ravel(), now.ravel(), share).reshape(PARTS, -1)
-    for was, seen, both in zip(before, now, told, strict=True):
+    result = blend_colours(before.ravel(), now.ravel(), share).reshape(PARTS, -1)
+    for was, seen, both in zip(before, now, result, strict=True):
         gain = 0.0 if not seen.any() else share if was.any() else 1.0
         np.testing.assert_allclose(both, (1.0 - gain) * was + gain * seen, atol=1e-6)
     common = max(int((before.any(axis=1) & now.any(axis=1)).sum()), 1)

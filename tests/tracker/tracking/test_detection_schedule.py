@@ -64,8 +64,8 @@ def aims(
     return found
 
 
-def everywhere(told: list[Schedule]) -> list[int]:
-    return [image for image, aim in enumerate(told) if aim.everywhere]
+def everywhere(result: list[Schedule]) -> list[int]:
+    return [image for image, aim in enumerate(result) if aim.everywhere]
 
 
 def test_five_of_six_images_are_not_searched_where_it_is_clear_who_is_there() -> None:
@@ -76,8 +76,8 @@ def test_five_of_six_images_are_not_searched_where_it_is_clear_who_is_there() ->
 def test_a_narrower_camera_is_searched_more_often_but_no_more_than_where_it_is_open_who_is_there(
     breadth: float, searched: int
 ) -> None:
-    told = aims(targets(), 19, breadth=breadth * CONFIG.breadth)
-    assert everywhere(told) == list(range(0, 19, searched))
+    result = aims(targets(), 19, breadth=breadth * CONFIG.breadth)
+    assert everywhere(result) == list(range(0, 19, searched))
 
 
 @pytest.mark.parametrize("open_", ["nobody", "untold", "lost"])
@@ -101,12 +101,12 @@ def test_who_is_lost_outside_the_image_or_for_long_leaves_nothing_open() -> None
 
 
 def test_who_stands_apart_is_followed_by_his_portrait_for_a_while() -> None:
-    told = aims(targets(), 6)
+    result = aims(targets(), 6)
     for image in (1, 2, 4, 5):
-        assert list(told[image].followed) == [0, 1]
-        np.testing.assert_allclose(list(told[image].followed.values()), BOXES, atol=0.5)
-        assert not told[image].expected
-    aim = told[3]  # 0.2 s after the last look
+        assert list(result[image].followed) == [0, 1]
+        np.testing.assert_allclose(list(result[image].followed.values()), BOXES, atol=0.5)
+        assert not result[image].expected
+    aim = result[3]  # 0.2 s after the last look
     assert list(aim.expected) == [0, 1]
     assert aim.proposed(targets()).trees.tolist() == [2.0, 1.0]
 
@@ -153,12 +153,12 @@ def test_every_image_is_searched_everywhere_where_no_pause_is_asked_for() -> Non
 
 
 def test_two_of_three_searches_pass_by_who_stands_apart() -> None:
-    told = aims(targets(), 25)
-    assert [list(told[image].expected) for image in (0, 6, 12, 18, 24)] == [[], [0, 1], [0, 1], [], [0, 1]]
+    result = aims(targets(), 25)
+    assert [list(result[image].expected) for image in (0, 6, 12, 18, 24)] == [[], [0, 1], [0, 1], [], [0, 1]]
 
 
 @pytest.mark.parametrize("make", [close, untold])
 def test_no_search_passes_by_who_is_near_others_or_unsure(make: Callable[[], list[TrackState]]) -> None:
     who = make()
-    told = aims(who, 13, np.array([target.shown for target in who]))
-    assert not any(aim.expected for aim in told if aim.everywhere)
+    result = aims(who, 13, np.array([target.shown for target in who]))
+    assert not any(aim.expected for aim in result if aim.everywhere)

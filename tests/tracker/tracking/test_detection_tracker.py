@@ -183,8 +183,8 @@ def test_nobody_is_told_outside_the_image() -> None:
     boxes = [[walker(120.0 + 8.0 * i)] if 120.0 + 8.0 * i < 330.0 else [] for i in range(40)]
     seen = tracked(boxes, config=AS_CALIBRATED)
     assert len(seen[20]) == 1
-    told = [track.boxes[THERMAL] for tracks in seen for track in tracks]
-    assert max(left for left, *_ in told) < 319.5
+    result = [track.boxes[THERMAL] for tracks in seen for track in tracks]
+    assert max(left for left, *_ in result) < 319.5
     assert not seen[-1]
 
 
@@ -236,11 +236,11 @@ def test_every_image_of_a_slow_camera_or_one_that_is_not_known_is_searched_every
 
 def test_nobody_new_is_begun_with_where_only_others_are_looked_for() -> None:
     one, other = standing(-1.0), standing(1.0)
-    for later, told in (([[one, other], [one, other], [one]], {1}), ([[one], [one], [one, other]], {1, 2})):
+    for later, result in (([[one, other], [one, other], [one]], {1}), ([[one], [one], [one, other]], {1, 2})):
         boxes = [[one]] * 10 + later * 5
         tracker = DetectionTracker(find=FixedDetections(boxes, score=4.5))
         seen = [numbers(tracker.update(frame)) for frame in calibrated(boxes)]
-        assert set().union(*seen) == told
+        assert set().union(*seen) == result
 
 
 def test_who_is_pointed_out_is_told_at_once() -> None:

@@ -68,8 +68,8 @@ def test_places_on_the_floor_are_told_in_the_frame_of_the_robot(
     assert place.position_m == pytest.approx((away + ahead, left + aside), abs=1e-3)
     robot_from_level = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]])
     xx, xy, yy = place.covariance_m2
-    told = robot_from_level @ paths.covariance[0, :3, :3] @ robot_from_level.T
-    assert np.array([[xx, xy], [xy, yy]]) == pytest.approx(told)
+    result = robot_from_level @ paths.covariance[0, :3, :3] @ robot_from_level.T
+    assert np.array([[xx, xy], [xy, yy]]) == pytest.approx(result)
     assert xx > 0.0 < xx * yy - xy**2
 
 
@@ -159,13 +159,13 @@ def test_boxes_are_taken_in_and_told_apart_as_a_kalman_filter_does(seed: int, as
     ours, far = update_states(paths, boxes, view, CONFIG), mahalanobis_distances(paths, boxes, view, CONFIG)
     parts = np.array([CONFIG.column, CONFIG.head, CONFIG.foot])
     for k in range(4):
-        told, slope, covariance = ends_of(boxes), slopes[k], paths.covariance[k]
+        result, slope, covariance = ends_of(boxes), slopes[k], paths.covariance[k]
         spread = slope @ covariance @ slope.T + np.diag(np.square(parts * boxes[k, 3]))
         gain = covariance @ slope.T @ np.linalg.inv(spread)
-        np.testing.assert_allclose(ours.mean[k], paths.mean[k] + gain @ (told[k] - expected[k]), atol=1e-9)
+        np.testing.assert_allclose(ours.mean[k], paths.mean[k] + gain @ (result[k] - expected[k]), atol=1e-9)
         np.testing.assert_allclose(ours.covariance[k], (np.eye(7) - gain @ slope) @ covariance, atol=1e-9)
         for m in range(4):
-            gap = told[m] - expected[k]
+            gap = result[m] - expected[k]
             assert far[k, m] == pytest.approx(np.sqrt(gap @ np.linalg.solve(spread, gap)), rel=1e-6)
 
 

@@ -99,12 +99,12 @@ def without_warmth(frames: list[Frame]) -> Iterator[Frame]:
 @pytest.mark.slow
 def test_in_a_room_as_warm_as_people_they_are_found_by_colours(frames: list[Frame]) -> None:
     tracker, thermal = DetectionTracker(), ThermalFinder(PeopleDetector())
-    told, warm = 0, 0
+    result, warm = 0, 0
     for frame in without_warmth(frames):
         warm += len(thermal(frame).score)
-        told += len(list(confirmed(tracker.update(frame), THERMAL)))
+        result += len(list(confirmed(tracker.update(frame), THERMAL)))
     assert warm < 0.05 * len(frames)
-    assert told > 0.3 * len(frames)
+    assert result > 0.3 * len(frames)
 
 
 def independent_per_s(frames: Iterable[Frame], thermal: Proposals) -> list[float]:

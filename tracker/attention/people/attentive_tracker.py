@@ -147,7 +147,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
         self._config = AttentiveConfig() if config is None else config
         self._people: dict[int, GalleryEntry[Appearance]] = {}
         self._wearers: dict[int, Wearer] = {}
-        self._told: dict[int, int] = {}
+        self._reported: dict[int, int] = {}
         self._newest = 0
         self._time_s = 0.0
         self._attended: Attended | None = None
@@ -194,7 +194,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
             mean = None if wearer.number is None else wearer.mean(wearer.number, least=1)
             if mean is not None and wearer.number is not None and wearer.seen_s == self._time_s:
                 likeness[wearer.number] = mean
-        below = renumbered(getattr(self._below, "explanation", None), self._told)
+        below = renumbered(getattr(self._below, "explanation", None), self._reported)
         return AttentiveExplanation(below, likeness, self._attended)
 
     def _meet(self, track: Track, time_s: float) -> None:
@@ -297,7 +297,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
     def _renamed(self, tracks: Sequence[Track]) -> tuple[Track, ...]:
         """Give tracks, and those who hide them, their numbers; who may be born next has the next one."""
         number = {track.id: self._number(track) for track in tracks}
-        self._told = {below: own for below, own in number.items() if own is not None}
+        self._reported = {below: own for below, own in number.items() if own is not None}
         named = (
             replace(track, id=own, occluder=number.get(track.occluder or 0))
             for track in tracks

@@ -33,7 +33,7 @@ HIDDEN_BODY = 0.4  # least share of the contour by which a person with a covered
 LOST_FRAMES = 3  # frames without evidence after which somebody counts as hidden by something unknown
 CLEAR = 0.5  # share of head and body in view from which a hidden person may be seen again
 CLAIMED = 0.5  # share of its region that another person must have left free
-LOOKS_GATE = 40.0  # largest squared distance of looks of who comes back to sight
+APPEARANCE_GATE = 40.0  # largest squared distance of looks of who comes back to sight
 SIZE_GATE = 0.25  # largest change of the logarithm of its height
 # How the hidden walk: people seldom stop or turn, keep to the floor, and keep their size.
 MEMORY = 0.985  # share of the velocity that lasts to the next step
@@ -215,7 +215,7 @@ def look_at(
     if person.appearance is not None and features is not None:
         away = float(squared_distances(features, person.appearance)[0])
     growth = abs(np.log(max(belief.estimate[H], 1.0) / max(person.shown[H], 1.0)))
-    is_alike = growth < SIZE_GATE and not away > LOOKS_GATE
+    is_alike = growth < SIZE_GATE and not away > APPEARANCE_GATE
     is_free = not (overlap_shares(rows, surroundings.rivals, config) > CLAIMED).any()
     return Visibility(head, body, chance, is_free, is_alike)
 

@@ -18,7 +18,7 @@ from peopleboy.tracker.contour.particles import STATE_SIZE, Floats
 from peopleboy.tracker.contour.tracked_person import TrackedPerson, moved_on
 
 FOOT_PX = 4.0  # [px] of 240 rows: difference of foot rows that counts 1
-LOOKS = 12.0  # difference of squared distances of looks that counts 1
+APPEARANCE = 12.0  # difference of squared distances of looks that counts 1
 MOST = 4.0  # for which looks count at most
 
 Leads = NDArray[np.float64]
@@ -86,7 +86,7 @@ def likelier_front(figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:
 
     Where two people overlap, the image shows the looks of the one in front; the one behind looks wrong.
     """
-    clearer = -_leads([figure.unlikeness for figure in figures]) / LOOKS
+    clearer = -_leads([figure.unlikeness for figure in figures]) / APPEARANCE
     bounded: Leads = np.minimum(np.maximum(clearer, -MOST), MOST)
     return lower_foot(figures, view) / (FOOT_PX * view.size) + bounded
 
