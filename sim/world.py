@@ -111,8 +111,8 @@ class World:
         return self._table
 
     @property
-    def looks(self) -> MaterialTable:
-        """How its parts look."""
+    def materials(self) -> MaterialTable:
+        """Materials of its parts."""
         return self._materials
 
     def await_images(self) -> tuple[str, ...]:

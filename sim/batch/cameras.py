@@ -201,7 +201,7 @@ class BatchCameras:
         self._worlds, self._joined, self._crew = tuple(worlds), joined, workers
         self._wheels = wheels.reshape(-1)
         self._cameras = dict(worlds[0].cameras)
-        scene = join_scenes([world.table for world in worlds], [world.looks for world in worlds])
+        scene = join_scenes([world.table for world in worlds], [world.materials for world in worlds])
         self._stages = {
             name: make_stage(name, config, scene, worlds) for name, config in self._cameras.items()
         }

@@ -23,48 +23,36 @@ from peopleboy.sim.shapes.shape_table import ShapeTable
 Array = NDArray[np.float64]
 
 
-class Materials(NamedTuple):
-    """How parts look, as in `MaterialTable`; those of plain detail have neither finishes nor paintings."""
-
-    thermal: Array
-    colour: Array
-    kind: Numbers
-    period: Array
-    phase: Array
-    finish: Array
-    texels: NDArray[np.int16]
-    paint: Array
-    paint_texels: NDArray[np.int16]
-
-
 class JoinedScene(NamedTuple):
     """B worlds; numbers within them are those of each world by itself.
 
     Attributes:
         tables: visible shapes of all worlds.
-        materials: of their parts.
+        materials: of their parts; in plain detail none has a texture.
         part: (B + 1,) where each world's parts begin, and where the last end.
     """
 
     tables: JoinedTables
-    materials: Materials
+    materials: MaterialTable
     part: Numbers
 
 
 def join_scenes(tables: Sequence[ShapeTable], materials: Sequence[MaterialTable]) -> JoinedScene:
     """Copy tables and materials of worlds of plain detail into arrays of all of them."""
-    own = [(each.thermal, each.colour, each.kind, each.period, each.phase) for each in materials]
-    first = materials[0]
-    without = first.finish, first.texels, first.paint, first.paint_texels
-    joined = Materials._make([*map(np.concatenate, zip(*own, strict=True)), *without])
+    joined = materials[0]._replace(
+        **{name: np.concatenate([getattr(each, name) for each in materials]) for name in _OF_PARTS}
+    )
     return JoinedScene(join_tables(tables), joined, ends([len(each.thermal) for each in materials]))
 
 
+_OF_PARTS = ("thermal", "colour", "kind", "period", "phase", "shine")
+
+
 @njit(cache=True, nogil=True)
-def materials_of(scene: JoinedScene, world: int) -> Materials:
+def materials_of(scene: JoinedScene, world: int) -> MaterialTable:
     """How the parts of one of the worlds look."""
     materials, p, p_end = scene.materials, scene.part[world], scene.part[world + 1]
-    return Materials(
+    return MaterialTable(
         materials.thermal[p:p_end],
         materials.colour[p:p_end],
         materials.kind[p:p_end],
@@ -72,6 +60,7 @@ def materials_of(scene: JoinedScene, world: int) -> Materials:
         materials.phase[p:p_end],
         materials.finish,
         materials.texels,
+        materials.shine[p:p_end],
         materials.paint,
         materials.paint_texels,
     )
@@ -230,8 +219,7 @@ def render_colour(
         rotation = np.ascontiguousarray(views.poses.camera[row, :3, :3])
         shade(table.surface_part, lens, canvas, rotation, view.part, view.depth, view.normal)
         linear = light_image(
-            view.part, view.depth, view.normal, matrices, own.colour, own.kind, own.period, own.phase,
-            own.finish, own.texels, own.paint, own.paint_texels, response.light, level[row],
+            view.part, view.depth, view.normal, matrices, own, response.light, level[row],
         )  # fmt: skip
         lines = linear.reshape(lens.height, 3 * lens.width)
         smeared = blur_by_rotation(lines, views.camera.sweep, views.poses.turned[row], 3)

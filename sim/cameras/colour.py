@@ -40,13 +40,12 @@ def _is_second(
     p: int,
     depths: NDArray[np.float32],
     matrices: NDArray[np.float64],
-    kind: NDArray[np.int64],
-    period: NDArray[np.float64],
-    phase: NDArray[np.float64],
+    materials: MaterialTable,
 ) -> bool:
     """Whether the pattern of a part has its second colour at a pixel."""
     x, y, z = surface_point(matrices, p, u, v, depths[u])
-    return pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p) == 1
+    kind, period = materials.kind[p, 1], materials.period[p, 1]
+    return pattern_value(kind, period, x, y, z, materials.phase, p) == 1
 
 
 @njit(cache=True, fastmath=True, forceinline=True)
@@ -82,18 +81,11 @@ def _light_row(
     is_second: NDArray[np.bool_],
     places: NDArray[np.uint32],
     v: int,
-    parts: NDArray[np.int32],
-    depth: NDArray[np.float32],
+    part: NDArray[np.int32],
+    depths: NDArray[np.float32],
     normal: NDArray[np.float32],
     matrices: NDArray[np.float64],
-    colour: NDArray[np.float64],
-    kind: NDArray[np.int64],
-    period: NDArray[np.float64],
-    phase: NDArray[np.float64],
-    finish: NDArray[np.float64],
-    texels: NDArray[np.int16],
-    paint: NDArray[np.float64],
-    paint_texels: NDArray[np.int16],
+    materials: MaterialTable,
     light: NDArray[np.float64],
     level: float,
 ) -> None:
@@ -101,7 +93,9 @@ def _light_row(
 
     So the compiler knows how far apart pixels lie, and takes several at a time.
     """
-    part, depths, width = parts[v], depth[v], parts.shape[1]
+    colour, kind, finish, texels = materials.colour, materials.kind, materials.finish, materials.texels
+    paint, paint_texels = materials.paint, materials.paint_texels
+    width = len(part)
     end: int = np.int64(0)  # type: ignore[assignment]  # called with a literal, kernels would be compiled for it, too
     x, y, z = np.float32(light[0]), np.float32(light[1]), np.float32(light[2])
     direct, none = np.float32(level * (1.0 - _AMBIENT)), np.float32(0.0)
@@ -123,7 +117,7 @@ def _light_row(
         is_second[first:end] = False
         if kind[p, 1] != 0:
             for u in range(first, end):
-                is_second[u] = _is_second(v, u, p, depths, matrices, kind, period, phase)
+                is_second[u] = _is_second(v, u, p, depths, matrices, materials)
         if has_finish and finish[p, 0] >= 0.0:
             finish_run(places, first, end, v, p, depths, matrices, finish)
             _cover_run(image, factor, is_second, places, first, end, colour[p], finish[p, 5:], texels)
@@ -144,14 +138,7 @@ def light_image(
     depth: NDArray[np.float32],
     normal: NDArray[np.float32],
     matrices: NDArray[np.float64],
-    colour: NDArray[np.float64],
-    kind: NDArray[np.int64],
-    period: NDArray[np.float64],
-    phase: NDArray[np.float64],
-    finish: NDArray[np.float64],
-    texels: NDArray[np.int16],
-    paint: NDArray[np.float64],
-    paint_texels: NDArray[np.int16],
+    materials: MaterialTable,
     light: NDArray[np.float64],
     level: float,
 ) -> NDArray[np.float32]:
@@ -162,23 +149,22 @@ def light_image(
     """
     height, width = part.shape
     image = np.zeros((height, width, 3), np.float32)
-    if len(finish) > 0 or paint_texels.shape[1] > 0:
+    if len(materials.finish) > 0 or materials.paint_texels.shape[1] > 0:
         rows, normals = image.reshape(height, 3 * width), normal.reshape(height, 3 * width)
         factor, places = np.empty(width, np.float32), np.empty(width, np.uint32)
         is_second = np.empty(width, np.bool_)
         for v in range(height):
             _light_row(
-                rows[v], factor, is_second, places, v, part, depth, normals[v], matrices, colour, kind,
-                period, phase, finish, texels, paint, paint_texels, light, level,
+                rows[v], factor, is_second, places, v, part[v], depth[v], normals[v], matrices, materials,
+                light, level,
             )  # fmt: skip
         return image
+    # Plain detail shades in 64 bits and full detail in 32, several pixels at a time: the last bits differ, so
+    # one row kernel cannot serve both.
     shades = np.empty(width)
     rows, normals = image.reshape(height, 3 * width), normal.reshape(height, 3 * width)
     for v in range(height):
-        _light_plain_row(
-            rows[v], shades, v, part[v], depth[v], normals[v], matrices, colour, kind, period, phase, light,
-            level,
-        )  # fmt: skip
+        _light_plain_row(rows[v], shades, v, part[v], depth[v], normals[v], matrices, materials, light, level)
     return image
 
 
@@ -191,14 +177,12 @@ def _light_plain_row(
     depths: NDArray[np.float32],
     normal: NDArray[np.float32],
     matrices: NDArray[np.float64],
-    colour: NDArray[np.float64],
-    kind: NDArray[np.int64],
-    period: NDArray[np.float64],
-    phase: NDArray[np.float64],
+    materials: MaterialTable,
     light: NDArray[np.float64],
     level: float,
 ) -> None:
     """Fill a row (3 W,) in plain detail, neighbouring pixels of one part together; `shades` is space."""
+    colour, kind = materials.colour, materials.kind
     width, end = len(part), 0
     one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
     x, y, z = light[0], light[1], light[2]
@@ -218,7 +202,7 @@ def _light_plain_row(
             image[i], image[i + one], image[i + two] = shade * red, shade * green, shade * blue
         if kind[p, 1] != 0:
             for u in range(first, end):
-                if _is_second(v, u, p, depths, matrices, kind, period, phase):
+                if _is_second(v, u, p, depths, matrices, materials):
                     for c in range(3):
                         image[3 * u + c] = shades[u] * colour[p, 3 + c]
 
@@ -270,11 +254,7 @@ def colour_image(
     level, camera = light_level * config.gain, config.camera
 
     def draw(one: View, matrices: Matrix) -> NDArray[np.float32]:
-        return light_image(
-            one.part, one.depth, one.normal, matrices,
-            materials.colour, materials.kind, materials.period, materials.phase,
-            materials.finish, materials.texels, materials.paint, materials.paint_texels, LIGHT, level,
-        )  # fmt: skip
+        return light_image(one.part, one.depth, one.normal, matrices, materials, LIGHT, level)
 
     image = draw(view, part_from_pixel(camera, world_from_camera, world_from_part))
     if full_detail is not None:

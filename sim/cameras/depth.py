@@ -223,8 +223,8 @@ def time_of_flight(
     camera = config.camera
     matrices = part_from_pixel(rays_of(camera), world_from_camera, world_from_part)
     depth = _mean_of_rays(
-        fine.part, fine.depth, matrices, materials.colour, materials.kind, materials.period, materials.phase,
-        gaussian((camera.height, camera.width), rng), config.scale * TOF_SD_M,
+        fine.part, fine.depth, matrices, materials, gaussian((camera.height, camera.width), rng),
+        config.scale * TOF_SD_M,
     )  # fmt: skip
     return to_millimetres(depth, config)
 
@@ -247,10 +247,7 @@ def amplitude_of(
     """
     camera = config.camera
     matrices = part_from_pixel(rays_of(camera), world_from_camera, world_from_part)
-    light = _light_of_rays(
-        fine.part, fine.depth, matrices, materials.colour, materials.kind, materials.period, materials.phase,
-        camera.height, camera.width,
-    )  # fmt: skip
+    light = _light_of_rays(fine.part, fine.depth, matrices, materials, camera.height, camera.width)
     noise = config.scale * AMPLITUDE_SD * gaussian(light.shape, rng)
     return np.clip(np.rint(AMPLITUDE_AT_1_M * light + noise), 0.0, 65535.0).astype(np.uint16)
 
@@ -273,13 +270,11 @@ def _light_of_rays(
     part: NDArray[np.int32],
     depth: Metres,
     matrices: Matrix,
-    colour: Matrix,
-    kind: NDArray[np.int64],
-    period: Matrix,
-    phase: Matrix,
+    materials: MaterialTable,
     height: int,
     width: int,
 ) -> Metres:
+    colour, kind, period, phase = materials.colour, materials.kind, materials.period, materials.phase
     image = np.zeros((height, width), np.float32)
     for row in range(_FINER * height):
         for column in range(_FINER * width):
@@ -304,13 +299,11 @@ def _mean_of_rays(
     part: NDArray[np.int32],
     depth: Metres,
     matrices: Matrix,
-    colour: Matrix,
-    kind: NDArray[np.int64],
-    period: Matrix,
-    phase: Matrix,
+    materials: MaterialTable,
     noise: Metres,
     sd_m: float,
 ) -> Metres:
+    colour, kind, period, phase = materials.colour, materials.kind, materials.period, materials.phase
     height, width = noise.shape
     image = np.zeros((height, width), np.float32)
     for v in range(height):

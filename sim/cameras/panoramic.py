@@ -51,8 +51,7 @@ def panorama_image(
     directions, slopes = _lines(camera)
     image = _radiance_image(
         view.part, view.depth, view.normal, part_from_camera, directions, slopes,
-        camera.mirror.ring_radius_m, materials.colour, materials.kind, materials.period, materials.phase,
-        materials.finish, materials.texels, materials.paint, materials.paint_texels, LIGHT, light,
+        camera.mirror.ring_radius_m, materials, LIGHT, light,
     )  # fmt: skip
     return shift_blur(image, abs(turned_rad) / math.tau * camera.width)
 
@@ -75,17 +74,12 @@ def _radiance_image(
     directions: Matrix,
     slopes: Matrix,
     ring_radius: float,
-    colour: Matrix,
-    kind: NDArray[np.int64],
-    period: Matrix,
-    phase: Matrix,
-    finish: NDArray[np.float64],
-    texels: NDArray[np.int16],
-    paint: Matrix,
-    paint_texels: NDArray[np.int16],
+    materials: MaterialTable,
     light: Matrix,
     level: float,
 ) -> Linear:
+    colour, kind, period, phase = materials.colour, materials.kind, materials.period, materials.phase
+    finish, texels, paint = materials.finish, materials.texels, materials.paint
     height, width = part.shape
     image = np.zeros((height, width, 3), np.float32)
     has_finish = len(finish) > 0
@@ -99,7 +93,7 @@ def _radiance_image(
             second = 3 * pattern_value(kind[p, 1], period[p, 1], x, y, z, phase, p)
             shade = shade_of(normal[v, u], light, level) + colour[p, 6]
             if paint[p, 0] >= 0.0:
-                shade *= painted(paint, paint_texels, p, x, y, z)[1]
+                shade *= painted(paint, materials.paint_texels, p, x, y, z)[1]
             for c in range(3):
                 image[v, u, c] = shade * colour[p, second + c]
             if has_finish and finish[p, 0] >= 0.0:

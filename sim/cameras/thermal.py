@@ -104,12 +104,11 @@ def _vary_run(
     p: int,
     depths: NDArray[np.float32],
     matrices: NDArray[np.float64],
-    thermal: NDArray[np.float64],
-    kind: NDArray[np.int64],
-    period: NDArray[np.float64],
-    phase: NDArray[np.float64],
+    materials: MaterialTable,
 ) -> None:
     """Add what variation and pattern of a part add [K] to neighbouring pixels of it, first..end-1 of (W,)."""
+    thermal, phase = materials.thermal, materials.phase
+    kind, period = materials.kind, materials.period
     if thermal[p, 2] != 0.0:
         for u in range(first, end):
             x, y, z = surface_point(matrices, p, u, v, depths[u])
@@ -126,21 +125,16 @@ def _radiate_row(
     warmer_k: NDArray[np.float32],
     places: NDArray[np.uint32],
     v: int,
-    parts: NDArray[np.int32],
-    depth: NDArray[np.float32],
+    part: NDArray[np.int32],
+    depths: NDArray[np.float32],
     matrices: NDArray[np.float64],
-    thermal: NDArray[np.float64],
-    kind: NDArray[np.int64],
-    period: NDArray[np.float64],
-    phase: NDArray[np.float64],
-    finish: NDArray[np.float64],
-    texels: NDArray[np.int16],
-    paint: NDArray[np.float64],
-    paint_texels: NDArray[np.int16],
+    materials: MaterialTable,
     surroundings: float,
 ) -> None:
     """Fill a row (W,) in full detail, neighbouring pixels of one part together."""
-    part, depths, width = parts[v], depth[v], parts.shape[1]
+    thermal, finish, texels = materials.thermal, materials.finish, materials.texels
+    paint, paint_texels = materials.paint, materials.paint_texels
+    width = len(part)
     end: int = np.int64(0)  # type: ignore[assignment]  # called with a literal, kernels would be compiled for it, too
     scale, most = np.float32(1.0 / _HALF_K), np.float32(1.0)
     has_finish, has_paint = len(finish) > 0, paint_texels.shape[1] > 0
@@ -158,7 +152,7 @@ def _radiate_row(
             finish_run(places, first, end, v, p, depths, matrices, finish)
             for u in range(first, end):
                 warmer_k[u] += np.float32(TEXEL_STEP) * np.float32(texels[places[u], 0])
-        _vary_run(warmer_k, first, end, v, p, depths, matrices, thermal, kind, period, phase)
+        _vary_run(warmer_k, first, end, v, p, depths, matrices, materials)
         base, emissivity = np.float32((thermal[p, 0] - _MIDDLE_C) / _HALF_K), np.float32(thermal[p, 1])
         rest = np.float32((1.0 - thermal[p, 1]) * surroundings)
         for u in range(first, end):
@@ -172,14 +166,7 @@ def radiance_image(
     part: NDArray[np.int32],
     depth: NDArray[np.float32],
     matrices: NDArray[np.float64],
-    thermal: NDArray[np.float64],
-    kind: NDArray[np.int64],
-    period: NDArray[np.float64],
-    phase: NDArray[np.float64],
-    finish: NDArray[np.float64],
-    texels: NDArray[np.int16],
-    paint: NDArray[np.float64],
-    paint_texels: NDArray[np.int16],
+    materials: MaterialTable,
     table: NDArray[np.float64],
     surroundings: float,
     span: tuple[float, float],
@@ -191,20 +178,18 @@ def radiance_image(
     """
     height, width = part.shape
     image = np.empty((height, width), np.float32)
-    if len(finish) > 0 or paint_texels.shape[1] > 0:
+    if len(materials.finish) > 0 or materials.paint_texels.shape[1] > 0:
         warmer_k, places = np.empty(width, np.float32), np.empty(width, np.uint32)
         for v in range(height):
-            _radiate_row(
-                image[v], warmer_k, places, v, part, depth, matrices, thermal, kind, period, phase, finish,
-                texels, paint, paint_texels, surroundings,
-            )  # fmt: skip
+            _radiate_row(image[v], warmer_k, places, v, part[v], depth[v], matrices, materials, surroundings)
         return image
+    # Plain detail interpolates a table of 64 bits, full detail evaluates a polynomial of 32 bits, which the
+    # compiler vectorises. The two differ in the last bits, so one row kernel cannot serve both.
     temperatures = np.empty(width)
     for v in range(height):
         _radiate_plain_row(
-            image[v], temperatures, v, part[v], depth[v], matrices, thermal, kind, period, phase, table,
-            surroundings, span,
-        )  # fmt: skip
+            image[v], temperatures, v, part[v], depth[v], matrices, materials, table, surroundings, span
+        )
     return image
 
 
@@ -216,15 +201,14 @@ def _radiate_plain_row(
     part: NDArray[np.int32],
     depths: NDArray[np.float32],
     matrices: NDArray[np.float64],
-    thermal: NDArray[np.float64],
-    kind: NDArray[np.int64],
-    period: NDArray[np.float64],
-    phase: NDArray[np.float64],
+    materials: MaterialTable,
     table: NDArray[np.float64],
     surroundings: float,
     span: tuple[float, float],
 ) -> None:
     """Fill a row (W,) in plain detail, neighbouring pixels of one part together; `temperatures` is space."""
+    thermal, phase = materials.thermal, materials.phase
+    kind, period = materials.kind, materials.period
     width, end = len(part), 0
     while end < width:
         first, p = end, part[end]
@@ -320,10 +304,8 @@ def surface_image(
 
     def draw(one: View, matrices: Matrix) -> NDArray[np.float32]:
         return radiance_image(
-            one.part, one.depth, matrices, materials.thermal, materials.kind, materials.period,
-            materials.phase, materials.finish, materials.texels, materials.paint, materials.paint_texels,
-            RADIANCE, surroundings, (LOWEST_C, HIGHEST_C),
-        )  # fmt: skip
+            one.part, one.depth, matrices, materials, RADIANCE, surroundings, (LOWEST_C, HIGHEST_C)
+        )
 
     radiance = draw(view, part_from_pixel(config.camera, world_from_camera, world_from_part))
     if full_detail is not None:

@@ -61,7 +61,7 @@ def steps() -> Figure:
         config = world.config.robot.cameras["thermal"]
         assert isinstance(config, ThermalConfig)
         seen = world._see(config)
-        black = replace(world._materials, thermal=world._materials.thermal.copy())
+        black = world._materials._replace(thermal=world._materials.thermal.copy())
         black.thermal[:, 1] = 1.0
         place = (seen.world_from_camera, seen.scene.world_from_part, world.config.place.surroundings_c, 0.0)
         surface = surface_image(seen.view, black, replace(config, blur_px=0.0), *place)

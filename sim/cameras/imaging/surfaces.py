@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -32,9 +32,8 @@ _PATCH = int(PatternKind.PATCH)
 _SPECKLE = int(PatternKind.SPECKLE)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class MaterialTable:
-    """The looks of all P parts as arrays; row i belongs to part i.
+class MaterialTable(NamedTuple):
+    """Materials of all P parts as arrays, for kernels; row i belongs to part i.
 
     Attributes:
         thermal: (P, 5) temperature [degC], emissivity, variation [K], waves per metre [1/m], contrast [K].
