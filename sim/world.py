@@ -15,7 +15,7 @@ from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.imaging.surfaces import MaterialTable, make_material_table
 from peopleboy.sim.cameras.kinds import flat_geometry, kind_of
 from peopleboy.sim.cameras.rig import Rig
-from peopleboy.sim.cameras.sensors import Glimpse
+from peopleboy.sim.cameras.sensors import CameraView
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
@@ -28,7 +28,7 @@ from peopleboy.sim.places.place import Place
 from peopleboy.sim.places.textures.texture_place import paint_place
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.full_detail import FullDetail
-from peopleboy.sim.rendering.sight import Scene, Seen, Sight, look
+from peopleboy.sim.rendering.renderer import Renderer, RenderPass, Scene, look
 from peopleboy.sim.rendering.view import BLIND, NOBODY
 from peopleboy.sim.robot.peoplebot import PeopleBot
 from peopleboy.sim.robot.robot_body import NAME as ROBOT
@@ -328,7 +328,7 @@ class World:
         stands_out = abs(self._materials.thermal[:, 0] - config.place.surroundings_c) > _STANDS_OUT_K
         is_person, glows = self._truth_maker.person_of_part != NOBODY, self._materials.colour[:, 6] > 0.0
         self._is_mirrored = is_person | stands_out | glows
-        self._rig = Rig(config.robot.cameras, config.control_hz, config.seed, self._glimpse)
+        self._rig = Rig(config.robot.cameras, config.control_hz, config.seed, self._camera_view)
 
     def _settle(self) -> None:
         """Take over the poses of a new instant; what was seen before is forgotten."""
@@ -341,7 +341,7 @@ class World:
         if self.config.renderer == BLIND:
             return
         self._scene_now: Scene | None = None
-        self._seen: dict[tuple[Sight, CameraGeometry], Seen] = {}
+        self._seen: dict[tuple[Renderer, CameraGeometry], RenderPass] = {}
         self._rig.forget()
 
     @property
@@ -367,25 +367,25 @@ class World:
             raise BadInput(f"camera {camera!r}: the truth of an instant that is over cannot be told any more")
         return self.truth(camera)
 
-    def _see(self, config: CameraConfig) -> Seen:
+    def _see(self, config: CameraConfig) -> RenderPass:
         """Render one camera's view, once an instant.
 
         Raises:
             BadInput: this is a world without images.
         """
         self._check_sight()
-        sight, camera = kind_of(config).sight, config.camera
-        if (sight, camera) not in self._seen:
+        renderer, camera = kind_of(config).renderer, config.camera
+        if (renderer, camera) not in self._seen:
             pose = self._robot.world_from_robot() @ camera.robot_from_camera
-            self._seen[sight, camera] = look(sight, self._scene, camera, pose)
-        return self._seen[sight, camera]
+            self._seen[renderer, camera] = look(renderer, self._scene, camera, pose)
+        return self._seen[renderer, camera]
 
-    def _glimpse(self, config: CameraConfig) -> Glimpse:
+    def _camera_view(self, config: CameraConfig) -> CameraView:
         """Tell a sensor what it sees, and all that forms its images from that."""
         seen = self._see(config)
-        return Glimpse(
+        return CameraView(
             view=seen.view,
-            draw=lambda camera: seen.sight.view(seen.scene, camera, seen.world_from_camera),
+            draw=lambda camera: seen.renderer.view(seen.scene, camera, seen.world_from_camera),
             world_from_camera=seen.world_from_camera,
             world_from_part=self._scene.world_from_part,
             materials=self._materials,
@@ -396,7 +396,7 @@ class World:
             full_detail=self._full_detail(seen),
         )
 
-    def _full_detail(self, seen: Seen) -> FullDetail | None:
+    def _full_detail(self, seen: RenderPass) -> FullDetail | None:
         """What makes images of full detail, for cameras that can have it."""
         if self.config.detail == "plain" or not isinstance(seen.camera, Pinhole):
             return None

@@ -3,9 +3,9 @@
 numpy takes a number's sign in a branch that no processor can predict, which costs more than all the rest.
 Here words are drawn first, and turned into numbers without such branches.
 
-`rng.standard_normal` draws the same bits. With it this module and llvmlite could go, but a step of the contour
-filter with 1000 samples would take 0.133 ms instead of 0.107 ms, and a whole update of the contour tracker on
-crossing_3 11 to 18 % longer (medians of CPU time over 2 turns, 1.69 to 1.88 and 1.49 to 1.76 ms).
+`rng.standard_normal` draws the same bits. With it this module and llvmlite could go, but a step of the
+contour filter with 1000 samples would take 0.133 ms instead of 0.107 ms, and a whole update of the contour
+tracker on crossing_3 would take 11 to 18 % longer (CPU time, two turns: 1.69 to 1.88 and 1.49 to 1.76 ms).
 
 Source: Marsaglia and Tsang, The Ziggurat Method for Generating Random Variables, 2000, in numpy's form.
 """

@@ -17,7 +17,7 @@ Image = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CameraView:
+class CorridorCamera:
     """What must be known of the colour camera, which sits level.
 
     Attributes:
@@ -65,7 +65,7 @@ class ImageCorridorConfig:
 
 def corridor_from_image(
     colour: Image | None,
-    camera: CameraView,
+    camera: CorridorCamera,
     expected: Corridor | None = None,
     config: ImageCorridorConfig | None = None,
 ) -> Corridor | Unknown:
@@ -157,7 +157,7 @@ def _vanishing_column(lines: Points, height: int, width: int, config: ImageCorri
 
 
 def _floor_lines(
-    lines: Points, height: int, heading: float, camera: CameraView, config: ImageCorridorConfig
+    lines: Points, height: int, heading: float, camera: CorridorCamera, config: ImageCorridorConfig
 ) -> Points:
     """Take lines below the horizon for lines on the floor: (M, 2) [m] to the left of the camera, [px] length.
 
@@ -196,7 +196,7 @@ def _corridor(
     heading: float,
     left: float | None,
     right: float | None,
-    camera: CameraView,
+    camera: CorridorCamera,
     expected: Corridor | None,
     config: ImageCorridorConfig,
 ) -> Corridor | Unknown:

@@ -10,7 +10,7 @@ import numpy as np
 
 from peopleboy.behaviours.behaviour import STOP, Command
 from peopleboy.behaviours.corridor.corridor_from_image import (
-    CameraView,
+    CorridorCamera,
     ImageCorridorConfig,
     corridor_from_image,
 )
@@ -74,7 +74,7 @@ class CorridorConfig:
     """
 
     sense: Sense = "sonar"
-    camera: CameraView | None = None
+    camera: CorridorCamera | None = None
     cruise_m_s: float = 0.6
     pass_m_s: float = 0.35
     offset_gain: float = 1.0

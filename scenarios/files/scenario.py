@@ -10,7 +10,7 @@ from typing import Any
 
 from peopleboy.bad_input import BadInput, Key, found_in
 from peopleboy.behaviours.behaviour import Behaviour, Command
-from peopleboy.behaviours.corridor.corridor_from_image import CameraView
+from peopleboy.behaviours.corridor.corridor_from_image import CorridorCamera
 from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig
 from peopleboy.behaviours.following.follow_person import FollowConfig
 from peopleboy.behaviours.registry import is_own, make_behaviour
@@ -200,7 +200,7 @@ class Scenario:
     def corridor_config(self) -> CorridorConfig:
         """The sense that tells a robot the walls of a corridor, and its colour camera."""
         camera = flat_geometry(self.robot.config().cameras, "colour")
-        view = CameraView(focal_px=camera.focal_px, position_m=camera.position_m)
+        view = CorridorCamera(focal_px=camera.focal_px, position_m=camera.position_m)
         return CorridorConfig(sense=self.robot.walls_by or "sonar", camera=view)
 
     def resolved(self, seed: int, versions: dict[str, str] | None = None) -> dict[str, Any]:

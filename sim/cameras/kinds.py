@@ -33,8 +33,8 @@ from peopleboy.sim.cameras.sensors import (
 from peopleboy.sim.cameras.thermal import encode_16bit
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose, transform
 from peopleboy.sim.on_demand import OnDemand
-from peopleboy.sim.rendering.panoramic_sight import PanoramicSight
-from peopleboy.sim.rendering.sight import FLAT, Sight
+from peopleboy.sim.rendering.panoramic_renderer import PanoramicRenderer
+from peopleboy.sim.rendering.renderer import PINHOLE_RENDERER, Renderer
 
 SCENE: Final = "_scene"
 """Suffix of the image by which people are shown what a thermal camera sees."""
@@ -114,7 +114,7 @@ class CameraKind:
         presets: settings by name that may stand in for the usual ones.
         presets_are: what each of them is like.
         sensor: opens a camera by settings, name and seed; the name is that of its streams of noise, too.
-        sight: draws what it sees, and tells the outlines of the truth's boxes; by default as a pinhole does.
+        renderer: draws what it sees, and outlines the boxes of the truth; by default that of a pinhole.
         layers: its images; the first of all, without suffixes, is what controllers are shown.
         more_layers: what cameras of some settings give besides.
         shown: suffix of the image that people are shown.
@@ -128,7 +128,7 @@ class CameraKind:
     presets: Mapping[str, CameraConfig] = field(default_factory=dict)
     presets_are: str = ""
     sensor: Callable[[Any, str, int], Sensor]
-    sight: Sight = FLAT
+    renderer: Renderer = PINHOLE_RENDERER
     layers: tuple[Layer, ...] = (Layer(),)
     more_layers: Callable[[Any], tuple[Layer, ...]] = lambda config: ()  # noqa: ARG005
     shown: str = ""
@@ -161,7 +161,7 @@ KINDS: Final[dict[str, CameraKind]] = {
         config=PanoramaConfig,
         what="light, all round",
         sensor=PanoramaSensor,
-        sight=PanoramicSight(),
+        renderer=PanoramicRenderer(),
         layers=(Layer(what="8-bit colour all round, from the robot's back by its left, front and right"),),
         more_layers=_round_image,
         channels=3,

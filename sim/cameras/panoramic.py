@@ -36,7 +36,7 @@ def panorama_image(
     """Form the noise-free panorama.
 
     Args:
-        view: what each pixel sees, with depths as in `PanoramicSight`.
+        view: what each pixel sees, with depths as in `PanoramicRenderer`.
         materials: of the P parts.
         camera: the panorama.
         world_from_camera: (4, 4).

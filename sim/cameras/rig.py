@@ -8,7 +8,7 @@ from functools import partial
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import image_names, kind_of, name_images
-from peopleboy.sim.cameras.sensors import Glimpse, Image, Sensor
+from peopleboy.sim.cameras.sensors import CameraView, Image, Sensor
 from peopleboy.sim.on_demand import OnDemand
 
 
@@ -31,7 +31,7 @@ class Rig:
         cameras: Mapping[str, CameraConfig],
         control_hz: int,
         seed: int,
-        look: Callable[[CameraConfig], Glimpse],
+        look: Callable[[CameraConfig], CameraView],
     ) -> None:
         self._cameras, self._look = cameras, look
         self._sensors = {name: kind_of(one).sensor(one, name, seed) for name, one in cameras.items()}

@@ -37,7 +37,7 @@ Image = NDArray[Any]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Glimpse:
+class CameraView:
     """What one camera sees at an instant, and all that forms its images from that.
 
     Attributes:
@@ -68,7 +68,7 @@ class Glimpse:
 class Sensor(Protocol):
     """One camera with its own streams of noise."""
 
-    def take(self, glimpse: Glimpse) -> tuple[Image, ...]:
+    def take(self, seen: CameraView) -> tuple[Image, ...]:
         """Take the images of an instant, one for each layer of the camera's kind."""
         ...
 
@@ -100,25 +100,25 @@ class ThermalSensor:
         """Random words of the noise of one image."""
         return random_words(self._detector.dead.shape, self._noise)
 
-    def take(self, glimpse: Glimpse) -> tuple[Image, ...]:
+    def take(self, seen: CameraView) -> tuple[Image, ...]:
         """Take the (H, W) images of an instant: uint8, float32."""
-        if not self._last or not self._drift.is_closed(glimpse.time_s):
-            temperature = self._read_out(glimpse)
-            self._last = self._grey(temperature, glimpse.time_s), temperature
+        if not self._last or not self._drift.is_closed(seen.time_s):
+            temperature = self._read_out(seen)
+            self._last = self._grey(temperature, seen.time_s), temperature
         return self._last
 
     def skip(self) -> None:
         """Let the noise of an image go by."""
         skip_gaussian(self._detector.dead.shape, self._noise)
 
-    def _read_out(self, glimpse: Glimpse) -> NDArray[np.float32]:
+    def _read_out(self, seen: CameraView) -> NDArray[np.float32]:
         """Give what the detector makes of the scene [degC]."""
         config = self._config
         apparent = surface_image(
-            glimpse.view, glimpse.materials, config, glimpse.world_from_camera, glimpse.world_from_part,
-            glimpse.surroundings_c, glimpse.turn_rad_s * config.exposure_s, glimpse.full_detail,
+            seen.view, seen.materials, config, seen.world_from_camera, seen.world_from_part,
+            seen.surroundings_c, seen.turn_rad_s * config.exposure_s, seen.full_detail,
         )  # fmt: skip
-        return detect(apparent, self._detector, config, self._noise, self._drift.offset_k(glimpse.time_s))
+        return detect(apparent, self._detector, config, self._noise, self._drift.offset_k(seen.time_s))
 
     def _grey(self, temperature_c: NDArray[np.float32], time_s: float) -> NDArray[np.uint8]:
         config = self._config
@@ -138,12 +138,12 @@ class ColourSensor:
         camera = self._config.camera
         return random_words((camera.height, camera.width, 3), self._noise)
 
-    def take(self, glimpse: Glimpse) -> tuple[Image, ...]:
+    def take(self, seen: CameraView) -> tuple[Image, ...]:
         """Take the (H, W, 3) uint8 image of an instant."""
         config = self._config
         linear = colour_image(
-            glimpse.view, glimpse.materials, config, glimpse.world_from_camera, glimpse.world_from_part,
-            glimpse.light_level, glimpse.turn_rad_s * config.exposure_s, glimpse.full_detail,
+            seen.view, seen.materials, config, seen.world_from_camera, seen.world_from_part,
+            seen.light_level, seen.turn_rad_s * config.exposure_s, seen.full_detail,
         )  # fmt: skip
         return (expose(linear, config, self._noise),)
 
@@ -159,13 +159,13 @@ class PanoramaSensor:
         self._config = config
         self._noise = stream(seed, f"{name}.noise")
 
-    def take(self, glimpse: Glimpse) -> tuple[Image, ...]:
+    def take(self, seen: CameraView) -> tuple[Image, ...]:
         """Take the (H, W, 3), and the (2 H, 2 H, 3), uint8 images of an instant."""
         config, camera = self._config, self._config.camera
         if not config.raw:
-            return (expose(self._linear(glimpse, camera, glimpse.view), config, self._noise),)
+            return (expose(self._linear(seen, camera, seen.view), config, self._noise),)
         fine = finer(camera)
-        disc = roll_up(self._linear(glimpse, fine, glimpse.draw(fine)), camera)
+        disc = roll_up(self._linear(seen, fine, seen.draw(fine)), camera)
         raw = expose(disc, config, self._noise)
         return unroll(raw, camera), raw
 
@@ -175,11 +175,11 @@ class PanoramaSensor:
         size = (2 * height, 2 * height) if self._config.raw else (height, self._config.camera.width)
         skip_gaussian((*size, 3), self._noise)
 
-    def _linear(self, glimpse: Glimpse, camera: Panorama, view: View) -> Image:
+    def _linear(self, seen: CameraView, camera: Panorama, view: View) -> Image:
         config = self._config
         return panorama_image(
-            view, glimpse.materials, camera, glimpse.world_from_camera, glimpse.world_from_part,
-            glimpse.light_level * config.gain, glimpse.turn_rad_s * config.exposure_s,
+            view, seen.materials, camera, seen.world_from_camera, seen.world_from_part,
+            seen.light_level * config.gain, seen.turn_rad_s * config.exposure_s,
         )  # fmt: skip
 
 
@@ -193,13 +193,13 @@ class DepthSensor:
         self._amplitude_noise = stream(seed, f"{name}.amplitude.noise")
         self._offsets = draw_offsets(config, stream(seed, f"{name}.offsets")) if config.offset_m else None
 
-    def take(self, glimpse: Glimpse) -> tuple[Image, ...]:
+    def take(self, seen: CameraView) -> tuple[Image, ...]:
         """Take the images of an instant: (H, W) uint16, (H, W, 3) uint8 and (H, W) uint16."""
         config = self._config
-        depth, amplitude = self._measure(glimpse)
+        depth, amplitude = self._measure(seen)
         return (
             depth if self._offsets is None else add_offsets(depth, self._offsets),
-            *((self._colour(glimpse),) if config.colour else ()),
+            *((self._colour(seen),) if config.colour else ()),
             *((amplitude,) if amplitude is not None else ()),
         )
 
@@ -215,25 +215,25 @@ class DepthSensor:
         if config.amplitude:
             skip_gaussian(shape, self._amplitude_noise)
 
-    def _measure(self, glimpse: Glimpse) -> tuple[Image, Image | None]:
+    def _measure(self, seen: CameraView) -> tuple[Image, Image | None]:
         """Depth, and amplitude if it is wanted."""
         config, is_exact = self._config, self._config.scale == 0.0
         if config.sensor == "kinect" and not is_exact:
-            return structured_light(glimpse.view, config, self._noise), None
+            return structured_light(seen.view, config, self._noise), None
         if is_exact and not config.amplitude:
-            return to_millimetres(glimpse.view.depth, config), None
-        fine = glimpse.draw(rays_of(config.camera))
-        around = (glimpse.materials, glimpse.world_from_camera, glimpse.world_from_part)
+            return to_millimetres(seen.view.depth, config), None
+        fine = seen.draw(rays_of(config.camera))
+        around = (seen.materials, seen.world_from_camera, seen.world_from_part)
         if is_exact:
-            depth = to_millimetres(glimpse.view.depth, config)
+            depth = to_millimetres(seen.view.depth, config)
         else:
             depth = time_of_flight(fine, config, *around, self._noise)
         return depth, amplitude_of(fine, config, *around, self._amplitude_noise) if config.amplitude else None
 
-    def _colour(self, glimpse: Glimpse) -> Image:
+    def _colour(self, seen: CameraView) -> Image:
         config = self._config
         linear = colour_image(
-            glimpse.view, glimpse.materials, config, glimpse.world_from_camera, glimpse.world_from_part,
-            glimpse.light_level, glimpse.turn_rad_s * config.exposure_s, glimpse.full_detail,
+            seen.view, seen.materials, config, seen.world_from_camera, seen.world_from_part,
+            seen.light_level, seen.turn_rad_s * config.exposure_s, seen.full_detail,
         )  # fmt: skip
         return expose(linear, config, self._colour_noise)

@@ -14,7 +14,7 @@ from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.vectors import compose
 from peopleboy.sim.rendering.edges import smooth
 from peopleboy.sim.rendering.reflections import Reflection, find_reflections
-from peopleboy.sim.rendering.sight import Seen
+from peopleboy.sim.rendering.renderer import RenderPass
 from peopleboy.sim.shapes.shape_table import ShapeTable
 from peopleboy.sim.shapes.shapes import ShapeKind
 
@@ -126,7 +126,7 @@ class FullDetail:
     """
 
     def __init__(
-        self, seen: Seen, camera: Pinhole, is_shiny: NDArray[np.bool_], is_mirrored: NDArray[np.bool_]
+        self, seen: RenderPass, camera: Pinhole, is_shiny: NDArray[np.bool_], is_mirrored: NDArray[np.bool_]
     ) -> None:
         self._seen, self._camera = seen, camera
         self._is_shiny, self._is_mirrored = is_shiny, is_mirrored

@@ -19,7 +19,7 @@ from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.vectors import Point, compose, dot, map_point, minus, plus, scaled, turn_back
 from peopleboy.sim.rendering.canvas import Canvas, Lens, Rectangle, pixels, set_shading, shade
 from peopleboy.sim.rendering.raycast import draw_shape, quick_bounds
-from peopleboy.sim.rendering.sight import Seen
+from peopleboy.sim.rendering.renderer import RenderPass
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.bounds import EMPTY, EVERYTHING, FAR_M, NEAR_M, Bounds, unite
 from peopleboy.sim.shapes.rays import hit_shape
@@ -68,7 +68,7 @@ class Reflection:
 
 
 def find_reflections(
-    seen: Seen, camera: Pinhole, is_shiny: Mask, is_mirrored: Mask
+    seen: RenderPass, camera: Pinhole, is_shiny: Mask, is_mirrored: Mask
 ) -> tuple[Reflection, ...]:
     """Find what is mirrored in what a camera sees.
 

@@ -17,7 +17,7 @@ from peopleboy.sim.people.crowd import Crowd
 from peopleboy.sim.people.person import ARM_PARTS, PART_CLASSES, TORSO_PARTS
 from peopleboy.sim.physics.solid_shapes import PartKey
 from peopleboy.sim.places.moving import Mover
-from peopleboy.sim.rendering.sight import Seen
+from peopleboy.sim.rendering.renderer import RenderPass
 from peopleboy.sim.rendering.view import Cover
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.truth.truth import (
@@ -78,14 +78,14 @@ class TruthMaker:
         self,
         *,
         time_s: float,
-        seen: Seen,
+        seen: RenderPass,
         robot: Pose2,
         robot_velocity: tuple[float, float],
         contacts: tuple[str, ...],
     ) -> Truth:
         """Make the truth of the instant that a camera sees."""
         view, people, owners = seen.view, len(self._people), len(self._owner_names)
-        cover = seen.sight.cover(view, self._owner_of_part, people, owners)
+        cover = seen.renderer.cover(view, self._owner_of_part, people, owners)
         whose = Owners(tuple(self._owner_names), self._owner_or_nothing, view.part)
         instance, body_part = _looked_up(view.part, self._id_of_part, self._class_of_part)
         return Truth(
@@ -104,13 +104,13 @@ class TruthMaker:
             background_m=partial(self._background, seen),
         )
 
-    def _background(self, seen: Seen) -> Depth:
+    def _background(self, seen: RenderPass) -> Depth:
         """Draw what a camera would see if nobody were there, nor anything that is moved."""
         hidden = seen.scene.hidden | self._is_moved | (self.person_of_part >= 0)
         bare = replace(seen.scene, renderer="raycast", hidden=hidden)
-        return seen.sight.view(bare, seen.camera, seen.world_from_camera).depth
+        return seen.renderer.view(bare, seen.camera, seen.world_from_camera).depth
 
-    def box(self, person: int, seen: Seen) -> Box | None:
+    def box(self, person: int, seen: RenderPass) -> Box | None:
         """Tell the truth box of one person alone, by its number from 1; None as in `PersonTruth`."""
         k = person - 1
         if not self._people[k].present:
@@ -118,7 +118,7 @@ class TruthMaker:
         height, torso = seen.bounds(self._outlines[k, _WHOLE + 1 :]).tolist()
         return _thesis_box(height, torso)
 
-    def _everybody(self, cover: Cover, seen: Seen) -> tuple[PersonTruth, ...]:
+    def _everybody(self, cover: Cover, seen: RenderPass) -> tuple[PersonTruth, ...]:
         here = [k for k, person in enumerate(self._people) if person.present]
         if not here:
             return ()
@@ -128,7 +128,13 @@ class TruthMaker:
         return tuple(self._person(seen, *one) for one in people)
 
     def _person(
-        self, seen: Seen, k: int, shown: list[int], pixels: Edges, edges: Sequence[Edges], joints: _Joints
+        self,
+        seen: RenderPass,
+        k: int,
+        shown: list[int],
+        pixels: Edges,
+        edges: Sequence[Edges],
+        joints: _Joints,
     ) -> PersonTruth:
         """Tell of a person, at whose pixels so many of each owner's are `shown`, and in which are its own."""
         person, (whole, height, torso) = self._people[k], edges
@@ -158,7 +164,7 @@ class TruthMaker:
             joint_is_visible=_frozen(joints.is_visible),
         )
 
-    def _whole_area(self, k: int, inside: int, seen: Seen, whole: Edges) -> int:
+    def _whole_area(self, k: int, inside: int, seen: RenderPass, whole: Edges) -> int:
         """Pixels of the whole silhouette; those outside the image are counted only if there are any."""
         if not is_cut_off(whole, seen.camera):
             return inside
@@ -177,7 +183,7 @@ class TruthMaker:
         outside = area - sum(shown)
         return shares | {BORDER: outside / area} if outside > 0 else shares
 
-    def _joints(self, here: Sequence[int], seen: Seen) -> Iterator[_Joints]:
+    def _joints(self, here: Sequence[int], seen: RenderPass) -> Iterator[_Joints]:
         """Tell the joints of some people, by their numbers from 0."""
         places = np.concatenate([self._people[k].joints() for k in here])
         pixels = seen.camera.project(transform(invert_pose(seen.world_from_camera), places))

@@ -24,9 +24,9 @@ from peopleboy.scenarios.drawing.contact_sheet import read_tiles
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import KINDS, CameraKind
-from peopleboy.sim.cameras.sensors import Glimpse
+from peopleboy.sim.cameras.sensors import CameraView
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
-from peopleboy.sim.rendering.sight import FLAT, Scene, Sight
+from peopleboy.sim.rendering.renderer import PINHOLE_RENDERER, Renderer, Scene
 from peopleboy.sim.rendering.view import View
 from tests.helpers.calls.command_line import refusal
 from tests.helpers.calls.refused import assert_names
@@ -55,11 +55,13 @@ class Ring:
         return np.stack([u, self.column(0).focal_px * y / np.hypot(x, z) + (self.height - 1) / 2.0], axis=-1)
 
 
-class RingSight(Sight):
+class RingRenderer(Renderer):
     def view(self, scene: Scene, camera: Ring, world_from_camera: Matrix) -> View:
         world_from_robot = world_from_camera @ np.linalg.inv(camera.robot_from_camera)
         lenses = [camera.column(u) for u in range(camera.width)]
-        slits = [FLAT.view(scene, lens, world_from_robot @ lens.robot_from_camera) for lens in lenses]
+        slits = [
+            PINHOLE_RENDERER.view(scene, lens, world_from_robot @ lens.robot_from_camera) for lens in lenses
+        ]
         layers = ([getattr(slit, name) for slit in slits] for name in ("part", "depth", "normal", "cover"))
         return View(*(np.concatenate(layer, axis=1) for layer in layers))
 
@@ -74,14 +76,14 @@ class NearSensor:
     def __init__(self, config: RingConfig, name: str, seed: int) -> None:
         del config, name, seed
 
-    def take(self, glimpse: Glimpse) -> tuple[np.ndarray, ...]:
+    def take(self, glimpse: CameraView) -> tuple[np.ndarray, ...]:
         return (np.uint8(255.0 * np.clip(1.0 - glimpse.view.depth / 10.0, 0.0, 1.0)),)
 
     def skip(self) -> None:
         pass
 
 
-TOY = CameraKind(config=RingConfig, sensor=NearSensor, sight=RingSight())
+TOY = CameraKind(config=RingConfig, sensor=NearSensor, renderer=RingRenderer())
 ROUND = SCENE | {
     "name": "round",
     "duration_s": 1.0,

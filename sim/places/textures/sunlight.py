@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.places.extent import Extent
 from peopleboy.sim.places.place import Sun
-from peopleboy.sim.places.textures.surface_texture import Array, Fresco
+from peopleboy.sim.places.textures.surface_texture import Array, SurfaceTexture
 from peopleboy.sim.shapes.materials import Unrolling
 
 _SOFT_TEXELS = 2
@@ -19,23 +19,23 @@ _INSIDE_M = 0.12  # a ray has left the room when it is so far behind the plane o
 _LEAST_M = 0.02  # what is nearer to a point than that is the point's own
 
 
-def shine_on(fresco: Fresco, sun: Sun, panes: Sequence[Extent], blocking: Sequence[Extent]) -> None:
+def shine_on(texture: SurfaceTexture, sun: Sun, panes: Sequence[Extent], blocking: Sequence[Extent]) -> None:
     """Warm and brighten what the sun reaches.
 
     Args:
-        fresco: a floor, a wall or a road.
+        texture: a floor, a wall or a road.
         sun: where it stands, and what it does.
         panes: windows through which it gets into a building; none where it is all open.
         blocking: what casts shadows.
     """
     way = _towards(sun)
-    lit = np.ones(fresco.kelvin.shape, bool) if not panes else _through(fresco.world, way, panes)
+    lit = np.ones(texture.kelvin.shape, bool) if not panes else _through(texture.world, way, panes)
     if blocking:
-        _shade(lit, fresco.world, np.where(np.abs(way) < 1e-9, 1e-9, way), np.array(blocking))
+        _shade(lit, texture.world, np.where(np.abs(way) < 1e-9, 1e-9, way), np.array(blocking))
     share = _softened(lit.astype(np.float64), _SOFT_TEXELS)
-    warm = _softened(lit.astype(np.float64), max(round(0.12 / fresco.texel_m), 1))
-    fresco.kelvin += sun.warms_k * warm * (1.0 + 0.12 * fresco.cloudy(0.4))
-    fresco.light *= 1.0 + sun.brightens * share
+    warm = _softened(lit.astype(np.float64), max(round(0.12 / texture.texel_m), 1))
+    texture.kelvin += sun.warms_k * warm * (1.0 + 0.12 * texture.cloudy(0.4))
+    texture.light *= 1.0 + sun.brightens * share
 
 
 def _towards(sun: Sun) -> Array:
@@ -105,7 +105,7 @@ _STEP = 8  # texels between those by which a thing's neighbourhood is found
 _PLUME_SHARE, _TOUCH_SHARE, _PLUME_M = 0.13, 0.12, 0.9
 
 
-def warm_by(fresco: Fresco, surface_c: float, things: Sequence[tuple[Extent, float]]) -> None:
+def warm_by(texture: SurfaceTexture, surface_c: float, things: Sequence[tuple[Extent, float]]) -> None:
     """Add what things of known extents [m] and temperatures [degC] do to a surface.
 
     Near it, a surface takes a share of the difference that falls off with the distance. Above a warm thing
@@ -114,39 +114,39 @@ def warm_by(fresco: Fresco, surface_c: float, things: Sequence[tuple[Extent, flo
     for extent, temperature in things:
         difference = temperature - surface_c
         if abs(difference) > _LEAST_K:
-            _touch(fresco, extent, difference)
+            _touch(texture, extent, difference)
 
 
-def frame_doors(fresco: Fresco, doorways: Sequence[Extent]) -> None:
+def frame_doors(texture: SurfaceTexture, doorways: Sequence[Extent]) -> None:
     """Put frames about doors, darker than walls, and let cold air in below them."""
     for extent in doorways:
-        gap = np.maximum(np.maximum(extent[0] - fresco.world, fresco.world - extent[1]), 0.0)
+        gap = np.maximum(np.maximum(extent[0] - texture.world, texture.world - extent[1]), 0.0)
         away = np.linalg.norm(gap, axis=-1)
-        is_wall = fresco.unrolling == Unrolling.UPRIGHT
-        frame = is_wall * np.clip((_FRAME_M - away) / fresco.texel_m + 0.5, 0.0, 1.0)
-        fresco.kelvin += 0.7 * frame - _DRAUGHT_K * np.exp(
-            -((away / 0.35) ** 2) - fresco.world[..., 2] / 0.15
+        is_wall = texture.unrolling == Unrolling.UPRIGHT
+        frame = is_wall * np.clip((_FRAME_M - away) / texture.texel_m + 0.5, 0.0, 1.0)
+        texture.kelvin += 0.7 * frame - _DRAUGHT_K * np.exp(
+            -((away / 0.35) ** 2) - texture.world[..., 2] / 0.15
         )
-        fresco.light *= 1.0 - 0.4 * frame
+        texture.light *= 1.0 - 0.4 * frame
 
 
-def _touch(fresco: Fresco, extent: Extent, difference: float) -> None:
-    rows, columns = _near(fresco.world, extent)
+def _touch(texture: SurfaceTexture, extent: Extent, difference: float) -> None:
+    rows, columns = _near(texture.world, extent)
     if not rows.any() or not columns.any():
         return
     box = np.ix_(rows, columns)
-    points = fresco.world[box]
+    points = texture.world[box]
     gap = np.maximum(np.maximum(extent[0] - points, points - extent[1]), 0.0)
     share = _TOUCH_SHARE * np.exp(-((np.linalg.norm(gap, axis=-1) / _NEAR_M) ** 2))
     rise = points[..., 2] - extent[1, 2] if difference > 0.0 else extent[0, 2] - points[..., 2]
     wide = _NEAR_M + 0.15 * np.maximum(rise, 0.0)
     plume = np.exp(-np.maximum(rise, 0.0) / _PLUME_M - (np.hypot(gap[..., 0], gap[..., 1]) / wide) ** 2)
     share = share + _PLUME_SHARE * plume * (rise > 0.0)
-    fresco.kelvin[box] += np.clip(difference, -12.0, 60.0) * share
+    texture.kelvin[box] += np.clip(difference, -12.0, 60.0) * share
 
 
 def _near(world: Array, extent: Extent) -> tuple[Array, Array]:
-    """Which rows and columns of a fresco come near a thing, or lie above or below it."""
+    """Which rows and columns of a texture come near a thing, or lie above or below it."""
     coarse = world[::_STEP, ::_STEP]
     near = np.all(
         (coarse[..., :2] > extent[0, :2] - _REACH_M) & (coarse[..., :2] < extent[1, :2] + _REACH_M), axis=-1

@@ -58,7 +58,7 @@ _FINEST_OF_THINGS_M, _TEXELS_OF_THINGS = 0.01, 20_000
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class Fresco:
+class SurfaceTexture:
     """A surface to be painted, of H rows upward and W columns across, with what was painted so far.
 
     Attributes:
@@ -127,8 +127,8 @@ def begin(
     is_shell: bool,
     is_leafy: bool,
     air_k: float,
-) -> Fresco:
-    """Begin a fresco on a fixture; floors and ceilings lie, leaves are all round, and all else stands."""
+) -> SurfaceTexture:
+    """Begin a texture on a fixture; floors and ceilings lie, leaves are all round, and all else stands."""
     extents = np.array(shape_extents(fixture))
     low, high = extents[:, 0].min(axis=0), extents[:, 1].max(axis=0)
     is_level = is_shell and high[2] - low[2] < 0.5 * min(high[0] - low[0], high[1] - low[1])
@@ -138,7 +138,7 @@ def begin(
     columns, rows = (max(int(np.ceil(side / texel)), 2) for side in size)
     across: Array = (np.arange(columns, dtype=np.float64) + 0.5) * texel
     up: Array = (np.arange(rows, dtype=np.float64) + 0.5) * texel
-    return Fresco(
+    return SurfaceTexture(
         unrolling=unrolling,
         origin_m=(start[0] + 0.5 * texel, start[1] + 0.5 * texel),
         texel_m=texel,

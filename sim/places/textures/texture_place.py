@@ -17,22 +17,22 @@ from peopleboy.sim.places.textures.outdoors import (
     paint_street,
 )
 from peopleboy.sim.places.textures.sunlight import frame_doors, shine_on, warm_by
-from peopleboy.sim.places.textures.surface_texture import Clouds, Fresco, begin, draw_clouds
+from peopleboy.sim.places.textures.surface_texture import Clouds, SurfaceTexture, begin, draw_clouds
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import Covering, Material, Painting
 
 # How things stand out from their temperature: warmer above than below, uneven, worn.
 
 
-def paint_thing(fresco: Fresco, material: Material) -> None:
+def paint_thing(texture: SurfaceTexture, material: Material) -> None:
     """Give a thing its gradient and its unevenness."""
-    fresco.kelvin += material.gradient_k_per_m * (fresco.up - 0.5 * fresco.size[1])
-    scale = min(max(0.3 * max(fresco.size), 0.1), 1.5)
-    fresco.kelvin += max(material.uneven_k, 0.25) * fresco.cloudy(scale)
-    fresco.light *= 1.0 + 0.03 * fresco.cloudy(scale)
+    texture.kelvin += material.gradient_k_per_m * (texture.up - 0.5 * texture.size[1])
+    scale = min(max(0.3 * max(texture.size), 0.1), 1.5)
+    texture.kelvin += max(material.uneven_k, 0.25) * texture.cloudy(scale)
+    texture.light *= 1.0 + 0.03 * texture.cloudy(scale)
 
 
-_PAINTERS: Mapping[Covering, Callable[[Fresco], None]] = {
+_PAINTERS: Mapping[Covering, Callable[[SurfaceTexture], None]] = {
     Covering.PLASTER: paint_plaster,
     Covering.FLOORING: paint_flooring,
     Covering.CEILING: paint_ceiling,
@@ -75,7 +75,7 @@ def _paint(
     seed: int,
 ) -> Painting:
     rng = stream(seed, f"painting.{fixture.name}")
-    fresco = begin(
+    texture = begin(
         fixture,
         clouds,
         rng,
@@ -85,19 +85,19 @@ def _paint(
     )
     painter = _PAINTERS.get(material.covering)
     if painter is None:
-        paint_thing(fresco, material)
+        paint_thing(texture, material)
     else:
-        painter(fresco)
-    fresco.kelvin += _OFFSET_K * rng.standard_normal()
+        painter(texture)
+    texture.kelvin += _OFFSET_K * rng.standard_normal()
     if material.covering in _SHELL:
-        frame_doors(fresco, _doorways(place))
+        frame_doors(texture, _doorways(place))
         extents = [(fixture_extent(thing), other.temperature_c) for thing, other in things]
-        warm_by(fresco, material.temperature_c, extents)
+        warm_by(texture, material.temperature_c, extents)
         if place.sun is not None and material.covering is not Covering.CEILING:
-            shine_on(fresco, place.sun, *_sun_ways(place, things))
+            shine_on(texture, place.sun, *_sun_ways(place, things))
     if material.variation_k > 0.0:
-        fresco.kelvin += _VARIATION * material.variation_k * fresco.cloudy(material.variation_m)
-    return fresco.painting()
+        texture.kelvin += _VARIATION * material.variation_k * texture.cloudy(material.variation_m)
+    return texture.painting()
 
 
 def _doorways(place: Place) -> list[Extent]:

@@ -8,11 +8,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.behaviours.corridor.corridor_from_image import CameraView
+from peopleboy.behaviours.corridor.corridor_from_image import CorridorCamera
 from peopleboy.behaviours.percept import Percept
 from tests.helpers.percepts.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 
-CAMERA = CameraView(focal_px=356.0, position_m=(0.14, 0.06, 1.2))
+CAMERA = CorridorCamera(focal_px=356.0, position_m=(0.14, 0.06, 1.2))
 
 
 def sonar_in_corridor(offset: float, heading: float, width: float) -> NDArray[np.float64]:

@@ -15,7 +15,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import COLOUR_BASELINE_M, CameraConfig, ColourConfig, ThermalConfig
 from peopleboy.sim.cameras.imaging.noise import gaussian, skip_gaussian
 from peopleboy.sim.cameras.kinds import KINDS, CameraKind, affine_between, image_folders
-from peopleboy.sim.cameras.sensors import Glimpse
+from peopleboy.sim.cameras.sensors import CameraView
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose, transform
 from peopleboy.sim.robot.robot_config import RobotConfig
@@ -36,7 +36,7 @@ class NearSensor:
     def __init__(self, config: NearConfig, name: str, seed: int) -> None:
         del config, name, seed
 
-    def take(self, glimpse: Glimpse) -> tuple[np.ndarray, ...]:
+    def take(self, glimpse: CameraView) -> tuple[np.ndarray, ...]:
         return (np.uint8(255.0 * np.clip(1.0 - glimpse.view.depth / 10.0, 0.0, 1.0)),)
 
     def skip(self) -> None:

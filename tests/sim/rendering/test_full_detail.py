@@ -19,7 +19,7 @@ from peopleboy.sim.rendering.edges import smooth
 from peopleboy.sim.rendering.full_detail import REACH_M, find_contacts, gap
 from peopleboy.sim.rendering.reflections import EVERY, Reflection, find_reflections
 from peopleboy.sim.rendering.render import cast
-from peopleboy.sim.rendering.sight import FLAT, Scene, Seen
+from peopleboy.sim.rendering.renderer import PINHOLE_RENDERER, RenderPass, Scene
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.shape_table import ShapeTable, VisualShape, make_shape_table
 from peopleboy.sim.shapes.shapes import ShapeKind
@@ -34,7 +34,7 @@ def at(x: float, y: float, z: float) -> np.ndarray:
     return pose
 
 
-def draw(*shapes: tuple[ShapeKind, tuple[float, float, float], np.ndarray]) -> tuple[Seen, ShapeTable]:
+def draw(*shapes: tuple[ShapeKind, tuple[float, float, float], np.ndarray]) -> tuple[RenderPass, ShapeTable]:
     """What the camera sees of shapes, each a part of its own that is placed by its part's pose."""
     table = make_shape_table([VisualShape(i, s[0], s[1], np.eye(4), None) for i, s in enumerate(shapes)])
     poses = np.stack([s[2] for s in shapes])
@@ -44,10 +44,12 @@ def draw(*shapes: tuple[ShapeKind, tuple[float, float, float], np.ndarray]) -> t
         renderer="raycast", physics=None, table=table, world_from_part=poses, person_of_part=nobody,
         hidden=hidden,
     )  # type: ignore[arg-type] # fmt: skip
-    return Seen(sight=FLAT, scene=scene, camera=CAMERA, world_from_camera=POSE, view=view), table
+    return RenderPass(
+        renderer=PINHOLE_RENDERER, scene=scene, camera=CAMERA, world_from_camera=POSE, view=view
+    ), table
 
 
-def smoothed(seen: Seen, table: ShapeTable, values: tuple[float, ...]) -> np.ndarray:
+def smoothed(seen: RenderPass, table: ShapeTable, values: tuple[float, ...]) -> np.ndarray:
     """The smoothed image of parts of these values, 0 where nothing is."""
     image = np.array([*values, 0.0], np.float32)[seen.view.part][..., None]
     smooth(image, 1e-3, seen.view, table, CAMERA, POSE, seen.scene.world_from_part)
@@ -100,7 +102,7 @@ def test_faint_edges_are_left_as_they_are() -> None:
     assert np.array_equal(image, before)
 
 
-def mirrored(seen: Seen) -> list[tuple[Reflection, View]]:
+def mirrored(seen: RenderPass) -> list[tuple[Reflection, View]]:
     parts = np.arange(len(seen.scene.hidden))
     found = find_reflections(seen, CAMERA, parts == 0, parts == 1)
     return [(one, one.view) for one in found]

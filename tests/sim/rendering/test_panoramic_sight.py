@@ -12,7 +12,7 @@ import pytest
 from peopleboy.sim.cameras.camera_config import ColourConfig, PanoramaConfig, ThermalConfig
 from peopleboy.sim.geometry.panorama import MIRRORS, Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.rendering.panoramic_sight import first_and_last
+from peopleboy.sim.rendering.panoramic_renderer import first_and_last
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
 from tests.helpers.worlds.small_worlds import box_thing, config, hall, person

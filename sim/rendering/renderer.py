@@ -130,8 +130,8 @@ class Scene:
         return replace(self, person_of_part=np.where(parts, 0, NOBODY), hidden=~parts)
 
 
-class Sight(ABC):
-    """How the cameras of one geometry see; what `Flat` does is for pinholes alone.
+class Renderer(ABC):
+    """How the cameras of one geometry see; what `PinholeRenderer` does is for pinholes alone.
 
     A new one has to say `view`. Its outlines follow from that, in whole pixels and no farther than the image;
     one that can say more of them, or says it sooner, does.
@@ -167,7 +167,7 @@ class Sight(ABC):
         return count_cover(view.part, view.cover, owner_of_part, people, owners)
 
 
-class Flat(Sight):
+class PinholeRenderer(Renderer):
     """How a pinhole camera sees; its outlines go on beyond the image."""
 
     def __init__(self) -> None:
@@ -201,37 +201,39 @@ class Flat(Sight):
         return known[key]
 
 
-FLAT = Flat()
+PINHOLE_RENDERER = PinholeRenderer()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Seen:
+class RenderPass:
     """What one camera sees of a scene.
 
     Attributes:
-        sight: how it sees.
+        renderer: how it sees.
         scene: what.
         camera: its geometry.
         world_from_camera: (4, 4) its pose, optical frame.
         view: what lies behind its pixels.
     """
 
-    sight: Sight
+    renderer: Renderer
     scene: Scene
     camera: CameraGeometry
     world_from_camera: Matrix
     view: View
 
     def bounds(self, parts: Mask) -> Matrix:
-        """The rectangles (N, 4) around some parts (N, P), as in `Sight.bounds`."""
-        return self.sight.bounds(self.scene, self.camera, self.world_from_camera, parts)
+        """The rectangles (N, 4) around some parts (N, P), as in `Renderer.bounds`."""
+        return self.renderer.bounds(self.scene, self.camera, self.world_from_camera, parts)
 
     def area(self, parts: Mask, bounds: Sequence[float]) -> int:
-        """Pixels of some parts (P,), as in `Sight.area`."""
-        return self.sight.area(self.scene, self.camera, self.world_from_camera, parts, bounds)
+        """Pixels of some parts (P,), as in `Renderer.area`."""
+        return self.renderer.area(self.scene, self.camera, self.world_from_camera, parts, bounds)
 
 
-def look(sight: Sight, scene: Scene, camera: CameraGeometry, world_from_camera: Matrix) -> Seen:
+def look(renderer: Renderer, scene: Scene, camera: CameraGeometry, world_from_camera: Matrix) -> RenderPass:
     """Let a camera see a scene."""
-    view = sight.view(scene, camera, world_from_camera)
-    return Seen(sight=sight, scene=scene, camera=camera, world_from_camera=world_from_camera, view=view)
+    view = renderer.view(scene, camera, world_from_camera)
+    return RenderPass(
+        renderer=renderer, scene=scene, camera=camera, world_from_camera=world_from_camera, view=view
+    )

@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix, invert_pose
+from peopleboy.sim.rendering.renderer import Mask, Renderer, Scene
 from peopleboy.sim.rendering.ring import Outline, draw_ring, make_drawing, outline, ring_of
-from peopleboy.sim.rendering.sight import Mask, Scene, Sight
 from peopleboy.sim.rendering.view import NOBODY, Cover, View, count_cover, person_bits
 
 _Key = tuple[Panorama, bytes, bytes]
 
 
-class PanoramicSight(Sight):
+class PanoramicRenderer(Renderer):
     """How a panoramic camera sees, whatever the scene's renderer: there is one for it alone.
 
     The depth is the horizontal distance [m] from the camera's upright axis. What spans the seam, where the
