@@ -270,8 +270,7 @@ def render_radiance(
         locate(table.surface_part, lens, canvas, view.part, view.depth)
         radiance = sheet[row - first]
         image = radiance_image(
-            view.part, view.depth, matrices, own.thermal, own.kind, own.period, own.phase, own.finish,
-            own.texels, own.paint, own.paint_texels, tables.radiance, surroundings[row], tables.span_c,
+            view.part, view.depth, matrices, own, tables.radiance, surroundings[row], tables.span_c,
         )  # fmt: skip
         for v in range(len(radiance)):
             from_row = min(max(v - margin, 0), lens.height - 1)
