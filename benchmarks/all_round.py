@@ -38,7 +38,7 @@ from peopleboy.tracker.frame import COLOUR, PANORAMA, THERMAL, Frame
 from peopleboy.tracker.fusion.explanations import BothExplanations
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
-from peopleboy.tracker.panoramic.people.place_file import load_places
+from peopleboy.tracker.panoramic.people.place_model import load_places
 from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.trackers import Tracker, explanation_of, make_tracker
 

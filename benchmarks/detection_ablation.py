@@ -24,12 +24,12 @@ from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.views import open_views
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.tracker.camera_mount import Mount
+from peopleboy.tracker.detector.detections import Detections
+from peopleboy.tracker.detector.detector import SMALLEST_PX, Grey, PeopleDetector, detect_with_trees
+from peopleboy.tracker.detector.people_trees import shipped_people_trees
+from peopleboy.tracker.detector.rescoring import rescore, shipped_rescoring
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.frame import Frame
-from peopleboy.tracker.proposals.detector import SMALLEST_PX, Grey, PeopleDetector, look
-from peopleboy.tracker.proposals.looks.second_look import look_again, shipped_network
-from peopleboy.tracker.proposals.model import shipped_model
-from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 from peopleboy.tracker.tracking.config import DetectionTrackerConfig, ExistenceConfig, ReidentificationConfig
@@ -66,8 +66,8 @@ class Stage(Enum):
 
     THRESHOLD = auto()
     TREES = auto()
-    SECOND_LOOK = auto()
-    CLOSER_LOOK = auto()
+    RESCORING = auto()
+    BOX_REFINEMENT = auto()
 
 
 class DetectorOfStage(PeopleDetector):
@@ -78,28 +78,28 @@ class DetectorOfStage(PeopleDetector):
         super().__init__(least_score=LEAST)
         self._stage = stage
 
-    def found(
-        self, grey: Grey, change: Grey, mount: Mount | None, expected: Proposals, *, everywhere: bool
-    ) -> Proposals:
+    def detect(
+        self, grey: Grey, change: Grey, mount: Mount | None, expected: Detections, *, everywhere: bool
+    ) -> Detections:
         """Look for people in an image of which it is known by how much (H, W) greys changed.
 
         Trees by themselves look everywhere, whoever is expected.
         """
-        if self._stage is Stage.CLOSER_LOOK:
-            return super().found(grey, change, mount, expected, everywhere=everywhere)
+        if self._stage is Stage.BOX_REFINEMENT:
+            return super().detect(grey, change, mount, expected, everywhere=everywhere)
         if self._stage is Stage.TREES:
-            return look(shipped_model(), grey, change, mount, SMALLEST_PX, LEAST)
-        first = self.proposed(grey, change, mount, expected) if everywhere else expected
-        return look_again(shipped_network(), grey, change, first, mount, LEAST)
+            return detect_with_trees(shipped_people_trees(), grey, change, mount, SMALLEST_PX, LEAST)
+        first = self.detect_first(grey, change, mount, expected) if everywhere else expected
+        return rescore(shipped_rescoring(), grey, change, first, mount, LEAST)
 
 
 class WarmFinder:
     """Takes whatever is upright and warmer than a grey for somebody: evidence that is not relative."""
 
-    def __call__(self, frame: Frame, expected: Proposals, *, everywhere: bool) -> Proposals:  # noqa: ARG002
+    def __call__(self, frame: Frame, expected: Detections, *, everywhere: bool) -> Detections:  # noqa: ARG002
         """Find people in a frame, whoever is expected."""
         boxes = Blobs().detect(frame).box
-        return Proposals.of_trees(boxes, np.full(len(boxes), _SURE))
+        return Detections.from_trees(boxes, np.full(len(boxes), _SURE))
 
 
 def thermal_finder(stage: Stage) -> Finder:
@@ -155,8 +155,8 @@ VARIANTS: Final[Mapping[str, Variant]] = {
     "the detector looks at everybody in each image": Variant(_EVERYBODY),
     "and every third image is searched everywhere": Variant(_OFTEN),
     "every image is searched everywhere": Variant(_EVERYWHERE),
-    "proposed by the thermal image alone": Variant(stage=Stage.CLOSER_LOOK),
-    "and without the closer look": Variant(stage=Stage.SECOND_LOOK),
+    "proposed by the thermal image alone": Variant(stage=Stage.BOX_REFINEMENT),
+    "and without the closer look": Variant(stage=Stage.RESCORING),
     "and without the second look, by trees alone, everywhere": Variant(_EVERYWHERE, Stage.TREES),
     "by what is warmer than a grey and upright, everywhere": Variant(_EVERYWHERE, Stage.THRESHOLD),
     "nested boxes are as good": Variant(

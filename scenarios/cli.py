@@ -15,19 +15,14 @@ from peopleboy.scenarios.commands.browse import list_command, schema, show
 from peopleboy.scenarios.commands.evaluate import evaluate
 from peopleboy.scenarios.commands.export import export
 from peopleboy.scenarios.commands.import_tracks import import_tracks
-from peopleboy.scenarios.commands.learn import (
-    train_detector,
-    train_foreground,
-    train_places,
-    train_windows,
-)
 from peopleboy.scenarios.commands.many import compare, sweep
 from peopleboy.scenarios.commands.render import render
 from peopleboy.scenarios.commands.report import report
 from peopleboy.scenarios.commands.run import run
 from peopleboy.scenarios.commands.sim_to_real import sim_to_real
-from peopleboy.scenarios.commands.study import datasets, reproduce, train_distance, train_occlusion, tune
+from peopleboy.scenarios.commands.study import datasets, reproduce, tune
 from peopleboy.scenarios.commands.track import track
+from peopleboy.scenarios.commands.train import train
 from peopleboy.scenarios.commands.view import scene_model, view
 from peopleboy.scenarios.running.engine.task import TasksFailed
 
@@ -51,12 +46,7 @@ COMMANDS = (
     report,
     export,
     datasets,
-    train_occlusion,
-    train_distance,
-    train_foreground,
-    train_places,
-    train_windows,
-    train_detector,
+    train,
     reproduce,
     tune,
 )

@@ -97,7 +97,7 @@ def _contour_tracker(name: str, rng: np.random.Generator) -> ContourTracker:
 
 def _panoramic_tracker() -> PanoramicTracker:
     from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
-    from peopleboy.tracker.panoramic.people.place_file import load_places
+    from peopleboy.tracker.panoramic.people.place_model import load_places
 
     return PanoramicTracker(*load_places())
 
@@ -149,7 +149,7 @@ def _contour(rng: np.random.Generator) -> Tracker:
 @TRACKERS.register(
     "learned",
     scope="the same, taught",
-    summary="The same, but who is in front is told by the classifier that `peopleboy train-occlusion` "
+    summary="The same, but who is in front is told by the classifier that `peopleboy train occlusion` "
     "learned.",
 )
 def _learned(rng: np.random.Generator) -> Tracker:
@@ -197,14 +197,14 @@ def _paper(rng: np.random.Generator) -> Tracker:
     "panoramic-paper",
     scope="the 2003 paper",
     summary="One person all round a standing robot, by the panoramic camera alone: background "
-    "subtraction, a network for the distance, which `peopleboy train-distance` trains, a Kalman "
+    "subtraction, a network for the distance, which `peopleboy train distance` trains, a Kalman "
     "filter on the floor.",
 )
 def _panoramic_paper(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
-    from peopleboy.tracker.panoramic.paper.appearance_file import shipped_models
+    from peopleboy.tracker.panoramic.paper.distance_network import shipped_models
     from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicPaperTracker
 
-    return PanoramicPaperTracker(shipped_models())
+    return PanoramicPaperTracker(tuple(shipped_models().values()))
 
 
 @TRACKERS.register(

@@ -23,8 +23,8 @@ from peopleboy.sim.cameras.depth import structured_light
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.camera_mount import mount_of
+from peopleboy.tracker.detector.detector import PeopleDetector
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, PANORAMA, THERMAL, Frame, Odometry
-from peopleboy.tracker.proposals.detector import PeopleDetector
 from peopleboy.tracker.trackers import make_tracker
 
 CROWD = "crossing_4"

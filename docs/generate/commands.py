@@ -18,17 +18,22 @@ def commands() -> str:
     links = [
         (f"[`{name}`](#peopleboy-{name})", cli.commands[name].get_short_help_str(limit=200)) for name in names
     ]
-    sections = [_section(cli.commands[name], context) for name in names]
+    sections = [_section(cli.commands[name], context, "##") for name in names]
     return "\n".join([table(("command", "what it does"), links), *sections])
 
 
-def _section(command: click.Command, parent: click.Context) -> str:
+def _section(command: click.Command, parent: click.Context, mark: str) -> str:
+    """Describe a command, and each of its own ones in a section below."""
     context = click.Context(command, info_name=command.name, parent=parent)
     usage = f"{context.command_path} {' '.join(command.collect_usage_pieces(context))}"
     options = [_option(option, context) for option in command.params if isinstance(option, click.Option)]
     listed = table(("option", "what it is for"), options) if options else ""
     about = inspect.cleandoc(command.help or "")
-    return f"## peopleboy {command.name}\n\n```text\n{usage}\n```\n\n{about}\n\n{listed}"
+    section = f"{mark} {context.command_path}\n\n```text\n{usage}\n```\n\n{about}\n\n{listed}"
+    if not isinstance(command, click.Group):
+        return section
+    own = [command.get_command(context, name) for name in command.list_commands(context)]
+    return "\n".join([section, *(_section(each, context, f"{mark}#") for each in own if each is not None)])
 
 
 def _option(option: click.Option, context: click.Context) -> tuple[str, str]:

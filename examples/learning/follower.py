@@ -25,7 +25,7 @@ from peopleboy.behaviours.following.follow_person import (
     distance_error,
 )
 from peopleboy.behaviours.percept import Percept
-from peopleboy.tracker.weights_archive import opened_archive
+from peopleboy.tracker.networks.weights_archive import open_archive
 
 Weights = NDArray[np.float64]  # (16,)
 
@@ -130,7 +130,7 @@ def load_weights(file: Path) -> Weights:
     Raises:
         BadInput: there is no such file, or it has no such weights.
     """
-    with opened_archive(file, "python -m examples.learning.train") as stored:
+    with open_archive(file, "python -m examples.learning.train") as stored:
         weights = np.asarray(stored["weights"], np.float64)
     if weights.shape != (SIZE,) or not np.isfinite(weights).all():
         raise BadInput(f"{file}: weights must be ({SIZE},) finite numbers, got {weights.shape}")

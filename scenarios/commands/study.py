@@ -1,4 +1,4 @@
-"""Commands that follow the sources: `datasets`, `train-occlusion`, `train-distance`, `reproduce`, `tune`."""
+"""Commands that follow the sources: `datasets`, `reproduce`, `tune`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from pathlib import Path
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.completion import complete_scenario
 from peopleboy.scenarios.commands.options import Number, WholeNumber, workers_options
 
 
@@ -33,95 +32,6 @@ def datasets(suites: Sequence[str], films: Path) -> None:
         if name not in THESIS:
             raise BadInput(f"datasets: unknown data set {name!r}; there are {', '.join(THESIS)}")
     print_contents(suites or tuple(THESIS), films)
-
-
-@click.command("train-occlusion")
-@click.option("--tracker", default="contour", show_default=True, help="Whom to teach: contour or thesis.")
-@click.option(
-    "--seeds",
-    type=WholeNumber(min=1),
-    default=5,
-    show_default=True,
-    help="Runs of each scenario.",
-)
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Folder for the examples and the learned table.  [default: runs/occlusion-TRACKER]",
-)
-@click.option("--again", is_flag=True, help="Run the scenarios even if the examples are there.")
-@click.option("--triplets/--no-triplets", default=True, help="Try weighted triplets as well (a minute).")
-@click.option("--ship", is_flag=True, help="Put the learned table in the place of the tracker's own.")
-@workers_options
-def train_occlusion(
-    tracker: str,
-    seeds: int,
-    out: Path | None,
-    again: bool,
-    triplets: bool,
-    ship: bool,
-    workers: int | None,
-    scheduler: str | None,
-) -> None:
-    """Learn from scenarios which of two overlapping people is in front, and compare with the thesis.
-
-    Examples are split at random, as there, and scenario by scenario; the table is learned from all of them.
-    Needs scikit-learn. A killed call goes on where it was.
-    """
-    from peopleboy.scenarios.running.engine.task import chosen_workers
-    from peopleboy.studies.training.occlusion_learning.occlusion_lesson import give_lesson
-
-    who = chosen_workers(workers, scheduler)
-    folder = out if out is not None else Path("runs") / f"occlusion-{tracker}"
-    click.echo(give_lesson(folder, tracker, seeds, who, triplets=triplets, again=again, ship=ship))
-
-
-@click.command("train-distance")
-@click.argument("scenario", default="room_long", shell_complete=complete_scenario)
-@click.option("--seeds", type=WholeNumber(min=1), default=10, show_default=True, help="Runs of it.")
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Folder for the examples and the network.  [default: runs/distance-SCENARIO]",
-)
-@click.option(
-    "--epochs",
-    type=WholeNumber(min=1),
-    default=2000,
-    show_default=True,
-    help="How often the network goes through its examples.",
-)
-@click.option(
-    "--ship",
-    is_flag=True,
-    help="Put the network among the tracker's own, in place of that for the same mirror.",
-)
-@workers_options
-def train_distance(
-    scenario: str,
-    seeds: int,
-    out: Path | None,
-    epochs: int,
-    ship: bool,
-    workers: int | None,
-    scheduler: str | None,
-) -> None:
-    """Learn from a scenario how far away a person in the panorama is, for the tracker of the 2003 paper.
-
-    SCENARIO is a name or a path, room_long if left out. It begins with five empty panoramas, and one person
-    at a time is there later. A killed call goes on where it was.
-    """
-    from peopleboy.scenarios.running.engine.task import chosen_workers
-    from peopleboy.studies.training.distance_learning.distance_lesson import give_distance_lesson
-    from peopleboy.tracker.panoramic.paper.distance_network import Lessons
-
-    who = chosen_workers(workers, scheduler)
-    folder = out if out is not None else Path("runs") / f"distance-{Path(scenario).stem}"
-    lessons = Lessons(epochs=epochs)
-    learned = give_distance_lesson(folder, scenario, seeds, who, lessons=lessons, ships=ship)
-    click.echo(learned.summary)
-    click.echo("`peopleboy reproduce --paper panoramic` measures it beside the paper")
-    click.echo(learned.path)
 
 
 @click.command()

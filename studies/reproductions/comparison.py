@@ -9,6 +9,7 @@ from enum import StrEnum
 from typing import Final
 
 from peopleboy.studies.reproductions.experiment import SOURCE, Claim, Experiment, Line, Samples, Values
+from peopleboy.studies.reproductions.image_errors import ErrorSummary, ImageErrors
 from peopleboy.studies.reproductions.statistics import (
     PAPER,
     PERCENT,
@@ -24,7 +25,6 @@ from peopleboy.studies.reproductions.statistics import (
     to_source,
     unpaired,
 )
-from peopleboy.studies.training.distance_learning.image_errors import ErrorSummary, ImageErrors
 
 BLIND: Final = 5.0  # [%] below which both values say only that no people are found
 MUCH: Final = 0.5  # of what the source gains, which a gain has to reach

@@ -13,8 +13,8 @@ from scipy.stats import t as student
 
 from peopleboy.sim.random_streams import stream
 from peopleboy.studies.reproductions.experiment import Floats, Jackknife, Values
-from peopleboy.studies.training.distance_learning.image_errors import ErrorSummary, ImageErrors
-from peopleboy.studies.training.occlusion_learning.example_splits import TRAINING_SHARE
+from peopleboy.studies.reproductions.image_errors import ErrorSummary, ImageErrors
+from peopleboy.studies.reproductions.occlusion_splits import TRAINING_SHARE
 
 T = TypeVar("T")
 Interval = tuple[float, float]

@@ -1,1 +1,1 @@
-"""Training of what the trackers ship: tables, networks and the people detector."""
+"""Training of the learned models: one command, `peopleboy train MODEL`, and one module a model."""

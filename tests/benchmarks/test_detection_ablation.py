@@ -11,9 +11,9 @@ from numpy.testing import assert_array_equal
 from benchmarks.detection_ablation import LEAST, VARIANTS, DetectorOfStage, Stage, thermal_finder
 from benchmarks.sequences import Recording, record
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.tracker.detector.detections import NO_DETECTIONS
+from peopleboy.tracker.detector.detector import PeopleDetector
 from peopleboy.tracker.frame import THERMAL
-from peopleboy.tracker.proposals.detector import PeopleDetector
-from peopleboy.tracker.proposals.suppression import NOBODY
 from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
 
 
@@ -24,7 +24,7 @@ def recording() -> Recording:
 
 @pytest.mark.slow
 def test_all_looks_together_are_those_of_the_detector(recording: Recording) -> None:
-    whole, all_stages = PeopleDetector(least_score=LEAST), DetectorOfStage(Stage.CLOSER_LOOK)
+    whole, all_stages = PeopleDetector(least_score=LEAST), DetectorOfStage(Stage.BOX_REFINEMENT)
     for frame in recording.frames:
         grey = frame.grey(THERMAL)
         expected = whole.update(grey, frame.time_s)
@@ -43,8 +43,8 @@ def test_a_threshold_finds_people_by_the_greys_it_was_made_for_alone(recording: 
     find = thermal_finder(Stage.THRESHOLD)
     frame = recording.frames[-1]
     warmer = np.clip(frame.grey(THERMAL).astype(int) + 60, 0, 255).astype(np.uint8)
-    assert len(find(frame, NOBODY, everywhere=True).box) >= 1
-    assert len(find(replace(frame, images={THERMAL: warmer}), NOBODY, everywhere=True).box) == 0
+    assert len(find(frame, NO_DETECTIONS, everywhere=True).box) >= 1
+    assert len(find(replace(frame, images={THERMAL: warmer}), NO_DETECTIONS, everywhere=True).box) == 0
 
 
 def test_every_variant_is_another_tracker() -> None:

@@ -26,9 +26,9 @@ from peopleboy.studies.reproductions.experiments.panorama import CUES
 from peopleboy.studies.reproductions.experiments.situation import TRACKERS
 from peopleboy.studies.reproductions.experiments.tracking import METRICS, RULES, TrackerTrial, trials
 from peopleboy.studies.reproductions.experiments.windows import MODELS
+from peopleboy.studies.reproductions.image_errors import ImageErrors
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.units import Measurement
-from peopleboy.studies.training.distance_learning.image_errors import ImageErrors
 
 DRIVES = Plan(cache=Path("films"), drives=2)
 

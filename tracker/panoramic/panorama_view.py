@@ -91,4 +91,4 @@ def choose_view(
             return number
         whys.append(why)
     others = f" (and so for {len(whys) - 1} more)" if len(whys) > 1 else ""
-    raise BadInput(f"{whys[0]}{others}; train another with `peopleboy train-distance`")
+    raise BadInput(f"{whys[0]}{others}; train another with `peopleboy train distance`")

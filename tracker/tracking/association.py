@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from peopleboy.tracker.boxes import area, cover, intersection, iou, shared_of_smaller
+from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.frame import THERMAL, Floats, Frame
-from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.tracking.appearance import (
     FEATURES,
     SAMPLES,
@@ -144,7 +144,7 @@ class DescribedDetections:
     colours: Colours
 
     @classmethod
-    def of(cls, frame: Frame, found: Proposals, view: Viewpoint, followed: int = 0) -> DescribedDetections:
+    def of(cls, frame: Frame, found: Detections, view: Viewpoint, followed: int = 0) -> DescribedDetections:
         """Look at what is proposed in a frame, but for the last few, who are followed."""
         count = len(found.box)
         pattern, colours = np.zeros((count, SAMPLES), np.float32), np.zeros((count, FEATURES), np.float32)

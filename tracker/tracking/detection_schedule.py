@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.boxes import area, cover, intersection, outline
+from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.frame import Floats
-from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.tracking.config import DetectionScheduleConfig
 from peopleboy.tracker.tracking.template import Grey
 from peopleboy.tracker.tracking.track_state import TrackState
@@ -33,18 +33,18 @@ class Schedule(NamedTuple):
     expected: Mapping[int, Floats]
     followed: Mapping[int, Floats]
 
-    def proposed(self, targets: Sequence[TrackState]) -> Proposals:
+    def proposed(self, targets: Sequence[TrackState]) -> Detections:
         """Propose who is expected, as sure as trees were when they last found them, the surest first."""
         trees = np.array([targets[row].trees for row in self.expected], np.float64)
-        found = Proposals.of_trees(np.array(list(self.expected.values())).reshape(-1, 4), trees)
-        return found.taken(np.argsort(-trees, kind="stable"))
+        found = Detections.from_trees(np.array(list(self.expected.values())).reshape(-1, 4), trees)
+        return found.take(np.argsort(-trees, kind="stable"))
 
-    def with_followed(self, found: Proposals, targets: Sequence[TrackState]) -> Proposals:
+    def with_followed(self, found: Detections, targets: Sequence[TrackState]) -> Detections:
         """Give who was found by the detector, and then who is followed, as sure as when last looked at."""
         if not self.followed:
             return found
         who = [targets[row] for row in self.followed]
-        return Proposals(
+        return Detections(
             np.concatenate([found.box, np.array(list(self.followed.values()))]),
             np.concatenate([found.score, [target.score for target in who]]),
             np.concatenate([found.trees, [target.trees for target in who]]),

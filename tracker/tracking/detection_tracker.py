@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.boxes import intersection, iou, outline
+from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, Odometry
-from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.track import Box, FloorPlace, Track
 from peopleboy.tracker.tracking.association import (
     CLEAR,
@@ -261,7 +261,7 @@ class DetectionTracker:
         kept = np.flatnonzero(strangers) if self._targets else np.empty(0, int)
         self._paths = self._paths.take(kept)
         self._targets = [self._targets[row] for row in kept]
-        met = DescribedDetections.of(frame, Proposals.of_trees(box, np.zeros(1)), now.view)
+        met = DescribedDetections.of(frame, Detections.from_trees(box, np.zeros(1)), now.view)
         self._add(np.zeros(1, int), met, now)
         self._confirm(self._targets[-1], -math.inf, now.existence)  # whoever points at somebody knows whom
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from peopleboy.tracker.boxes import area, iou, shared_of_smaller
 from peopleboy.tracker.camera_mount import mount_of
+from peopleboy.tracker.detector.detections import NO_DETECTIONS, Detections
+from peopleboy.tracker.detector.detector import PeopleDetector
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, FreshImages, Odometry, PinholeCalibration, joined
-from peopleboy.tracker.proposals.detector import PeopleDetector
-from peopleboy.tracker.proposals.suppression import NOBODY, Proposals
 from peopleboy.tracker.tracking.appearance import transfer_boxes
 from peopleboy.tracker.tracking.config import ColourDetectionConfig, DetectionTrackerConfig
 from peopleboy.tracker.tracking.viewpoint import Viewpoint
@@ -37,7 +37,7 @@ class ColourFinder:
         self._pause_s = config.every_s
         self._way: Odometry | None = Odometry()
 
-    def __call__(self, frame: Frame, thermal: Proposals) -> Proposals:
+    def __call__(self, frame: Frame, thermal: Detections) -> Detections:
         """Give who is seen in a frame, by heat or in colours, with boxes (M, 4) [px] in the thermal image.
 
         By heat alone, if it is too soon, there is no new image, or not both cameras are calibrated.
@@ -51,19 +51,19 @@ class ColourFinder:
         self._pause_s = self._pause_after(thermal, both)
         return both
 
-    def _pause_after(self, thermal: Proposals, both: Proposals) -> float:
+    def _pause_after(self, thermal: Detections, both: Detections) -> float:
         if len(both.score) > len(thermal.score):
             return self._config.alone_every_s
         return self._config.beside_s if (thermal.score > 0.0).any() else self._config.every_s
 
-    def _found(self, frame: Frame, here: PinholeCalibration, there: PinholeCalibration) -> Proposals:
+    def _found(self, frame: Frame, here: PinholeCalibration, there: PinholeCalibration) -> Detections:
         """Look for people in the colour image, and carry them over to the thermal one."""
         grey = np.asarray(cv2.cvtColor(frame.rgb(COLOUR), cv2.COLOR_RGB2GRAY), np.uint8)
         found = self._detector.update(grey, frame.time_s, self._way, mount_of(here, grey.shape[0]))
         self._last_s, self._way = frame.time_s, Odometry()
         boxes = transfer_boxes(found.box, Viewpoint.of(here, (grey.shape[0], grey.shape[1])), here, there)
-        seen = Proposals(boxes, self._config.believed * found.score, found.trees)
-        return seen.taken(area(boxes) > 0.0)
+        seen = Detections(boxes, self._config.believed * found.score, found.trees)
+        return seen.take(area(boxes) > 0.0)
 
     def accumulate_motion(self, frame: Frame) -> bool:
         """Take in how the robot moved until the next new image, and tell whether a frame has that."""
@@ -74,7 +74,7 @@ class ColourFinder:
         return True
 
 
-def merge_cameras(thermal: Proposals, colour: Proposals, config: ColourDetectionConfig) -> Proposals:
+def merge_cameras(thermal: Detections, colour: Detections, config: ColourDetectionConfig) -> Detections:
     """Take together what both cameras show, all in the thermal image, the surest first.
 
     Of whom both show the box is the thermal one's, which is the more exact, and the score that of the surer
@@ -91,18 +91,18 @@ def merge_cameras(thermal: Proposals, colour: Proposals, config: ColourDetection
         row = overlap[:, column].argmax()
         score[row] = max(score[row], colour.score[column])
     # By heat trees found nobody there: at most they leave it open.
-    both = Proposals(
+    both = Detections(
         np.concatenate([thermal.box, colour.box[is_alone]]),
         np.concatenate([score, colour.score[is_alone]]),
         np.concatenate([thermal.trees, np.minimum(colour.score[is_alone], 0.0)]),
     )
-    return both.taken(np.argsort(-both.score, kind="stable"))
+    return both.take(np.argsort(-both.score, kind="stable"))
 
 
 class Finder(Protocol):
     """Whatever proposes people, frame by frame."""
 
-    def __call__(self, frame: Frame, expected: Proposals, *, everywhere: bool) -> Proposals:
+    def __call__(self, frame: Frame, expected: Detections, *, everywhere: bool) -> Detections:
         """Give boxes [px] in the thermal image, as wide as the torso, and log odds.
 
         Args:
@@ -122,7 +122,9 @@ class PeopleFinder:
         self._thermal = ThermalFinder(PeopleDetector(least_score=weakest))
         self._colour = ColourFinder(config.colour, weakest)
 
-    def __call__(self, frame: Frame, expected: Proposals = NOBODY, *, everywhere: bool = True) -> Proposals:
+    def __call__(
+        self, frame: Frame, expected: Detections = NO_DETECTIONS, *, everywhere: bool = True
+    ) -> Detections:
         """Look for people in the next frame; for those who are known in the thermal image alone."""
         seen = self._thermal(frame, expected, everywhere=everywhere)
         if not everywhere:
@@ -138,7 +140,9 @@ class ThermalFinder:
         """Make one of a detector."""
         self._detector = detector
 
-    def __call__(self, frame: Frame, expected: Proposals = NOBODY, *, everywhere: bool = True) -> Proposals:
+    def __call__(
+        self, frame: Frame, expected: Detections = NO_DETECTIONS, *, everywhere: bool = True
+    ) -> Detections:
         """Look for people in the next frame, or for those who are known."""
         grey, calibration = frame.grey(THERMAL), frame.calibrations.get(THERMAL)
         mount = None if calibration is None else mount_of(calibration, grey.shape[0])

@@ -25,15 +25,14 @@ from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
-from peopleboy.studies.training.foreground_learning.masked_film import film_people
-from peopleboy.studies.training.place_learning.place_task import panorama_of
+from peopleboy.studies.training.panorama_sequences import panorama_calibration, render_panoramas
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
 from peopleboy.tracker.panoramic.foreground.foreground import Foreground
 from peopleboy.tracker.panoramic.people.figure_patch import ACROSS, BOTTOM_M, HALF_WIDTH_M, LAYERS, TOP_M, UP
 from peopleboy.tracker.panoramic.people.panorama_patches import Scene
 from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
-from peopleboy.tracker.panoramic.people.place_file import load_places
+from peopleboy.tracker.panoramic.people.place_model import load_places
 from peopleboy.tracker.track import FloorPlace, Status, Track
 from peopleboy.tracker.trackers import make_tracker
 
@@ -105,7 +104,7 @@ def _moment() -> Moment:
     """Play a drive to the tracker, as far as one image."""
     name, seed = DRIVE
     scenario = load_scenario(name)
-    film, camera = film_people(scenario, seed), panorama_of(scenario, seed)
+    film, camera = render_panoramas(scenario, seed), panorama_calibration(scenario, seed)
     tracker, eyes = PanoramicTracker(*load_places()), Foreground()
     for k, image in enumerate(film.images[: IMAGE + 1]):
         time_s, moved = float(film.time_s[k]), film.odometry(k)

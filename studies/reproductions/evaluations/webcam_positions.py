@@ -20,8 +20,8 @@ from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.random_streams import stream
-from peopleboy.studies.training.distance_learning.distance_examples import panoramas
-from peopleboy.studies.training.distance_learning.image_errors import ErrorSummary
+from peopleboy.studies.reproductions.image_errors import ErrorSummary
+from peopleboy.studies.training.distance import panoramas
 from peopleboy.tracker.frame import PANORAMA
 from peopleboy.tracker.panoramic.paper.depth_cues import EMPTY_IMAGES, Background, learn_background, measure
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig

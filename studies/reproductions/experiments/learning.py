@@ -12,14 +12,19 @@ import numpy as np
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.sim.random_streams import stream
 from peopleboy.studies.reproductions.experiment import Line, Samples
+from peopleboy.studies.reproductions.occlusion_splits import learn_split
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.statistics import SHARE
 from peopleboy.studies.reproductions.tracker_settings import Setting
 from peopleboy.studies.reproductions.units import Measurement, Unit
-from peopleboy.studies.training.occlusion_learning.example_splits import learn_split
-from peopleboy.studies.training.occlusion_learning.occlusion_pairs import PairExample, collect
-from peopleboy.studies.training.occlusion_learning.pair_task import examples_of, plain_pairs
-from peopleboy.studies.training.occlusion_learning.train_occlusion import LEAST, SCENARIOS
+from peopleboy.studies.training.occlusion_pairs import (
+    LEAST,
+    SCENARIOS,
+    PairSample,
+    collect_pairs,
+    parse_pairs,
+    plain_pairs,
+)
 from peopleboy.tracker.contour.occlusion.pair_features import FEATURES
 from peopleboy.tracker.contour.occlusion.weak_classifiers import weighted_sums
 
@@ -95,7 +100,7 @@ def _learned(
             for (scenario, seed, _), result in zip(
                 (unit.arguments for unit in collected[name]), results, strict=True
             )
-            for example in examples_of(scenario, seed, result["pairs"])
+            for example in parse_pairs(scenario, seed, result["pairs"])
         )
         for name, results in using.grouped(collected).items()
     }
@@ -112,14 +117,14 @@ def _learned(
 def _pair_units(plan: Plan, setting: Setting) -> list[Unit]:
     """List the runs in which a tracker measures people who overlap."""
     return [
-        Unit(f"pairs {name}-{seed} | {setting.key}", collect_pairs, (name, seed, setting))
+        Unit(f"pairs {name}-{seed} | {setting.key}", measure_pairs, (name, seed, setting))
         for seed in range(plan.pair_seeds)
         for name in SCENES
     ]
 
 
 def learn_unit(
-    way: Classifiers, plan: Plan, examples: tuple[PairExample, ...], tracker: str, split: int
+    way: Classifiers, plan: Plan, examples: tuple[PairSample, ...], tracker: str, split: int
 ) -> Unit:
     """Learn from one split of a tracker's examples."""
     key = (
@@ -129,13 +134,13 @@ def learn_unit(
     return Unit(key, learn_pairs, (tuple(way.features), way.most, plan.rounds, split, examples))
 
 
-def collect_pairs(scenario: str, seed: int, setting: Setting) -> Result:
+def measure_pairs(scenario: str, seed: int, setting: Setting) -> Result:
     """Run a tracker through a scenario, and keep what it measured of people who overlap."""
-    return {"pairs": plain_pairs(collect(scenario, seed, setting.config()))}
+    return {"pairs": plain_pairs(collect_pairs(scenario, seed, setting.config()))}
 
 
 def learn_pairs(
-    features: tuple[str, ...], most: int, rounds: int, split: int, examples: tuple[PairExample, ...]
+    features: tuple[str, ...], most: int, rounds: int, split: int, examples: tuple[PairSample, ...]
 ) -> Result:
     """Learn from examples that are split at random, and scenario by scenario, and test on the rest.
 

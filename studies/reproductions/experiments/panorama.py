@@ -10,14 +10,14 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from peopleboy.scenarios.running.engine.store import Result
+from peopleboy.studies.reproductions import distance_trials as trials
 from peopleboy.studies.reproductions.evaluations.webcam_positions import measure_webcams
 from peopleboy.studies.reproductions.experiment import Line, Samples
+from peopleboy.studies.reproductions.image_errors import ErrorSummary, ImageErrors
 from peopleboy.studies.reproductions.pictures import panoramic_figures
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.units import Measurement, Unit
-from peopleboy.studies.training.distance_learning import distance_trials as trials
-from peopleboy.studies.training.distance_learning.distance_examples import Examples, collect
-from peopleboy.studies.training.distance_learning.image_errors import ErrorSummary, ImageErrors
+from peopleboy.studies.training.distance import DistanceSamples, collect_distances
 
 M, R, CM, DEGREES = "m", "|r|", "cm", "deg"
 ROOMS: Final = ("room_long", "room_short", "room_narrow")
@@ -107,7 +107,7 @@ def draw_correlations(using: Measurement) -> Figure:
 def draw_path(using: Measurement) -> Figure:
     """Draw a piece of a path on the floor, true and estimated (figure 6)."""
     (first,) = using.results(walk_units(using.plan, ROOMS[0])[:1])
-    return panoramic_figures.draw_path(Examples.of_rows(first["rows"]))
+    return panoramic_figures.draw_path(DistanceSamples.from_rows(first["rows"]))
 
 
 def webcams(using: Measurement) -> Samples:
@@ -142,32 +142,34 @@ def _runs(runs: Iterable[ErrorSummary]) -> ImageErrors:
 
 def walk_units(plan: Plan, room: str) -> list[Unit]:
     """List the runs in which people walk in a room before the panoramic camera."""
-    return [Unit(f"walk {room}-{seed}", collect, (room, seed)) for seed in range(plan.walks)]
+    return [Unit(f"walk {room}-{seed}", collect_distances, (room, seed)) for seed in range(plan.walks)]
 
 
-def examples_of(using: Measurement, room: str) -> list[Examples]:
+def examples_of(using: Measurement, room: str) -> list[DistanceSamples]:
     """Return what was measured in each run; all rooms' runs are asked for at once."""
     using.results(unit for one in ROOMS for unit in walk_units(using.plan, one))
-    return [Examples.of_rows(result["rows"]) for result in using.results(walk_units(using.plan, room))]
+    return [
+        DistanceSamples.from_rows(result["rows"]) for result in using.results(walk_units(using.plan, room))
+    ]
 
 
-def _split_units(plan: Plan, room: str, split: str, walks: Sequence[Examples]) -> list[Unit]:
+def _split_units(plan: Plan, room: str, split: str, walks: Sequence[DistanceSamples]) -> list[Unit]:
     """Train the paper's networks on each run, with all splits of one kind."""
     trial = trials.SplitTrial(split=split, repeats=plan.splits)
-    more = f"{split}, {trial.repeats} splits, {trial.lessons.epochs} epochs"
+    more = f"{split}, {trial.repeats} splits, {trial.settings.epochs} epochs"
     return [
         Unit(f"distances {walk.key} | {more}", score_splits, (examples, trial))
         for walk, examples in zip(walk_units(plan, room), walks, strict=True)
     ]
 
 
-def _new_people_units(plan: Plan, room: str, walks: Sequence[Examples]) -> list[Unit]:
+def _new_people_units(plan: Plan, room: str, walks: Sequence[DistanceSamples]) -> list[Unit]:
     """Train on the even seeds and test on the odd ones, and the other way round."""
     trial = trials.SplitTrial(split="random", repeats=1)
     folds = [tuple(range(first, plan.walks, 2)) for first in range(2)]
     return [
         Unit(
-            f"new people {room} {','.join(map(str, seeds))} of {len(walks)} | {trial.lessons.epochs} epochs",
+            f"new people {room} {','.join(map(str, seeds))} of {len(walks)} | {trial.settings.epochs} epochs",
             score_new_people,
             (seeds, trial, tuple(walks)),
         )
@@ -179,7 +181,7 @@ def _webcam_units(plan: Plan) -> list[Unit]:
     return [Unit(f"webcams | {seed}", score_webcams, (seed,)) for seed in range(plan.repeats)]
 
 
-def score_splits(run: Examples, trial: trials.SplitTrial) -> Result:
+def score_splits(run: DistanceSamples, trial: trials.SplitTrial) -> Result:
     """Train networks on splits of a run, and test them, and the filter on their positions."""
     trained = trials.general_networks(run, trial)
     found = {"general": trials.general_trials(run, trained)}
@@ -192,11 +194,13 @@ def score_splits(run: Examples, trial: trials.SplitTrial) -> Result:
     return {"errors": plain, "r": trials.correlations(run, trained).tolist()}
 
 
-def score_new_people(seeds: Sequence[int], trial: trials.SplitTrial, runs: Sequence[Examples]) -> Result:
+def score_new_people(
+    seeds: Sequence[int], trial: trials.SplitTrial, runs: Sequence[DistanceSamples]
+) -> Result:
     """Train one network on the runs with some seeds, and test it on the others."""
     trained = [run for seed, run in enumerate(runs) if seed in seeds]
     others = [run for seed, run in enumerate(runs) if seed not in seeds]
-    tested = trials.new_people_trials(trained, others, trial.lessons)
+    tested = trials.new_people_trials(trained, others, trial.settings)
     return {"runs": [errors.plain() for errors in tested]}
 
 

@@ -8,7 +8,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.studies.reproductions.evaluations.drive_tracking import SETS
 from peopleboy.studies.reproductions.evaluations.sliding_windows import (
@@ -20,9 +19,7 @@ from peopleboy.studies.reproductions.evaluations.sliding_windows import (
 from peopleboy.studies.reproductions.experiment import Line, Row, Samples, as_columns, ratio
 from peopleboy.studies.reproductions.plan import shortened
 from peopleboy.studies.reproductions.units import Measurement, Unit
-from peopleboy.studies.training.window_learning.teach_windows import FALSE_ALARMS, recall_at, scores_of
-from peopleboy.studies.training.window_learning.window_examples import collect_windows
-from peopleboy.studies.training.window_learning.window_lesson import TESTS
+from peopleboy.studies.training.windows import FALSE_ALARMS, VALIDATION, collect_windows, recall_at, scores_of
 from peopleboy.tracker.rgbd.pre_detection import HumanSize
 from peopleboy.tracker.rgbd.rgbd_config import FloorFilterConfig, HypothesesConfig
 from peopleboy.tracker.rgbd.u_depth import UDepthConfig
@@ -85,7 +82,7 @@ def parameters(using: Measurement) -> Samples:  # noqa: ARG001
 
 def window_models(using: Measurement) -> Samples:
     """Measure recall and false alarms of window classifiers in places that none learned from."""
-    runs = [(name, seed) for name, count in TESTS.items() if name for seed in range(count)]
+    runs = [(name, seed) for name, count in VALIDATION.items() if name for seed in range(count)]
     runs = runs[:1] if using.plan.is_quick else runs
     scores = using.results(Unit(f"windows {name}-{seed}", score_windows, (name, seed)) for name, seed in runs)
     return {
@@ -136,7 +133,7 @@ def slide_windows(scenarios: Sequence[str], most_s: float, every: int) -> Result
 
 def score_windows(scenario: str, seed: int) -> Result:
     """Collect windows of a scenario, and give the scores of people and others by range and classifier."""
-    examples = collect_windows(load_scenario(scenario), seed, has_jitter=False)
+    samples = collect_windows(scenario, seed, has_jitter=False)
     models = {
         OWN: shipped_windows(sees_depth=True),
         COLOUR: shipped_windows(sees_depth=False),
@@ -144,8 +141,8 @@ def score_windows(scenario: str, seed: int) -> Result:
     }
     result: Result = {}
     for kind, name in MODELS:
-        scores = scores_of(models[name], examples, Range(kind)).round(3)
-        is_person = examples.is_person[Range(kind)]
+        scores = scores_of(models[name], samples, Range(kind)).round(3)
+        is_person = samples.is_person(Range(kind))
         people, others = scores[is_person].tolist(), scores[~is_person].tolist()
         result[f"{kind} {name}"] = {"people": people, "others": others}
     return result

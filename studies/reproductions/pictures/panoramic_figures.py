@@ -18,6 +18,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.panorama import Mirror
+from peopleboy.studies.reproductions.distance_trials import SplitTrial, filtered, told_in_turn
 from peopleboy.studies.reproductions.evaluations.webcam_positions import (
     HEADING,
     RANGE,
@@ -29,9 +30,7 @@ from peopleboy.studies.reproductions.evaluations.webcam_positions import (
     webcam_names,
 )
 from peopleboy.studies.reproductions.pictures.canvas import canvas, label, show_image
-from peopleboy.studies.training.distance_learning.distance_examples import Examples, panoramas
-from peopleboy.studies.training.distance_learning.distance_trials import SplitTrial, told_in_turn
-from peopleboy.studies.training.distance_learning.walks import filtered
+from peopleboy.studies.training.distance import DistanceSamples, panoramas
 from peopleboy.tracker.panoramic.paper.depth_cues import (
     EMPTY_IMAGES,
     Background,
@@ -230,7 +229,7 @@ def draw_fields_of_view() -> Figure:
     return figure
 
 
-def draw_correlations(run: Examples, names: Sequence[str]) -> Figure:
+def draw_correlations(run: DistanceSamples, names: Sequence[str]) -> Figure:
     """Draw each cue of a film, and what the network tells, over the true distance."""
     told = told_in_turn(run, SplitTrial(split="random"))
     figure = canvas(5.6)
@@ -251,9 +250,9 @@ def draw_correlations(run: Examples, names: Sequence[str]) -> Figure:
     return figure
 
 
-def draw_path(run: Examples) -> Figure:
+def draw_path(run: DistanceSamples) -> Figure:
     """Draw a piece of a path on the floor: true, by the model alone, and with the filter."""
-    measured = run.seen_at(told_in_turn(run, SplitTrial(split="blocks")))
+    measured = run.positions_at(told_in_turn(run, SplitTrial(split="blocks")))
     smooth = filtered(run, measured, PositionFilter(PRINTED, uses_velocity=True))
     figure = canvas(4.6)
     axes = figure.subplots()
@@ -272,7 +271,7 @@ def draw_path(run: Examples) -> Figure:
     return figure
 
 
-def draw_ranges(films: Mapping[str, Sequence[Examples]]) -> Figure:
+def draw_ranges(films: Mapping[str, Sequence[DistanceSamples]]) -> Figure:
     """Draw the mean error of the distance over the distance, by room; nobody is tested on whom it learned."""
     figure = canvas(3.4)
     axes = figure.subplots()

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from peopleboy.studies.training.people_learning.people_film import PeopleFilm
+from peopleboy.studies.training.detector.sequences import ThermalSequence
 
 ROWS, COLUMNS = 120, 160
 WIDTH_PER_HEIGHT = 0.3
 
 
-def drawn_film(seed: int, images: int = 6) -> PeopleFilm:
+def drawn_film(seed: int, images: int = 6) -> ThermalSequence:
     """One person an image, upright, of 30 to 60 px; a head, a trunk and two legs that move."""
     rng = np.random.default_rng(seed)
     greys, changes, boxes = [], [], []
@@ -32,7 +32,7 @@ def drawn_film(seed: int, images: int = 6) -> PeopleFilm:
         greys.append(np.clip(grey + rng.normal(0.0, 1.0, grey.shape), 0.0, 255.0).astype(np.uint8))
         changes.append(np.clip(change, 0.0, 255.0).astype(np.uint8))
         boxes.append((left, top, wide, tall))
-    return PeopleFilm(
+    return ThermalSequence(
         grey=np.array(greys),
         change=np.array(changes),
         mount=np.array([59.5, 150.0, 1.2]),

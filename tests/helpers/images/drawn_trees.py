@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.proposals.cascade import LEAVES, NODES, Cascade
-from peopleboy.tracker.proposals.channels import CHANNELS
-from peopleboy.tracker.proposals.patches import Patches
-from peopleboy.tracker.proposals.placing import OFFSETS, Placing
-from peopleboy.tracker.proposals.window import COLUMNS as WINDOW_COLUMNS
-from peopleboy.tracker.proposals.window import ROWS as WINDOW_ROWS
+from peopleboy.tracker.detector.box_regression import OFFSETS, BoxRegression
+from peopleboy.tracker.detector.cascade import LEAVES, NODES, Cascade
+from peopleboy.tracker.detector.channels import CHANNELS
+from peopleboy.tracker.detector.patches import Patches
+from peopleboy.tracker.detector.window import COLUMNS as WINDOW_COLUMNS
+from peopleboy.tracker.detector.window import ROWS as WINDOW_ROWS
 
 TREES = 40
 PLACING_TREES = 7
@@ -37,10 +37,10 @@ def drawn_cascade(least: float = -np.inf) -> Cascade:
     return Cascade(drawn_patches(), *tables, np.full(TREES, least, np.float32))
 
 
-def drawn_placing() -> Placing:
+def drawn_placing() -> BoxRegression:
     """7 trees for each number, whose boxes are about as large as their windows."""
     feature, threshold, leaf = drawn_tables((OFFSETS, PLACING_TREES), np.random.default_rng(7))
-    return Placing(drawn_patches(), feature, threshold, leaf * np.float32(0.05))
+    return BoxRegression(drawn_patches(), feature, threshold, leaf * np.float32(0.05))
 
 
 def drawn_tables(trees: tuple[int, ...], rng: np.random.Generator) -> tuple[NDArray[np.int32], Cells, Cells]:

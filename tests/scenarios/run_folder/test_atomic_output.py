@@ -6,6 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
+from peopleboy.studies.reproductions.measuring.run_units import open_store
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.draw_plan import draw_plan
@@ -15,14 +16,7 @@ from peopleboy.scenarios.run_folder.atomic_output import atomic, atomic_folder
 from peopleboy.scenarios.run_folder.folder import claim_folder
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.frame_cache import film
-from peopleboy.studies.reproductions.units import open_store
-from peopleboy.studies.training.distance_learning.distance_lesson import give_distance_lesson
-from peopleboy.studies.training.foreground_learning.foreground_lesson import (
-    ForegroundLessons,
-    give_foreground_lesson,
-)
-from peopleboy.studies.training.occlusion_learning.occlusion_lesson import give_lesson
-from peopleboy.tracker.panoramic.paper.distance_network import Lessons
+from peopleboy.studies.training.specification import MODELS, load_specification, train
 from tests.helpers.calls.footage_calls import refusal
 from tests.helpers.calls.processes import start
 from tests.helpers.images.footage_files import write_folder
@@ -128,13 +122,12 @@ FOLDERS = {
 OTHERS = {
     "show": lambda path: draw_plan(load_scenario("pass_behind"), 0, path),
     "reproduce": lambda path: open_store(path / "units.jsonl"),
-    "train-occlusion": lambda path: give_lesson(
-        path, "contour", 1, Workers(), triplets=False, again=False, ship=False
-    ),
-    "train-distance": lambda path: give_distance_lesson(
-        path, "pass_behind", 1, Workers(), lessons=Lessons(), ships=False
-    ),
-    "train-foreground": lambda path: give_foreground_lesson(path, Workers(), ForegroundLessons(), ship=False),
+    **{
+        f"train {model}": lambda path, model=model: train(
+            load_specification(model)(), path, Workers(), ship=False
+        )
+        for model in MODELS
+    },
     "datasets": lambda path: film(load_scenario("pass_behind"), 0, path),
 }
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.stats import ttest_ind, ttest_ind_from_stats, ttest_rel
 
 from peopleboy.studies.reproductions.experiment import Jackknife
+from peopleboy.studies.reproductions.image_errors import BLOCKS, ErrorSummary, ImageErrors
 from peopleboy.studies.reproductions.statistics import (
     SHARE,
     bootstrap_interval,
@@ -22,7 +23,6 @@ from peopleboy.studies.reproductions.statistics import (
     to_source,
     unpaired,
 )
-from peopleboy.studies.training.distance_learning.image_errors import BLOCKS, ErrorSummary, ImageErrors
 
 ONE, OTHER = np.array([72.1, 70.4, 71.9, 73.0, 71.2]), np.array([70.0, 70.1, 70.3, 71.9, 70.8])
 

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.frame import Floats
-from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.tracking.appearance import FEATURES
 from peopleboy.tracker.tracking.config import DetectionScheduleConfig
 from peopleboy.tracker.tracking.detection_schedule import DetectionSchedule, Schedule
@@ -142,7 +142,7 @@ def test_who_is_partly_outside_the_image_is_looked_at() -> None:
 def test_who_is_followed_is_as_sure_as_when_looked_at() -> None:
     who = targets()
     aim = Schedule(True, {}, {1: BOXES[1] + 1.0})
-    seen = aim.with_followed(Proposals.of_trees(BOXES[:1], np.array([0.5])), who)
+    seen = aim.with_followed(Detections.from_trees(BOXES[:1], np.array([0.5])), who)
     np.testing.assert_array_equal(seen.box, [BOXES[0], BOXES[1] + 1.0])
     assert (seen.score.tolist(), seen.trees.tolist()) == ([0.5, 2.0], [0.5, 2.0])
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, PinholeCalibration
-from peopleboy.tracker.proposals.suppression import Proposals
 from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.tracking.config import AssociationConfig, DetectionTrackerConfig, ExistenceConfig
 from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
@@ -28,15 +28,15 @@ class FixedDetections:
 
     def __init__(self, boxes: Sequence[Sequence[Box]], score: float = 3.0) -> None:
         self._boxes, self._score = iter(boxes), score
-        self.expected: list[Proposals] = []
+        self.expected: list[Detections] = []
         self.everywhere: list[int] = []
 
-    def __call__(self, frame: Frame, expected: Proposals, *, everywhere: bool) -> Proposals:  # noqa: ARG002
+    def __call__(self, frame: Frame, expected: Detections, *, everywhere: bool) -> Detections:  # noqa: ARG002
         if everywhere:
             self.everywhere.append(len(self.expected))
         self.expected.append(expected)
         boxes = np.array(next(self._boxes), np.float64).reshape(-1, 4)
-        return Proposals(boxes, np.full(len(boxes), self._score), np.arange(1.0, 1.0 + len(boxes)))
+        return Detections(boxes, np.full(len(boxes), self._score), np.arange(1.0, 1.0 + len(boxes)))
 
 
 def walker(middle: float, height: float = 100.0) -> Box:

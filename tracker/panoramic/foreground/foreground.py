@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict, dataclass, field, fields
 from functools import cache
+from pathlib import Path
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,15 +14,63 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.frame import Calibration, Odometry
+from peopleboy.tracker.networks.mask_network import BLOCK, DILATIONS, INPUTS, OUTPUTS, TOGETHER, MaskNetwork
+from peopleboy.tracker.networks.weights_archive import SHIPPED, ArraySpec, WeightsArchive
 from peopleboy.tracker.panoramic.foreground.floor_rows import FloorRows, floor_rows
 from peopleboy.tracker.panoramic.foreground.memory import compare, first_memory, learn, move_along
-from peopleboy.tracker.panoramic.foreground.network_file import SHIPPED, ForegroundModel
-from peopleboy.tracker.panoramic.panorama_view import view_of
+from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
 
 Linear = NDArray[np.float32]
 
 _SHORTEST_S = 0.01
 _LEAST_WAY_M, _LEAST_TURN_RAD = 1e-3, 5e-4  # less is the noise of wheels that stand
+
+MODEL: Final = "foreground"
+FILE: Final = "foreground.npz"
+
+_SPECS: Final = {
+    "first": ArraySpec((INPUTS, "units")),
+    "rows": ArraySpec(("rows", "units")),
+    "between": ArraySpec((len(DILATIONS), 9, "units", "units")),
+    "biases": ArraySpec((len(DILATIONS), "units")),
+    "last": ArraySpec(("units + inputs", OUTPUTS)),
+    "bias": ArraySpec((OUTPUTS,)),
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ForegroundModel:
+    """A network, and the camera whose images it was trained on.
+
+    Attributes:
+        network: that separates people from background.
+        view: of the camera.
+        about: what it was trained on, for the reader of the file.
+    """
+
+    network: MaskNetwork
+    view: PanoramaView
+    about: dict[str, str] = field(default_factory=dict)
+
+    def save(self, path: Path) -> None:
+        """Write the model."""
+        arrays = {each.name: getattr(self.network, each.name) for each in fields(MaskNetwork)}
+        WeightsArchive(arrays, self.about, asdict(self.view)).save(path)
+
+    @classmethod
+    def load(cls, path: Path) -> ForegroundModel:
+        """Read a model.
+
+        Raises:
+            BadInput: the file cannot be read, or is no such model.
+        """
+        archive = WeightsArchive.load(path, MODEL, _SPECS, PanoramaView.of_plain)
+        network, view = MaskNetwork(**archive.arrays), archive.camera
+        rows, units = network.rows.shape
+        is_whole = units % TOGETHER == 0 and view.width_px % BLOCK == 0
+        if not is_whole or view.height_px != BLOCK * rows or len(network.last) != units + INPUTS:
+            raise BadInput(f"layers do not fit: {units} units, images of {view.size}", file=str(path))
+        return cls(network=network, view=view, about=dict(archive.about))
 
 
 class Foreground:
@@ -37,7 +88,7 @@ class Foreground:
 
     def __init__(self, model: ForegroundModel | None = None) -> None:
         """Begin, with the network that comes with the tracker if no other is given."""
-        model = shipped_model() if model is None else model
+        model = shipped_foreground() if model is None else model
         self.network = model.network
         self.squares: Linear = np.zeros((0, 0, 0), np.float32)
         self.novelty: Linear = np.zeros((0, 0), np.float32)
@@ -68,10 +119,10 @@ class Foreground:
         floor = self._floor(calibration, image)
         memory = self._brought_along(image, odometry, floor)
         self.squares, self.novelty = compare(image, memory)
-        reported = self.network.probability(self.squares)
-        learn(memory, image, reported, max(time_s - self._time_s, _SHORTEST_S))
+        foreground = self.network.predict(self.squares)
+        learn(memory, image, foreground, max(time_s - self._time_s, _SHORTEST_S))
         self._memory, self._time_s = memory, time_s
-        return reported
+        return foreground
 
     @property
     def background(self) -> NDArray[np.uint8]:
@@ -105,6 +156,6 @@ class Foreground:
 
 
 @cache
-def shipped_model() -> ForegroundModel:
+def shipped_foreground() -> ForegroundModel:
     """Read the model that comes with the tracker, once."""
-    return ForegroundModel.load(SHIPPED)
+    return ForegroundModel.load(SHIPPED / FILE)

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.elementary import logarithm
 from peopleboy.tracker.frame import Odometry
+from peopleboy.tracker.networks.mask_network import BLOCK
 from peopleboy.tracker.panoramic.foreground.floor_rows import FloorRows
-from peopleboy.tracker.panoramic.foreground.layers import BLOCK
 
 Linear = NDArray[np.float32]
 Pair = tuple[float, float]

@@ -1,41 +1,35 @@
-"""The network that learns how far away a person is: three cues in, four hidden units, one distance out."""
+"""The distance network of the 2003 paper: three cues in, four hidden units, one distance out."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.tracker.networks.weights_archive import SHIPPED, ArraySpec, WeightsArchive
+from peopleboy.tracker.panoramic.panorama_view import PanoramaView
+from peopleboy.tracker.panoramic.paper.position_filter import MotionNoise
 
 Floats = NDArray[np.float64]
 
+MODEL: Final = "distance"
 CUES: Final = 3
 # Outputs that stand for the nearest and the farthest distance: a sigmoid never reaches 0 or 1.
-_LOW, _HIGH = 0.1, 0.9
+LOW, HIGH = 0.1, 0.9
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Lessons:
-    """How the network is taught.
-
-    The paper gives the hidden units and the rate, with which it did best. It gives neither how often the
-    examples are gone through nor the first weights; ours are these.
-
-    Attributes:
-        hidden: units of the hidden layer.
-        rate: by which each example's gradient changes the weights.
-        epochs: how often all examples are gone through, each time in another order.
-        first_weight: the first weights are drawn evenly between this and its negative.
-    """
-
-    hidden: int = 4
-    rate: float = 0.3
-    epochs: int = 2000
-    first_weight: float = 0.5
+_SPECS: Final = {
+    "hidden": ArraySpec(("units", CUES + 1), np.float64),
+    "output": ArraySpec(("units + 1",), np.float64),
+    "cue_ranges": ArraySpec((CUES, 2), np.float64),
+    "distance_range_m": ArraySpec((2,), np.float64),
+    "step_m2": ArraySpec((2, 2), np.float64),
+    "measurement_m2": ArraySpec((2, 2), np.float64),
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -54,88 +48,100 @@ class DistanceNetwork:
     cue_ranges: Floats
     distance_range_m: tuple[float, float]
 
-    def distance(self, cues: Floats) -> Floats:
-        """Tell the distances (N,) [m] of people with these cues (N, 3) [px]."""
-        units = _sigmoid(_with_bias(_scaled(cues, self.cue_ranges)) @ self.hidden.T)
+    def predict(self, cues: Floats) -> Floats:
+        """Return the distances (N,) [m] of people with these cues (N, 3) [px]."""
+        units = sigmoid(with_bias(scaled(cues, self.cue_ranges)) @ self.hidden.T)
         nearest, farthest = self.distance_range_m
-        share = (_sigmoid(_with_bias(units) @ self.output) - _LOW) / (_HIGH - _LOW)
+        share = (sigmoid(with_bias(units) @ self.output) - LOW) / (HIGH - LOW)
         return np.asarray(nearest + share * (farthest - nearest), np.float64)
 
 
-def teach(
-    cues: Floats, distances_m: Floats, rng: np.random.Generator, lessons: Lessons | None = None
-) -> DistanceNetwork:
-    """Teach a network online by backpropagation of the squared error.
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class DistanceModel:
+    """A network with what its training said about the camera and the filter.
 
-    Args:
-        cues: (N, 3) of the examples [px].
-        distances_m: (N,) true distances [m].
-        rng: draws the first weights and the order of the examples.
-        lessons: how; as `Lessons` says if left out.
+    Attributes:
+        network: from cues to distance.
+        view: of the camera whose images it was trained on.
+        noise: Q and R as they were among the samples, without a velocity.
+        about: what it was trained on, for the reader of the file.
+    """
+
+    network: DistanceNetwork
+    view: PanoramaView
+    noise: MotionNoise
+    about: Mapping[str, str] = field(default_factory=dict)
+
+    def save(self, path: Path) -> None:
+        """Write the model."""
+        network, noise = self.network, self.noise
+        arrays = {
+            "hidden": network.hidden,
+            "output": network.output,
+            "cue_ranges": network.cue_ranges,
+            "distance_range_m": np.array(network.distance_range_m),
+            "step_m2": noise.step_m2,
+            "measurement_m2": noise.measurement_m2,
+        }
+        WeightsArchive(arrays, self.about, asdict(self.view)).save(path)
+
+    @classmethod
+    def load(cls, path: Path) -> DistanceModel:
+        """Read and check a model.
+
+        Raises:
+            BadInput: a file that is missing or is no such model.
+        """
+        archive = WeightsArchive.load(path, MODEL, _SPECS, PanoramaView.of_plain)
+        arrays = archive.arrays
+        if len(arrays["output"]) != len(arrays["hidden"]) + 1:
+            raise BadInput("output must have one weight more than hidden has rows", file=str(path))
+        if (np.diff(np.vstack([arrays["cue_ranges"], arrays["distance_range_m"]])) <= 0.0).any():
+            raise BadInput("ranges must go from less to more", file=str(path))
+        nearest, farthest = arrays["distance_range_m"].tolist()
+        return cls(
+            network=DistanceNetwork(
+                hidden=arrays["hidden"],
+                output=arrays["output"],
+                cue_ranges=arrays["cue_ranges"],
+                distance_range_m=(nearest, farthest),
+            ),
+            view=archive.camera,
+            noise=MotionNoise(step_m2=arrays["step_m2"], measurement_m2=arrays["measurement_m2"]),
+            about=archive.about,
+        )
+
+
+def file_name(scenario: str) -> str:
+    """Return the name of the file of a model that was trained on a scenario."""
+    return f"distance-{scenario}.npz"
+
+
+def shipped_models(folder: Path = SHIPPED) -> dict[Path, DistanceModel]:
+    """Read the models that come with the tracker, one a mirror.
 
     Raises:
-        BadInput: next to no examples, or all at one distance.
-
-    Source: OMNIVIS 2003, section 4.4.
+        BadInput: none has been trained yet.
     """
-    _check_examples(cues, distances_m)
-    lessons = Lessons() if lessons is None else lessons
-    ranges = np.stack([cues.min(axis=0), cues.max(axis=0)], axis=1)
-    nearest, farthest = float(distances_m.min()), float(distances_m.max())
-    inputs = _with_bias(_scaled(cues, ranges))
-    targets = _LOW + (_HIGH - _LOW) * (distances_m - nearest) / (farthest - nearest)
-    limit = lessons.first_weight
-    hidden = rng.uniform(-limit, limit, (lessons.hidden, CUES + 1))
-    output = rng.uniform(-limit, limit, lessons.hidden + 1)
-    for _ in range(lessons.epochs):
-        learn_in_order(inputs, targets, rng.permutation(len(inputs)), hidden, output, lessons.rate)
-    return DistanceNetwork(
-        hidden=hidden, output=output, cue_ranges=ranges, distance_range_m=(nearest, farthest)
-    )
+    found = {path: DistanceModel.load(path) for path in sorted(folder.glob(file_name("*")))}
+    if not found:
+        raise BadInput(
+            f"tracker panoramic-paper: there is no network in {folder.name} yet; "
+            f"`peopleboy train {MODEL} --ship` makes one"
+        )
+    return found
 
 
-@njit(cache=True)
-def learn_in_order(
-    inputs: Floats,
-    targets: Floats,
-    order: NDArray[np.int64],
-    hidden: Floats,
-    output: Floats,
-    rate: float,
-) -> None:
-    """Go once through the examples, and change the weights in place after each.
-
-    Each change is the negative gradient of half the squared error, times the rate.
-    """
-    units = np.empty(len(hidden))
-    for example in order:
-        total = output[-1]
-        for j in range(len(hidden)):
-            units[j] = 1.0 / (1.0 + np.exp(-np.dot(hidden[j], inputs[example])))
-            total += output[j] * units[j]
-        reported = 1.0 / (1.0 + np.exp(-total))
-        blame = (targets[example] - reported) * reported * (1.0 - reported)
-        for j in range(len(hidden)):
-            passed = blame * output[j] * units[j] * (1.0 - units[j])
-            output[j] += rate * blame * units[j]
-            hidden[j] += rate * passed * inputs[example]
-        output[-1] += rate * blame
-
-
-def _check_examples(cues: Floats, distances_m: Floats) -> None:
-    if len(cues) < 10:
-        raise BadInput(f"{len(cues)} examples of distances: at least 10 are needed; take more seeds")
-    if np.ptp(distances_m) <= 0.0 or np.any(np.ptp(cues, axis=0) <= 0.0):
-        raise BadInput("examples of distances: all are alike, so there is nothing to learn from them")
-
-
-def _scaled(cues: Floats, ranges: Floats) -> Floats:
+def scaled(cues: Floats, ranges: Floats) -> Floats:
+    """Scale cues (N, 3) so that their ranges (3, 2) become 0 to 1."""
     return np.asarray((cues - ranges[:, 0]) / (ranges[:, 1] - ranges[:, 0]), np.float64)
 
 
-def _with_bias(inputs: Floats) -> Floats:
+def with_bias(inputs: Floats) -> Floats:
+    """Append a column of ones."""
     return np.hstack([inputs, np.ones((len(inputs), 1))])
 
 
-def _sigmoid(x: Floats) -> Floats:
+def sigmoid(x: Floats) -> Floats:
+    """Return the logistic function of x."""
     return np.asarray(1.0 / (1.0 + np.exp(-x)), np.float64)

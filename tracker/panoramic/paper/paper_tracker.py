@@ -13,7 +13,6 @@ from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.frame import PANORAMA, Calibration, Frame
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.panorama_view import choose_view
-from peopleboy.tracker.panoramic.paper.appearance_file import AppearanceModel
 from peopleboy.tracker.panoramic.paper.depth_cues import (
     CLEAN,
     EMPTY_IMAGES,
@@ -24,6 +23,7 @@ from peopleboy.tracker.panoramic.paper.depth_cues import (
     learn_background,
     measure,
 )
+from peopleboy.tracker.panoramic.paper.distance_network import DistanceModel
 from peopleboy.tracker.panoramic.paper.position_filter import (
     PRINTED,
     STEP_S,
@@ -116,7 +116,7 @@ class PanoramicPaperTracker:
     Source: OMNIVIS 2003, sections 4 and 5.
     """
 
-    def __init__(self, models: Sequence[AppearanceModel], config: PanoramicConfig | None = None) -> None:
+    def __init__(self, models: Sequence[DistanceModel], config: PanoramicConfig | None = None) -> None:
         self.config = PanoramicConfig() if config is None else config
         self._models = tuple(models)
         self._model = self._models[0]
@@ -191,7 +191,7 @@ class PanoramicPaperTracker:
 
     def _meet(self, figure: MeasuredFigure, time_s: float) -> float:
         """Let the filter know where the person is seen, and tell how far away [m]."""
-        distance_m = float(self._model.network.distance(np.array([figure.cues]))[0])
+        distance_m = float(self._model.network.predict(np.array([figure.cues]))[0])
         place = self._pose.transform_polar(distance_m, figure.bearing_rad)
         before = self._person
         if before is None or time_s - before.seen_s > self.config.forget_s:

@@ -2,36 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.tracker.networks.inference import DenseNetwork
+from peopleboy.tracker.networks.weights_archive import SHIPPED, ArraySpec, WeightsArchive
+from peopleboy.tracker.panoramic.panorama_view import PanoramaView
 from peopleboy.tracker.panoramic.people.figure_patch import PATCH, Map
 
 INPUTS = PATCH + 2
 _FARTHEST_M = 8.0
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Network:
-    """A small network: layers of sums, cut off below 0 between them.
-
-    Attributes:
-        layers: (inputs, units) weights and (units,) bias of each layer.
-    """
-
-    layers: Sequence[tuple[Map, Map]]
-
-    def tell(self, inputs: Map) -> Map:
-        """Give the outputs (N, outputs) for inputs (N, inputs)."""
-        *hidden, (weights, bias) = self.layers
-        for inner, inner_bias in hidden:
-            inputs = inputs @ inner
-            inputs += inner_bias
-            np.maximum(inputs, np.float32(0), out=inputs)
-        return inputs @ weights + bias
+MODEL: Final = "places"
+FILE: Final = "places.npz"
+# Outputs of each network, and how many layers it has.
+_OUTPUTS: Final = {"presence": (1, 2), "place": (2, 3), "doubt": (2, 2)}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,18 +49,55 @@ class PlaceModel:
         doubt: to the logarithms of the offset's standard deviations [m].
     """
 
-    presence: Network
-    place: Network
-    doubt: Network
+    presence: DenseNetwork
+    place: DenseNetwork
+    doubt: DenseNetwork
 
     def look(self, patches: Map, distance_m: NDArray[np.float64]) -> Sightings:
         """Tell what patches (N, PATCH) at distances (N,) show."""
         inputs = with_distance(patches, distance_m)
         return Sightings(
-            evidence=self.presence.tell(inputs)[:, 0],
-            offset_m=self.place.tell(inputs),
-            deviation_m=np.exp(self.doubt.tell(inputs)),
+            evidence=self.presence.predict(inputs)[:, 0],
+            offset_m=self.place.predict(inputs),
+            deviation_m=np.exp(self.doubt.predict(inputs)),
         )
+
+    def save(self, path: Path, view: PanoramaView, about: Mapping[str, str]) -> None:
+        """Write the networks, which hold for the camera of this view."""
+        arrays = {
+            f"{name}.{number}.{part}": array
+            for name in _OUTPUTS
+            for number, layer in enumerate(getattr(self, name).layers)
+            for part, array in zip(("weights", "bias"), layer, strict=True)
+        }
+        WeightsArchive(arrays, about, asdict(view)).save(path)
+
+
+def load_places(path: Path = SHIPPED / FILE) -> tuple[PlaceModel, PanoramaView]:
+    """Read and check a model, and the camera for which it holds.
+
+    Raises:
+        BadInput: a file that is missing or is no such model.
+    """
+    specs = {name: _specs(name, *sizes) for name, sizes in _OUTPUTS.items()}
+    together = {key: spec for each in specs.values() for key, spec in each.items()}
+    archive = WeightsArchive.load(path, MODEL, together, PanoramaView.of_plain)
+    found = {name: [archive.arrays[key] for key in each] for name, each in specs.items()}
+    networks = {
+        name: DenseNetwork(list(zip(arrays[::2], arrays[1::2], strict=True)))
+        for name, arrays in found.items()
+    }
+    return PlaceModel(**networks), archive.camera
+
+
+def _specs(name: str, outputs: int, layers: int) -> dict[str, ArraySpec]:
+    """Return what the arrays of a network must be, weights and bias of layer after layer."""
+    widths: list[int | str] = [INPUTS, *(f"{name} {number}" for number in range(1, layers)), outputs]
+    return {
+        f"{name}.{k}.{part}": ArraySpec((widths[k], widths[k + 1])[begin:])
+        for k in range(layers)
+        for part, begin in (("weights", 0), ("bias", 1))
+    }
 
 
 def with_distance(patches: Map, distance_m: NDArray[np.float64]) -> Map:

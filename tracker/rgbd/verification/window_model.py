@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import cv2
 import numpy as np
 
-from peopleboy.bad_input import BadInput
+from peopleboy.tracker.networks.weights_archive import SHIPPED, ArraySpec, WeightsArchive
 from peopleboy.tracker.rgbd.depth_view import Depth
 from peopleboy.tracker.rgbd.verification.windows import (
     SIZES,
@@ -23,22 +22,17 @@ from peopleboy.tracker.rgbd.verification.windows import (
     features,
 )
 from peopleboy.tracker.track import Box
-from peopleboy.tracker.weights_archive import opened_archive
 
-COMMAND: Final = "peopleboy train-windows"
-WEIGHTS: Final = Path(__file__).parent / "weights"
-"""Where the models are that come with the tracker."""
-
-_ABOUT: Final = "about"
+MODEL: Final = "windows"
 
 
 def file_name(*, sees_depth: bool) -> str:
-    """Name the file of a model."""
-    return "colour_and_depth.npz" if sees_depth else "colour.npz"
+    """Return the name of the file of a model."""
+    return "windows-colour-and-depth.npz" if sees_depth else "windows-colour.npz"
 
 
 def feature_length(kind: Range) -> int:
-    """Tell how many numbers describe a window of one image: 36 for each block of 2 x 2 cells of 8 px."""
+    """Return how many numbers describe a window of one image: 36 for each block of 2 x 2 cells of 8 px."""
     width, height = SIZES[kind]
     return (width // 8 - 1) * (height // 8 - 1) * 36
 
@@ -82,43 +76,26 @@ class WindowModel:
         return float(features @ weights[:-1] + weights[-1])
 
     def save(self, path: Path) -> None:
-        """Write a NumPy archive without pickles."""
-        content: dict[str, Any] = {str(kind): weights for kind, weights in self.weights.items()}
-        content[_ABOUT] = np.array(json.dumps(dict(self.about)))
-        with path.open("wb") as file:
-            np.savez_compressed(file, **content)
+        """Write the machines."""
+        WeightsArchive({str(kind): weights for kind, weights in self.weights.items()}, self.about).save(path)
 
     @classmethod
-    def load(cls, path: Path) -> WindowModel:
-        """Read a model.
+    def load(cls, path: Path, *, sees_depth: bool) -> WindowModel:
+        """Read machines for colour alone, or for colour and depth.
 
         Raises:
             BadInput: a file that is missing, is none, or holds machines for other windows.
         """
-        with opened_archive(path, COMMAND) as archive:
-            about = json.loads(str(archive[_ABOUT]))
-            weights = {kind: np.asarray(archive[str(kind)]) for kind in Range}
-        model = cls(weights, about)
-        for kind, found in weights.items():
-            _check(found, kind, path, images=1 + model.sees_depth)
-        return model
-
-
-def _check(weights: Features, kind: Range, path: Path, *, images: int) -> None:
-    count, (width, height) = feature_length(kind), SIZES[kind]
-    shape = (images * count + 1,)
-    if weights.dtype != np.float32 or weights.shape != shape or not np.isfinite(weights).all():
-        raise BadInput(
-            f"{kind}: the machine of a {width} x {height} window has {count + 1} finite float32, or "
-            f"{2 * count + 1} with depth, got {weights.shape} {weights.dtype}; `{COMMAND}` makes one",
-            file=str(path),
-        )
+        images = 1 + sees_depth
+        specs = {str(kind): ArraySpec((images * feature_length(kind) + 1,)) for kind in Range}
+        archive = WeightsArchive.load(path, MODEL, specs)
+        return cls({kind: archive.arrays[str(kind)] for kind in Range}, archive.about)
 
 
 @lru_cache(maxsize=2)
 def shipped_windows(*, sees_depth: bool) -> WindowModel:
     """Read the model that comes with the tracker, for colour alone or with depth."""
-    return WindowModel.load(WEIGHTS / file_name(sees_depth=sees_depth))
+    return WindowModel.load(SHIPPED / file_name(sees_depth=sees_depth), sees_depth=sees_depth)
 
 
 def people_detector() -> WindowModel:

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from docs.generate.pictures.paper import panels, show
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
-from peopleboy.studies.training.people_learning.people_film import PeopleFilm, film_upright
-from peopleboy.tracker.proposals.channels import BESIDE, FIRST_DIRECTION, GRADIENT, MOTION, OVER
-from peopleboy.tracker.proposals.detector import SMALLEST_PX, PeopleDetector
-from peopleboy.tracker.proposals.pyramid import levels
-from peopleboy.tracker.proposals.suppression import NOBODY
+from peopleboy.studies.training.detector.sequences import ThermalSequence, render_thermal
+from peopleboy.tracker.detector.channels import BESIDE, FIRST_DIRECTION, GRADIENT, MOTION, OVER
+from peopleboy.tracker.detector.detections import NO_DETECTIONS
+from peopleboy.tracker.detector.detector import SMALLEST_PX, PeopleDetector
+from peopleboy.tracker.detector.pyramid import pyramid_levels
 
 WORLDS = (3, 24, 28)
 """Seeds of worlds; of each that image is shown in which most people are plain to see."""
@@ -32,22 +32,24 @@ def proposals() -> Figure:
         3,
     )
     for seed, channel, panel, below in zip(WORLDS, _CHANNELS, axes[:3], axes[3:], strict=True):
-        film = film_upright(random_scenario(seed), seed)
+        film = render_thermal(random_scenario(seed), seed)
         _found(panel, film, k := _plainest(film))
         if seed == WORLDS[0]:
-            cells = next(levels(film.grey[k], film.change[k], None, SMALLEST_PX)).cells
+            cells = next(pyramid_levels(film.grey[k], film.change[k], None, SMALLEST_PX)).cells
         _channel(below, cells, channel)
     return figure
 
 
-def _plainest(film: PeopleFilm) -> int:
+def _plainest(film: ThermalSequence) -> int:
     plain = film.is_upright & (film.visible > 0.8) & (film.box[:, 3] > SMALLEST_PX)
     return int(np.bincount(film.image[plain], minlength=len(film.grey)).argmax())
 
 
-def _found(panel: Axes, film: PeopleFilm, k: int) -> None:
+def _found(panel: Axes, film: ThermalSequence, k: int) -> None:
     show(panel, film.grey[k] // _STEP * _STEP)
-    found = PeopleDetector().found(film.grey[k], film.change[k], film.seen_by(), NOBODY, everywhere=True)
+    found = PeopleDetector().detect(
+        film.grey[k], film.change[k], film.camera_mount(), NO_DETECTIONS, everywhere=True
+    )
     for (left, top, width, height), score in zip(found.box.tolist(), found.score.tolist(), strict=True):
         panel.add_patch(Rectangle((left, top), width, height, fill=False, edgecolor="tab:orange", lw=1.5))
         panel.text(left, max(top - 2.0, 12.0), f"{score:.1f}", color="tab:orange", fontsize=8)

@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from peopleboy.bad_input import BadInput
+from peopleboy.studies.training.occlusion import boost
 from peopleboy.tracker.contour.contour_config import DepthConfig
-from peopleboy.tracker.contour.occlusion.boosting import train
 from peopleboy.tracker.contour.occlusion.learned_order import LearnedOrder, make_order, shipped_order
 from peopleboy.tracker.contour.occlusion.learned_table import TABLES, LearnedTable, WeakClassifier
 from peopleboy.tracker.contour.occlusion.pair_features import FEATURES
@@ -56,7 +56,7 @@ def test_boosted_pairs_find_an_order_that_no_single_feature_tells():
     unseen, truth = made_examples(300, 1)
     right = {}
     for most in (1, 2):
-        lead = LearnedOrder.build(train(features, is_front, most=most)).lead(unseen)
+        lead = LearnedOrder.build(boost(features, is_front, most=most)).lead(unseen)
         right[most] = ((lead > 0) == truth).mean()
     assert right[2] > 0.95
     assert right[1] < right[2]
@@ -67,7 +67,7 @@ def test_the_table_votes_as_the_boosted_classifier_that_it_was_made_from():
     from sklearn.tree import DecisionTreeClassifier
 
     features, is_front = made_examples(200, 2)
-    table = train(features, is_front, rounds=15)
+    table = boost(features, is_front, rounds=15)
     scaled = features / features.std(axis=0)
     reference = AdaBoostClassifier(DecisionTreeClassifier(max_depth=1), n_estimators=15, random_state=0)
     reference.fit(scaled @ weighted_sums(6, 2).T, is_front)
@@ -77,14 +77,14 @@ def test_the_table_votes_as_the_boosted_classifier_that_it_was_made_from():
 
 def test_learning_uses_only_the_features_it_is_given():
     features, is_front = made_examples(100, 3)
-    table = train(features, is_front, uses=("strength", "top", "bottom"))
+    table = boost(features, is_front, uses=("strength", "top", "bottom"))
     used = {name for weak in table.classifiers for name in weak.weights}
     assert used <= {"strength", "top", "bottom"}
 
 
 def test_examples_without_any_difference_are_refused():
-    with pytest.raises(BadInput, match="tells nothing"):
-        train(np.zeros((10, 6)), np.arange(10) < 5)
+    with pytest.raises(BadInput, match="nothing to train on"):
+        boost(np.zeros((10, 6)), np.arange(10) < 5)
 
 
 def test_a_table_survives_its_file(tmp_path):

@@ -8,11 +8,10 @@ import yaml
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.studies.training.foreground_learning.judge_masks import Judgement, judge
-from peopleboy.studies.training.foreground_learning.masked_film import film_people
-from peopleboy.studies.training.foreground_learning.play_films import watch
+from peopleboy.studies.training.foreground import MaskScores, score_masks, segment
+from peopleboy.studies.training.panorama_sequences import render_panoramas
 from peopleboy.tracker.frame import Odometry
-from peopleboy.tracker.panoramic.foreground.foreground import Foreground, shipped_model
+from peopleboy.tracker.panoramic.foreground.foreground import Foreground, shipped_foreground
 from tests.helpers.calls.refused import refused
 
 ROOM = {
@@ -33,7 +32,7 @@ def filmed(folder, **robot):
     path = folder / "two_walk.yaml"
     path.write_text(yaml.safe_dump(ROOM | {"robot": ROOM["robot"] | robot}), encoding="utf-8")
     scenario = load_scenario(path)
-    return film_people(scenario, 0), calibrations_of(scenario.world(0).robot.cameras)["panorama"]
+    return render_panoramas(scenario, 0), calibrations_of(scenario.world(0).robot.cameras)["panorama"]
 
 
 @pytest.fixture(scope="module")
@@ -51,8 +50,8 @@ def driving(tmp_path_factory):
 def test_people_are_told_from_background(robot, request):
     film, calibration = request.getfixturevalue(robot)
     assert film.is_driven == (robot == "driving")
-    judgement = Judgement()
-    judge(film, watch(film, shipped_model(), calibration), judgement)
+    judgement = MaskScores()
+    score_masks(film, segment(film, shipped_foreground(), calibration), judgement)
     assert np.mean(judgement.found) > 0.9
     assert np.median(np.abs(judgement.foot_px)) <= 1.0
     assert np.mean(np.abs(judgement.column_px)) < 1.0
@@ -72,7 +71,7 @@ def test_images_rolled_by_whole_squares_give_the_same_answers_rolled(standing):
 
 def test_the_same_images_give_the_same_answers(driving):
     film, calibration = driving
-    one, two = (list(watch(film, shipped_model(), calibration)) for _ in range(2))
+    one, two = (list(segment(film, shipped_foreground(), calibration)) for _ in range(2))
     assert np.array_equal(one, two)
     assert one[0].shape == (120, 480)
     assert one[0].dtype == np.float32
@@ -105,10 +104,10 @@ def test_people_are_new_and_the_background_lacks_them(standing):
     eyes = Foreground()
     for k, image in enumerate(film.images):
         eyes.update(image, float(film.time_s[k]), film.odometry(k), calibration)
-    people = film.who[-1] > 0
+    people = film.person[-1] > 0
     assert eyes.novelty[people].mean() > 5 * eyes.novelty[~people].mean()
     # Where somebody is now, it shows what was seen there before anybody came.
-    came = people & (film.who[0] == 0)
+    came = people & (film.person[0] == 0)
     empty = film.images[0][came].astype(float)
     assert np.abs(eyes.background[came] - empty).mean() < 0.3 * np.abs(film.images[-1][came] - empty).mean()
 

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.panoramic.foreground.layers import BLOCK, DILATIONS
-from peopleboy.tracker.panoramic.foreground.mask_network import INPUTS, OUTPUTS, MaskNetwork
-from peopleboy.tracker.panoramic.foreground.network_file import ForegroundModel
+from peopleboy.tracker.networks.mask_network import BLOCK, DILATIONS, INPUTS, OUTPUTS, MaskNetwork
+from peopleboy.tracker.panoramic.foreground.foreground import ForegroundModel
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView
 from tests.helpers.calls.refused import refused
 
@@ -52,16 +51,16 @@ def by_definition(network, squares):
 
 def test_it_is_what_its_definition_says(network):
     squares = drawn(INPUTS, ROWS, COLUMNS)
-    reported = network.probability(squares)
-    assert reported.dtype == np.float32
-    np.testing.assert_allclose(reported, by_definition(network, squares), atol=1e-5)
+    told = network.predict(squares)
+    assert told.dtype == np.float32
+    np.testing.assert_allclose(told, by_definition(network, squares), atol=1e-5)
 
 
 @pytest.mark.parametrize("columns", [1, 5, 23])
 def test_an_image_rolled_by_whole_squares_gives_the_same_answer_rolled_to_the_bit(network, columns):
     squares = drawn(INPUTS, ROWS, COLUMNS)
-    rolled = network.probability(np.ascontiguousarray(np.roll(squares, columns, axis=2)))
-    assert np.array_equal(rolled, np.roll(network.probability(squares), columns * BLOCK, axis=1))
+    rolled = network.predict(np.ascontiguousarray(np.roll(squares, columns, axis=2)))
+    assert np.array_equal(rolled, np.roll(network.predict(squares), columns * BLOCK, axis=1))
 
 
 def test_a_file_gives_back_what_was_written_and_the_same_bytes_each_time(network, tmp_path):
@@ -80,13 +79,13 @@ def test_a_file_that_is_no_network_is_refused(tmp_path):
     with refused("model.npz"):
         ForegroundModel.load(path)
     path.write_text("no arrays")
-    with refused("model.npz", "no network for panoramas"):
+    with refused("model.npz", "no file of weights"):
         ForegroundModel.load(path)
     np.savez(path, first=np.zeros(3, np.float32))
-    with refused("model.npz", "words"):
+    with refused("model.npz", "no file of weights", "peopleboy train foreground"):
         ForegroundModel.load(path)
-    np.savez(path, words=np.array(["x"], dtype=object))
-    with refused("model.npz", "pickle"):
+    np.savez(path, about=np.array(["x"], dtype=object))
+    with refused("model.npz", "no file of weights"):
         ForegroundModel.load(path)
 
 
@@ -96,9 +95,9 @@ def test_a_damaged_file_is_refused_and_closed(network, tmp_path, kept):
     ForegroundModel(network=network, view=VIEW).save(path)
     whole = path.read_bytes()
     path.write_bytes(whole[: round(kept * len(whole)) if isinstance(kept, float) else kept])
-    with pytest.raises(BadInput, match=r"model\.npz: is no network for panoramas") as caught:
+    with pytest.raises(BadInput, match=r"model\.npz: is no file of weights") as caught:
         ForegroundModel.load(path)
-    assert caught.value.__cause__ is not None  # whose frames still have what they opened
+    assert caught.value.__context__ is not None  # whose frames still have what they opened
     files = [one for one in gc.get_objects() if issubclass(type(one), BufferedReader)]
     assert [one for one in files if one.name == str(path) and not one.closed] == []
 
@@ -106,10 +105,10 @@ def test_a_damaged_file_is_refused_and_closed(network, tmp_path, kept):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"bias": np.full(OUTPUTS, np.nan, np.float32)}, "bias must be (16,) float32 and finite"),
-        ({"first": np.zeros((INPUTS, UNITS))}, "got (96, 12) float64"),
-        ({"rows": np.zeros((ROWS - 1, UNITS), np.float32)}, "rows must be (10, 12)"),
-        ({"rows": np.zeros((ROWS, 5), np.float32)}, "5 units"),
+        ({"bias": np.full(OUTPUTS, np.nan, np.float32)}, "bias must be finite float32 (16,)"),
+        ({"first": np.zeros((INPUTS, UNITS))}, "got float64 (96, 12)"),
+        ({"rows": np.zeros((ROWS - 1, UNITS), np.float32)}, "layers do not fit"),
+        ({"rows": np.zeros((ROWS, 5), np.float32)}, "must be finite float32"),
     ],
 )
 def test_weights_that_do_not_fit_are_refused(network, tmp_path, change, words):

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.frame import Odometry
+from peopleboy.tracker.networks.mask_network import BLOCK
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.foreground.floor_rows import floor_rows
-from peopleboy.tracker.panoramic.foreground.layers import BLOCK
 from peopleboy.tracker.panoramic.foreground.memory import (
     AGE,
     DOUBT,

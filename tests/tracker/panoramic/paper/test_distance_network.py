@@ -1,10 +1,11 @@
 import numpy as np
 import pytest
 
-from peopleboy.tracker.panoramic.paper.distance_network import DistanceNetwork, Lessons, learn_in_order, teach
+from peopleboy.studies.training.distance import Backpropagation, fit_distances, run_epoch
+from peopleboy.tracker.panoramic.paper.distance_network import DistanceNetwork
 from tests.helpers.calls.refused import refused
 
-QUICK = Lessons(epochs=300)
+QUICK = Backpropagation(epochs=300)
 
 
 def examples(count=120, seed=0):
@@ -30,37 +31,38 @@ def test_a_step_goes_down_the_gradient_of_half_the_squared_error_taken_by_differ
 
     weights = np.concatenate([hidden.ravel(), output])
     gradient = [(loss(weights + h) - loss(weights - h)) / 2e-5 for h in 1e-5 * np.eye(21)]
-    learn_in_order(inputs[None], np.array([target]), np.array([0]), hidden, output, 0.3)
+    run_epoch(inputs[None], np.array([target]), np.array([0]), hidden, output, 0.3)
     changed = np.concatenate([hidden.ravel(), output]) - weights
     np.testing.assert_allclose(changed, -0.3 * np.array(gradient), rtol=1e-5, atol=1e-10)
 
 
 def test_it_has_21_weights():
-    network = teach(*examples(), np.random.default_rng(0), Lessons(epochs=1))
+    network = fit_distances(*examples(), np.random.default_rng(0), Backpropagation(epochs=1))
     assert network.hidden.size + network.output.size == 21
 
 
 def test_its_answer_is_the_textbooks():
     cues, distances = examples()
-    network = teach(cues, distances, np.random.default_rng(0), QUICK)
+    network = fit_distances(cues, distances, np.random.default_rng(0), QUICK)
     low, high = cues.min(axis=0), cues.max(axis=0)
     reported = [forward([*(row - low) / (high - low), 1.0], network.hidden, network.output) for row in cues]
     nearest, farthest = distances.min(), distances.max()
     expected = nearest + (np.array(reported) - 0.1) / 0.8 * (farthest - nearest)
-    np.testing.assert_allclose(network.distance(cues), expected)
+    np.testing.assert_allclose(network.predict(cues), expected)
 
 
 def test_it_learns_distances_of_people_whom_it_was_not_taught():
-    network = teach(*examples(), np.random.default_rng(0))
+    network = fit_distances(*examples(), np.random.default_rng(0))
     cues, distances = examples(seed=1)
-    assert np.abs(network.distance(cues) - distances).mean() < 0.1
+    assert np.abs(network.predict(cues) - distances).mean() < 0.1
 
 
 def test_more_epochs_fit_the_examples_better():
     cues, distances = examples()
     errors = [
         np.abs(
-            teach(cues, distances, np.random.default_rng(0), Lessons(epochs=n)).distance(cues) - distances
+            fit_distances(cues, distances, np.random.default_rng(0), Backpropagation(epochs=n)).predict(cues)
+            - distances
         ).mean()
         for n in (10, 100, 2000)
     ]
@@ -68,7 +70,7 @@ def test_more_epochs_fit_the_examples_better():
 
 
 def test_the_same_seed_gives_the_same_weights_and_another_gives_others():
-    one, same, other = (teach(*examples(), np.random.default_rng(seed), QUICK) for seed in (4, 4, 5))
+    one, same, other = (fit_distances(*examples(), np.random.default_rng(seed), QUICK) for seed in (4, 4, 5))
     assert np.array_equal(one.hidden, same.hidden)
     assert np.array_equal(one.output, same.output)
     assert not np.array_equal(one.hidden, other.hidden)
@@ -81,13 +83,13 @@ def test_the_middle_output_stands_for_the_middle_distance():
         cue_ranges=np.array([[0.0, 1.0]] * 3),
         distance_range_m=(1.0, 5.0),
     )
-    assert still.distance(np.array([[3.0, 2.0, 9.0]])) == pytest.approx([3.0])
+    assert still.predict(np.array([[3.0, 2.0, 9.0]])) == pytest.approx([3.0])
 
 
 def test_next_to_no_examples_and_examples_that_are_all_alike_are_refused():
     cues, distances = examples()
-    with refused("9 examples", "at least 10"):
-        teach(cues[:9], distances[:9], np.random.default_rng(0))
+    with refused("9 samples", "at least 10"):
+        fit_distances(cues[:9], distances[:9], np.random.default_rng(0))
     for alike in ((cues, np.full(120, 2.0)), (np.ones((120, 3)), distances)):
         with refused("all are alike"):
-            teach(*alike, np.random.default_rng(0))
+            fit_distances(*alike, np.random.default_rng(0))

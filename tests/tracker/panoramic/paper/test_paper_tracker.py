@@ -1,15 +1,15 @@
-import json
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from peopleboy.studies.training.distance import Backpropagation, fit_distances
+from peopleboy.tracker.networks.weights_archive import WeightsArchive
 from peopleboy.tracker.panoramic.panorama_view import view_of
-from peopleboy.tracker.panoramic.paper import appearance_file
-from peopleboy.tracker.panoramic.paper.appearance_file import AppearanceModel
+from peopleboy.tracker.panoramic.paper import distance_network
 from peopleboy.tracker.panoramic.paper.depth_cues import measure
-from peopleboy.tracker.panoramic.paper.distance_network import Lessons, teach
+from peopleboy.tracker.panoramic.paper.distance_network import DistanceModel, shipped_models
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig, PanoramicPaperTracker
 from peopleboy.tracker.panoramic.paper.position_filter import PRINTED
 from peopleboy.tracker.track import Status
@@ -31,8 +31,8 @@ def model():
     rng = np.random.default_rng(0)
     distances = rng.uniform(1.2, 6.0, 200)
     cues = np.array([measure(person_mask(d, rng.uniform(-3.1, 3.1))).cues for d in distances])
-    return AppearanceModel(
-        network=teach(cues, distances, rng, Lessons(epochs=1000)),
+    return DistanceModel(
+        network=fit_distances(cues, distances, rng, Backpropagation(epochs=1000)),
         view=view_of(DrawnMirror(), WIDTH, HEIGHT),
         noise=PRINTED,
         about={"trained on": "drawn people"},
@@ -119,57 +119,59 @@ def test_it_explains_what_it_saw(model):
     walker = Walker(model).learn()
     assert walker.tracker.explanation is None
     walker.see(3.0, 0.0)
-    reported = walker.tracker.explanation
-    assert np.array_equal(reported.silhouette.sum(axis=0), reported.figure.columns)
-    assert reported.distance_m == pytest.approx(model.network.distance(np.array([reported.figure.cues]))[0])
-    assert reported.background.mean.shape == (HEIGHT, WIDTH, 3)
+    told = walker.tracker.explanation
+    assert np.array_equal(told.silhouette.sum(axis=0), told.figure.columns)
+    assert told.distance_m == pytest.approx(model.network.predict(np.array([told.figure.cues]))[0])
+    assert told.background.mean.shape == (HEIGHT, WIDTH, 3)
     walker.see()
     assert walker.tracker.explanation.figure is None
 
 
 def test_a_file_gives_the_same_model_to_the_last_digit(model, tmp_path):
-    model.save(tmp_path / "a.json")
-    loaded = AppearanceModel.load(tmp_path / "a.json")
-    loaded.save(tmp_path / "b.json")
-    assert (tmp_path / "a.json").read_bytes() == (tmp_path / "b.json").read_bytes()
+    model.save(tmp_path / "a.npz")
+    loaded = DistanceModel.load(tmp_path / "a.npz")
+    loaded.save(tmp_path / "b.npz")
+    assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
     cues = np.array([[20.0, 30.0, 900.0]])
-    assert loaded.network.distance(cues) == model.network.distance(cues)
+    assert loaded.network.predict(cues) == model.network.predict(cues)
     assert loaded.view == model.view
     assert loaded.about == model.about
 
 
 BROKEN = {
-    "hidden": ([[1.0] * 3] * 4, "hidden.0"),
-    "output": ([1.0] * 4, "5 weights"),
-    "cue_ranges": ([[0, 1], [0, 1], [2, 1]], "less to more"),
-    "distance_range_m": (["near", 5.0], "distance_range_m"),
-    "camera": ({"width_px": 480}, "camera.height_px"),
-    "epochs": (3, "epochs"),
+    "hidden": (np.ones((4, 3)), "hidden must be finite float64 (units, 4)"),
+    "output": (np.ones(4), "one weight more than hidden"),
+    "cue_ranges": (np.array([[0, 1], [0, 1], [2.0, 1]]), "less to more"),
+    "distance_range_m": (np.array([np.nan, 5.0]), "distance_range_m"),
 }
 
 
 @pytest.mark.parametrize("key", BROKEN)
 def test_a_file_with_something_wrong_is_refused_by_its_name_and_what_it_is(model, tmp_path, key):
-    path = tmp_path / "model.json"
-    model.save(path)
+    path = tmp_path / "model.npz"
     value, clue = BROKEN[key]
-    path.write_text(json.dumps(json.loads(path.read_text()) | {key: value}))
-    with refused(path, clue.replace("hidden.0", "hidden[0]")):
-        AppearanceModel.load(path)
+    model.save(path)
+    with np.load(path) as archive:
+        arrays = {name: archive[name] for name in archive}
+    np.savez(path, **(arrays | {key: value}))
+    with refused(path, clue):
+        DistanceModel.load(path)
 
 
-@pytest.mark.parametrize("content", ["", "{", "[]", '{"output": [NaN]}'])
-def test_what_is_no_model_is_refused(tmp_path, content):
-    (tmp_path / "model.json").write_text(content)
-    with refused(tmp_path / "model.json"):
-        AppearanceModel.load(tmp_path / "model.json")
+def test_a_camera_that_is_none_is_refused(model, tmp_path):
+    model.save(tmp_path / "model.npz")
+    with np.load(tmp_path / "model.npz") as archive:
+        arrays = {name: archive[name] for name in archive if name not in ("about", "camera")}
+    WeightsArchive(arrays, camera={"width_px": 480}).save(tmp_path / "model.npz")
+    with refused(tmp_path / "model.npz", "no file of weights", "peopleboy train distance"):
+        DistanceModel.load(tmp_path / "model.npz")
 
 
 def test_a_missing_file_and_a_tracker_without_one_name_the_command_that_makes_one(tmp_path, monkeypatch):
-    with refused(tmp_path / "none.json", "peopleboy train-distance"):
-        AppearanceModel.load(tmp_path / "none.json")
-    monkeypatch.setattr(appearance_file, "NETWORKS", tmp_path / "none")
-    with refused("panoramic-paper", "none", "peopleboy train-distance --ship"):
+    with refused(tmp_path / "none.npz", "peopleboy train distance"):
+        DistanceModel.load(tmp_path / "none.npz")
+    monkeypatch.setattr(distance_network, "shipped_models", lambda: shipped_models(tmp_path / "none"))
+    with refused("panoramic-paper", "none", "peopleboy train distance --ship"):
         make_tracker("panoramic-paper", np.random.default_rng(0))
 
 
@@ -181,7 +183,7 @@ def test_images_of_another_size_are_refused(model):
 def test_images_of_another_mirror_are_refused(model):
     image = np.zeros((HEIGHT, WIDTH, 3), np.uint8)
     other = {"panorama": DrawnMirror(lowest_deg=35.0)}
-    with refused("8.0 to 35.0 deg", "8.0 to 55.0 deg", "peopleboy train-distance"):
+    with refused("8.0 to 35.0 deg", "8.0 to 55.0 deg", "peopleboy train distance"):
         PanoramicPaperTracker([model]).update(replace(frame(0.0, image), calibrations=other))
 
 

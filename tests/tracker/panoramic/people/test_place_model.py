@@ -1,13 +1,18 @@
-from dataclasses import replace
+from dataclasses import asdict, replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from peopleboy.tracker.networks.inference import DenseNetwork
+from peopleboy.tracker.networks.weights_archive import WeightsArchive
 from peopleboy.tracker.panoramic.people.figure_patch import PATCH
-from peopleboy.tracker.panoramic.people.place_file import OUTPUTS, SHIPPED, load_places, save_places
-from peopleboy.tracker.panoramic.people.place_model import INPUTS, Network, PlaceModel, with_distance
-from peopleboy.tracker.panoramic.weights_file import Weights
+from peopleboy.tracker.panoramic.people.place_model import (
+    INPUTS,
+    PlaceModel,
+    load_places,
+    with_distance,
+)
 from peopleboy.tracker.trackers import make_tracker
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.cardboard import CAMERA, VIEW
@@ -16,7 +21,7 @@ from tests.helpers.images.cardboard import CAMERA, VIEW
 def network(seed, outputs, units=(7,)):
     rng = np.random.default_rng(seed)
     widths = [INPUTS, *units, outputs]
-    return Network(
+    return DenseNetwork(
         [
             (rng.normal(0, 0.1, (here, there)).astype(np.float32), rng.normal(0, 1, there).astype(np.float32))
             for here, there in pairwise(widths)
@@ -24,6 +29,7 @@ def network(seed, outputs, units=(7,)):
     )
 
 
+OUTPUTS = ("presence", "place", "doubt")
 MODEL = PlaceModel(presence=network(1, 1), place=network(2, 2, (9, 4)), doubt=network(3, 2))
 
 
@@ -34,7 +40,7 @@ def patches(number):
 
 def test_a_network_is_sums_cut_off_below_zero_between_its_layers():
     inputs = np.random.default_rng(0).normal(0, 1, (5, INPUTS)).astype(np.float32)
-    for reported, row in zip(MODEL.place.tell(inputs), inputs.astype(float), strict=True):
+    for reported, row in zip(MODEL.place.predict(inputs), inputs.astype(float), strict=True):
         units = row
         for number, (weights, bias) in enumerate(MODEL.place.layers):
             if number:
@@ -66,7 +72,7 @@ def test_distances_are_told_by_their_inverse_and_as_a_share():
 
 def test_a_file_gives_back_what_was_written_and_the_same_bytes_each_time(tmp_path):
     for name in ("a.npz", "b.npz"):
-        save_places(tmp_path / name, MODEL, VIEW, {"trained on": "drawn numbers"})
+        MODEL.save(tmp_path / name, VIEW, {"trained on": "drawn numbers"})
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
     read, view = load_places(tmp_path / "a.npz")
     assert view == VIEW
@@ -103,15 +109,15 @@ def arrays():
 )
 def test_layers_that_do_not_fit_are_refused(tmp_path, change, words):
     changed = {name: array for name, array in (arrays() | change).items() if array is not None}
-    Weights(changed, VIEW).save(tmp_path / "places.npz")
+    WeightsArchive(changed, camera=asdict(VIEW)).save(tmp_path / "places.npz")
     with refused("places.npz", words):
         load_places(tmp_path / "places.npz")
 
 
 def test_what_comes_with_the_tracker_holds_for_the_usual_mirror():
-    model, view = load_places(SHIPPED)
+    model, view = load_places()
     assert view.refusal(VIEW) == ""
     assert view.refusal(replace(VIEW, centre_m=1.5))
-    assert [getattr(model, name).layers[-1][1].size for name in OUTPUTS] == list(OUTPUTS.values())
+    assert [getattr(model, name).layers[-1][1].size for name in OUTPUTS] == [1, 2, 2]
     for name in ("panoramic", "handover"):
         make_tracker(name, np.random.default_rng(0)).check_cameras({"panorama": CAMERA})

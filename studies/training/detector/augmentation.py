@@ -1,0 +1,283 @@
+"""Augmentation of thermal images: mirrored, cropped, of other cameras, with other spans of greys."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.sim.cameras.imaging.electronics import compress
+from peopleboy.studies.training.detector.sequences import HIGHEST, ThermalImage
+from peopleboy.tracker.camera_mount import Mount
+from peopleboy.tracker.detector.window import WindowKind
+
+Grey = NDArray[np.uint8]
+Draw = np.random.Generator
+
+# Shares of images, unless something else is said.
+_SPANNED: Final = 0.5
+_NEGATED: Final = 0.15  # a camera that shows what is hot black, or people colder than all else
+_FAINT: Final = 0.15  # something hotter and something colder take most of the greys
+_SOFT: Final = 0.3
+_CROPPED: Final = 0.3
+_CROPPED_AT_THE_FEET: Final = 0.7  # of those; others at the head
+_MOST_CROPPED: Final = 0.4  # of the height
+_FEWEST_ROWS: Final = 60
+_TALL_PX: Final = 36.0  # least height of a person at whom an image is cropped
+_MOST_BLACK: Final = 0.97
+_LEAST_SPAN: Final = 60.0  # [grey]
+_GAINS: Final = (0.6, 1.6)
+_BLURS_PX: Final = (0.4, 1.6)
+_MOST_NOISE: Final = 4.0  # [grey]
+_CURVES: Final = (-0.6, 0.6)  # logarithm of the power
+_FAINT_GAINS: Final = (0.15, 0.6)
+
+
+def augment(image: ThermalImage, rng: Draw) -> ThermalImage:
+    """Return an image as it is or otherwise: mirrored, cropped, and with other greys."""
+    image = mirror(image) if rng.random() < 0.5 else image
+    if rng.random() < _CROPPED:
+        image = crop(image, rng)
+    return recolour(image, rng)
+
+
+def mirror(image: ThermalImage) -> ThermalImage:
+    """Swap left and right."""
+    box = image.box.copy()
+    box[:, 0] = image.grey.shape[1] - 1.0 - (box[:, 0] + box[:, 2])
+    grey, change = (np.ascontiguousarray(one[:, ::-1]) for one in (image.grey, image.change))
+    return replace(image, grey=grey, change=change, box=box)
+
+
+def recolour(image: ThermalImage, rng: Draw) -> ThermalImage:
+    """Return an image as it is or with other greys: negated, of a poorer camera, in another span, faint."""
+    if rng.random() < _NEGATED:
+        image = replace(image, grey=255 - image.grey)
+    if rng.random() < _SOFT:
+        image = soften(image, rng)
+    if rng.random() < _SPANNED:
+        return change_span(image, rng)
+    return _fade(image, rng) if rng.random() < _FAINT else image
+
+
+def soften(image: ThermalImage, rng: Draw) -> ThermalImage:
+    """Simulate a camera with poorer optics, more noise, and another curve of greys."""
+    blur, noise = rng.uniform(*_BLURS_PX), rng.uniform(0.0, _MOST_NOISE)
+    curve = 255.0 * (np.arange(256.0) / 255.0) ** math.exp(rng.uniform(*_CURVES))
+    soft = cv2.GaussianBlur(curve[image.grey], (0, 0), blur) + rng.normal(0.0, noise, image.grey.shape)
+    change = cv2.GaussianBlur(image.change.astype(np.float64), (0, 0), blur)
+    return replace(image, grey=_to_grey(soft), change=np.rint(change).astype(np.uint8))
+
+
+def change_span(image: ThermalImage, rng: Draw) -> ThermalImage:
+    """Simulate a camera of another span: what is colder than that is black, hotter white."""
+    coldest = np.quantile(image.grey[::4, ::4], rng.uniform(0.0, _MOST_BLACK))
+    gain = rng.uniform(*_GAINS) * 255.0 / max(255.0 - coldest, _LEAST_SPAN)
+    grey = np.clip((image.grey - coldest) * gain, 0.0, 255.0)
+    # What was and is beyond the span does not change; of what came from there, a part is missing.
+    was_black = image.grey.astype(np.float64) + image.change <= coldest
+    change = np.where(was_black, 0.0, np.clip(image.change * gain, 0.0, 255.0))
+    return replace(image, grey=grey.astype(np.uint8), change=change.astype(np.uint8))
+
+
+def _fade(image: ThermalImage, rng: Draw) -> ThermalImage:
+    """Reduce contrast, as where something is much hotter or colder than all the rest."""
+    gain = rng.uniform(*_FAINT_GAINS)
+    grey = 255.0 * rng.uniform(0.0, 1.0 - gain) + gain * image.grey
+    return replace(image, grey=_to_grey(grey), change=np.rint(gain * image.change).astype(np.uint8))
+
+
+def _to_grey(values: NDArray[np.floating]) -> Grey:
+    return np.asarray(np.rint(np.clip(values, 0.0, 255.0)), np.uint8)
+
+
+def crop(image: ThermalImage, rng: Draw) -> ThermalImage:
+    """Crop an image at a person's feet or head, so that some of that person is outside."""
+    top, bottom = image.box[:, 1], image.box[:, 1] + image.box[:, 3]
+    tall = np.flatnonzero(image.is_good & (image.box[:, 3] > _TALL_PX))
+    if not len(tall):
+        return image
+    one = int(rng.choice(tall))
+    if rng.random() < _CROPPED_AT_THE_FEET:
+        end = bottom[one] - rng.uniform(0.0, _MOST_CROPPED) * image.box[one, 3]
+        return take_rows(image, 0, end, _FEWEST_ROWS)
+    first = top[one] + rng.uniform(0.0, HIGHEST) * image.box[one, 3]
+    return take_rows(image, first, len(image.grey), _FEWEST_ROWS)
+
+
+def take_rows(image: ThermalImage, first: float, end: float, fewest: int) -> ThermalImage:
+    """Return some rows of an image; all of it, if those are fewer than so many."""
+    begin, stop = max(round(first), 0), min(round(end), len(image.grey))
+    if stop - begin < fewest:
+        return image
+    top, bottom = image.box[:, 1], image.box[:, 1] + image.box[:, 3]
+    shown = np.minimum(bottom, stop) - np.maximum(top, begin)
+    is_left = shown > 0.0
+    is_good = (
+        image.is_good
+        & (shown >= (1.0 - _MOST_CROPPED) * image.box[:, 3])
+        & (begin - top <= HIGHEST * image.box[:, 3])
+    )
+    return ThermalImage(
+        grey=image.grey[begin:stop],
+        change=image.change[begin:stop],
+        mount=replace(image.mount, horizon_px=image.mount.horizon_px - begin),
+        box=(image.box - np.array([0.0, begin, 0.0, 0.0]))[is_left],
+        is_good=is_good[is_left],
+        is_clear=image.is_clear[is_left],
+    )
+
+
+# Images that cut people off: near ones of whom a camera shows legs, or a face and shoulders.
+
+_UNCUT: Final = 0.2
+_CUT_AT_THE_FEET: Final = 0.4  # of the others; likewise at the head, and the rest at both
+_CUT_AT_THE_HEAD: Final = 0.4
+_CUT_TALL_PX: Final = 60.0  # least height of a person that is cut off
+_CUT_FEWEST_ROWS: Final = 40
+_ABOVE: Final = (0.15, 0.65)  # shares of the height
+_BELOW: Final = (0.3, 0.65)
+_BOTH: Final = (0.2, 0.4)
+_LEAST_ABOVE: Final = 0.2  # share of a person that is above the image, or
+_LEAST_BELOW: Final = 0.35  # below, for windows of people that are cut off
+_MOST_BEYOND: Final = 0.66
+_MOST_ASIDE: Final = 0.5  # of the width
+
+
+def augment_for(image: ThermalImage, rng: Draw, kind: WindowKind) -> ThermalImage:
+    """Augment an image for windows of a kind; people that are good in it are positives of that kind."""
+    if kind is WindowKind.WHOLE:
+        return augment(image, rng)
+    side = mirror(image) if rng.random() < 0.5 else image
+    if rng.random() >= _UNCUT:
+        side = cut_off(side, rng)
+    return recolour(replace(side, is_good=is_cut_off(side)), rng)
+
+
+def calibration_pair(image: ThermalImage, rng: Draw, kind: WindowKind) -> tuple[ThermalImage, ThermalImage]:
+    """Return two versions of an image, by which scores of windows of a kind are calibrated."""
+    if kind is WindowKind.WHOLE:
+        return image, change_span(image, rng)
+    return augment_for(image, rng, kind), augment_for(image, rng, kind)
+
+
+def has_people(image: ThermalImage, kind: WindowKind) -> bool:
+    """Tell whether there are people to train on, for windows of a kind."""
+    return bool((image.is_good if kind is WindowKind.WHOLE else _is_tall(image)).any())
+
+
+def is_cut_off(image: ThermalImage) -> NDArray[np.bool_]:
+    """Tell which people (P,) that are clear are cut off at head or feet, but not nearly all of them."""
+    rows, columns = image.grey.shape
+    left, top, width, height = image.box.T
+    above = np.maximum(-top, 0.0) / height
+    below = np.maximum(top + height - rows, 0.0) / height
+    aside = (np.maximum(-left, 0.0) + np.maximum(left + width - columns, 0.0)) / width
+    is_cut = (above > _LEAST_ABOVE) | (below > _LEAST_BELOW)
+    is_enough = (above + below <= _MOST_BEYOND) & (aside <= _MOST_ASIDE)
+    return np.asarray(image.is_clear & is_cut & is_enough, np.bool_)
+
+
+def _is_tall(image: ThermalImage) -> NDArray[np.bool_]:
+    return np.asarray(image.is_clear & (image.box[:, 3] > _CUT_TALL_PX), np.bool_)
+
+
+def cut_off(image: ThermalImage, rng: Draw) -> ThermalImage:
+    """Crop an image in the middle of a person."""
+    tall = np.flatnonzero(_is_tall(image))
+    if not len(tall):
+        return image
+    _, top, _, height = image.box[int(rng.choice(tall))].tolist()
+    where = rng.random()
+    if where < _CUT_AT_THE_FEET:
+        end = top + (1.0 - rng.uniform(*_BELOW)) * height
+        return take_rows(image, 0, end, _CUT_FEWEST_ROWS)
+    if where < _CUT_AT_THE_FEET + _CUT_AT_THE_HEAD:
+        first = top + rng.uniform(*_ABOVE) * height
+        return take_rows(image, first, len(image.grey), _CUT_FEWEST_ROWS)
+    upper, lower = (rng.uniform(*_BOTH) for _ in range(2))
+    return take_rows(image, top + upper * height, top + (1.0 - lower) * height, _CUT_FEWEST_ROWS)
+
+
+# What a camera's electronics and files do to images: they spread greys, sharpen edges, and compress.
+
+_EQUALISED: Final = 0.25
+_MOST_EQUALISED: Final = 0.8  # of full histogram equalisation
+_SHARPENED: Final = 0.3
+_RADII_PX: Final = (0.8, 3.0)
+_MOST_SHARPENED: Final = 1.5
+_COMPRESSED: Final = 0.4
+_QUALITIES: Final = (25, 92)
+
+
+def simulate_electronics(image: ThermalImage, rng: Draw) -> ThermalImage:
+    """Return an image as it is, or as a camera puts it out that processes images for people's eyes."""
+    if rng.random() < _EQUALISED:
+        image = equalise(image, rng.uniform(0.0, _MOST_EQUALISED))
+    if rng.random() < _SHARPENED:
+        radius_px, gain = rng.uniform(*_RADII_PX), rng.uniform(0.0, _MOST_SHARPENED)
+        image = replace(image, grey=sharpen(image.grey, radius_px, gain))
+    if rng.random() < _COMPRESSED:
+        image = replace(image, grey=compress(image.grey, int(rng.integers(*_QUALITIES))))
+    return image
+
+
+def equalise(image: ThermalImage, share: float) -> ThermalImage:
+    """Equalise the histogram by a share, as an automatic gain with a plateau does.
+
+    Changes are multiplied by the slope of the curve of greys.
+    """
+    counts = np.bincount(image.grey.ravel(), minlength=256)
+    rank = 255.0 * np.cumsum(counts) / counts.sum()
+    curve = (1.0 - share) * np.arange(256.0) + share * rank
+    slope = cv2.GaussianBlur(np.gradient(curve)[None], (0, 0), 4.0)[0]
+    change = np.clip(image.change * slope[image.grey], 0.0, 255.0)
+    return replace(
+        image, grey=np.rint(curve).astype(np.uint8)[image.grey], change=np.rint(change).astype(np.uint8)
+    )
+
+
+def sharpen(grey: Grey, radius_px: float, gain: float) -> Grey:
+    """Exaggerate what is finer than a radius, which leaves rims around what is warm.
+
+    The simulated camera does so in kelvin, before greys are encoded; here only greys are known.
+    """
+    values = grey.astype(np.float32)
+    finer = values - cv2.GaussianBlur(values, (0, 0), radius_px)
+    return np.asarray(np.rint(np.clip(values + gain * finer, 0.0, 255.0)), np.uint8)
+
+
+_AS_RENDERED: Final = 0.25
+_CUT: Final = 0.25
+_MOUNT_KNOWN: Final = 0.6
+
+
+class Version(NamedTuple):
+    """An image to take crops of.
+
+    Attributes:
+        image: the image.
+        mount: of the camera, if it is known.
+        rng: draws whatever else is drawn.
+    """
+
+    image: ThermalImage
+    mount: Mount | None
+    rng: Draw
+
+
+def versions(images: Sequence[ThermalImage], rng: Draw, count: int) -> Iterator[Version]:
+    """Yield each image in so many augmented versions; as it is, with its mount, for a count of 0."""
+    for image in images:
+        if count == 0:
+            yield Version(image, image.mount, rng)
+        for _ in range(count):
+            own = np.random.default_rng(rng.integers(2**63))
+            varied = image if own.random() < _AS_RENDERED else simulate_electronics(augment(image, own), own)
+            shown = cut_off(varied, own) if own.random() < _CUT else varied
+            yield Version(shown, shown.mount if own.random() < _MOUNT_KNOWN else None, own)

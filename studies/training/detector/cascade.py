@@ -1,0 +1,248 @@
+"""Train the detector's trees: a soft cascade by hard-negative mining, and the regression of boxes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.running.engine.task import Workers
+from peopleboy.studies.training.detector.boosting import Binned, Boosting
+from peopleboy.studies.training.detector.evaluation import calibrate, evaluate_trees
+from peopleboy.studies.training.detector.mining import (
+    detected_windows,
+    false_positives,
+    patch_pool,
+    windows_anywhere,
+    windows_with_people,
+)
+from peopleboy.studies.training.detector.sequences import ThermalImage, load_images, render_task
+from peopleboy.studies.training.detector.worlds import KINDS, seeds_of
+from peopleboy.studies.training.samples import collect_missing
+from peopleboy.studies.training.specification import Specification, option, report
+from peopleboy.tracker.detector.box_regression import BoxRegression
+from peopleboy.tracker.detector.cascade import Cascade
+from peopleboy.tracker.detector.patches import Patches, Sums, integrate_windows
+from peopleboy.tracker.detector.people_trees import FILE, PeopleModel, PeopleTrees, shipped_people_trees
+from peopleboy.tracker.detector.window import WindowKind
+
+Windows = NDArray[np.float16]
+Floats = NDArray[np.float32]
+
+VALIDATION: Final = 30
+"""Worlds to evaluate the trees: those of the first seeds."""
+
+ROUNDS: Final = {
+    WindowKind.WHOLE: (
+        Boosting(64, 0.3, features=200),
+        Boosting(160, 0.2, features=300),
+        Boosting(320, 0.15, features=300),
+        Boosting(640, 0.12, features=300),
+        Boosting(1500, 0.1),
+    ),
+    WindowKind.CUT: (
+        Boosting(64, 0.3, features=200),
+        Boosting(160, 0.2, features=300),
+        Boosting(320, 0.15, features=300),
+        Boosting(500, 0.1, features=300),
+    ),
+}
+"""After each but the last, false positives are mined, which are negatives of the next."""
+REGRESSION: Final = Boosting(trees=160, rate=0.1, features=300)
+
+_SEED_OF_PEOPLE: Final = 0
+_SEED_OF_BOXES: Final = 1
+_SEED_OF_NEGATIVES: Final = 100
+_HELD_BACK: Final = 10  # of so many worlds one is not trained on
+_MINED: Final = 16000  # a round
+_NEGATIVES: Final = 80000  # that are in memory: 3.6 kB each
+_FIRST_NEGATIVES: Final = 16000
+
+_WEAKEST: Final = 0.03  # share of people that no tree needs to keep
+_REJECTED: Final = 0.005  # share of all others that may be rejected
+# Thresholds are stricter than that, as most that they reject score low in the end; the first trees separate
+# people from negatives by less.
+_STRICTER: Final = np.float32(0.7)
+_AFTER: Final = np.float32(32.0)  # trees
+_SAMPLED: Final = 20000  # people by whom thresholds are set
+_LAST: Final = -4.0
+"""Least score of a detection, before calibration."""
+_LINEAR_FROM: Final = 0.9  # quantile of errors from which on the loss of boxes is linear (Huber)
+
+
+@dataclass(frozen=True, slots=True)
+class CascadeData:
+    """Files of sequences for training, for calibration, and for validation."""
+
+    training: list[Path]
+    calibration: list[Path]
+    validation: list[Path]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CascadeTraining(Specification[CascadeData]):
+    """Train on random worlds: as drawn, full of people, plain, both, or warm.
+
+    A tenth is held back, to calibrate scores.
+    """
+
+    sequences: int = option(600, "Worlds to train on.", minimum=5, maximum=2000)
+    windows: tuple[str, ...] = option(
+        tuple(WindowKind),
+        "Train trees for people who are mostly in the image, or cut off; the others stay as they are.",
+        choices=tuple(WindowKind),
+    )
+    only_boxes: bool = option(
+        False, "Train the regression of boxes alone; trees that score windows stay as they are."
+    )
+
+    def default_folder(self, model: str) -> Path:  # noqa: ARG002
+        """Return the folder that all models of the detector share."""
+        return Path("runs/detector")
+
+    @property
+    def kinds(self) -> list[WindowKind]:
+        """The kinds of windows that are trained."""
+        return [kind for kind in WindowKind if kind in self.windows]
+
+    def collect(self, out: Path, workers: Workers) -> CascadeData:
+        """Render the worlds."""
+        folder = out / "sequences"
+        validation = [render_task(folder, seed) for seed in range(VALIDATION)]
+        tasks = [render_task(folder, seed) for seed in seeds_of(self.sequences)]
+        collect_missing([*validation, *tasks], workers, "sequences")
+        held = tasks[_HELD_BACK - 1 :: _HELD_BACK] or tasks[-1:]
+        splits = ([task for task in tasks if task not in held], held, validation)
+        return CascadeData(*([task.path for task in split] for split in splits))
+
+    def fit(self, data: CascadeData) -> Mapping[str, PeopleModel]:
+        """Train the trees of the chosen kinds."""
+        images, shipped = list(load_images(data.training)), shipped_people_trees()
+        if self.only_boxes:
+            trees = {kind: with_boxes(images, shipped.trees[kind].cascade, kind) for kind in self.kinds}
+        else:
+            trees = fit_trees(images, list(load_images(data.calibration)), self.kinds)
+        counts = ((len(kind.seeds(self.sequences)), kind) for kind in KINDS)
+        drawn = ", ".join(f"{count} {kind.description} from seed {kind.first_seed}" for count, kind in counts)
+        parts = ("where {} people are",) if self.only_boxes else ("{} people", "where {} people are")
+        about = {
+            part.format(kind): f"{drawn}; {len(data.calibration)} of them held back"
+            for part in parts
+            for kind in self.kinds
+        }
+        before = shipped if self.only_boxes or len(trees) < len(WindowKind) else PeopleModel({})
+        return {FILE: PeopleModel({**before.trees, **trees}, {**before.about, **about})}
+
+    def evaluate(self, model: PeopleModel, data: CascadeData) -> Mapping[str, str]:
+        """Measure detections in worlds that were not trained on."""
+        return {
+            f"on worlds 0 to {VALIDATION - 1}, {mount}": str(
+                evaluate_trees(model, load_images(data.validation), knows_mount=mount == "mount known")
+            )
+            for mount in ("mount known", "mount unknown")
+        }
+
+
+def fit_trees(
+    images: Sequence[ThermalImage], others: Sequence[ThermalImage], kinds: Sequence[WindowKind]
+) -> dict[WindowKind, PeopleTrees]:
+    """Train trees round by round, each time with the false positives of the round before.
+
+    Args:
+        images: to train on.
+        others: of other worlds, by which scores are calibrated.
+        kinds: of windows.
+
+    Raises:
+        BadInput: scikit-learn is missing, or too few people.
+    """
+    return {kind: _fit_kind(images, others, kind) for kind in kinds}
+
+
+def _fit_kind(
+    images: Sequence[ThermalImage], others: Sequence[ThermalImage], kind: WindowKind
+) -> PeopleTrees:
+    people = windows_with_people(images, np.random.default_rng(_SEED_OF_PEOPLE), kind)
+    rng, patches = np.random.default_rng(_SEED_OF_NEGATIVES), patch_pool()
+    negatives = windows_anywhere(images, rng, _FIRST_NEGATIVES, kind)
+    report(f"{len(images)} images, {len(people)} windows with {kind} people")
+    rounds = ROUNDS[kind]
+    for number, boosting in enumerate(rounds, 1):
+        cascade = fit_cascade(people, negatives, patches, boosting)
+        if number < len(rounds):
+            mined = false_positives(images, cascade, rng, _MINED, kind)
+            report(f"round {number} of {len(rounds)}: {len(negatives)} negatives, {len(mined)} mined")
+            negatives = np.concatenate([negatives, mined])
+            if len(negatives) > _NEGATIVES:
+                negatives = negatives[rng.permutation(len(negatives))[:_NEGATIVES]]
+    trees = with_boxes(images, cascade, kind)
+    return trees._replace(cascade=cascade.calibrated(*calibrate(kind, trees, others)))
+
+
+def with_boxes(images: Sequence[ThermalImage], cascade: Cascade, kind: WindowKind) -> PeopleTrees:
+    """Train where people are in the windows that a cascade detects.
+
+    Windows that people fill would not do: of those that are detected many are too small or too large, and
+    would be believed.
+    """
+    windows, offsets = detected_windows(images, cascade, np.random.default_rng(_SEED_OF_BOXES), kind)
+    report(f"{len(windows)} windows detected as {kind} people")
+    return PeopleTrees(cascade, fit_boxes(windows, offsets, cascade.patches))
+
+
+def fit_cascade(people: Windows, negatives: Windows, patches: Patches, boosting: Boosting) -> Cascade:
+    """Train trees on windows (N, 1800) with people and without; both together weigh the same.
+
+    Raises:
+        BadInput: there are too few windows.
+    """
+    if min(len(people), len(negatives)) < boosting.smallest:
+        raise BadInput(f"{len(people)} windows with people and {len(negatives)} without; take more sequences")
+    sums = integrate_windows(np.concatenate([people, negatives]))
+    count = sums.shape[1]
+    is_person = np.arange(count) < len(people)
+    weight = np.where(is_person, 1.0 / len(people), 1.0 / len(negatives)).astype(np.float32)
+    weight *= np.float32(count / 2)
+    one = np.float32(1.0)
+
+    def loss(outputs: Floats) -> tuple[Floats, Floats]:
+        share = one / (one + np.exp(-outputs))
+        return weight * (is_person - share), weight * share * (one - share)
+
+    rng = np.random.default_rng(0)
+    tables = Binned(patches, sums, rng).boost(loss, boosting, rng)
+    some = np.sort(rng.permutation(len(people))[:_SAMPLED])
+    accepting = Cascade(patches, *tables, np.full(boosting.trees, -np.inf, np.float32))
+    return _with_thresholds(accepting, sums[:, some])
+
+
+def _with_thresholds(cascade: Cascade, people: Sums) -> Cascade:
+    """Set the thresholds after each tree, which nearly all people pass whose final score is high."""
+    running = cascade.running(people)
+    is_found = running[:, -1] > np.quantile(running[:, -1], _WEAKEST)
+    least = np.quantile(running[is_found], _REJECTED, axis=0).astype(np.float32)
+    least += _STRICTER * np.minimum(np.arange(len(least), dtype=np.float32) / _AFTER, 1.0)
+    least[-1] = _LAST
+    return Cascade(cascade.patches, cascade.feature, cascade.threshold, cascade.leaf, least)
+
+
+def fit_boxes(windows: Windows, offsets: NDArray[np.float64], patches: Patches) -> BoxRegression:
+    """Train the regression of boxes on windows (N, 1800) with known offsets (N, 4)."""
+    rng = np.random.default_rng(0)
+    binned, tables = Binned(patches, integrate_windows(windows), rng), []
+    for target in offsets.T.astype(np.float32):
+        start = float(np.median(target))
+        far = float(np.quantile(np.abs(target - start), _LINEAR_FROM))
+
+        def loss(outputs: Floats, target: Floats = target, far: float = far) -> tuple[Floats, Floats]:
+            return np.clip(target - outputs, -far, far), np.ones_like(outputs)
+
+        trees = binned.boost(loss, REGRESSION, rng, start)
+        trees.leaf[0] += np.float32(start)
+        tables.append(trees)
+    return BoxRegression(patches, *(np.stack(column) for column in zip(*tables, strict=True)))

@@ -1,0 +1,267 @@
+"""Hard-negative mining: windows with people, windows without, and those that the cascade takes for people."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.studies.training.detector.augmentation import augment_for, has_people
+from peopleboy.studies.training.detector.boosting import in_threads
+from peopleboy.studies.training.detector.sequences import ThermalImage
+from peopleboy.tracker.boxes import iou
+from peopleboy.tracker.detector.box_regression import encode_boxes
+from peopleboy.tracker.detector.cascade import Cascade
+from peopleboy.tracker.detector.channels import CHANNELS, Cells
+from peopleboy.tracker.detector.detector import SMALLEST_PX
+from peopleboy.tracker.detector.patches import Patches, integrate
+from peopleboy.tracker.detector.pyramid import STEP, Level, pyramid_levels
+from peopleboy.tracker.detector.window import CELL_PX, COLUMNS, PERSON_PX, ROWS, WindowKind
+
+Floats = NDArray[np.float64]
+Windows = NDArray[np.float16]
+
+CELLS: Final = CHANNELS * ROWS * COLUMNS
+"""Of a window, by channel, row and column."""
+
+_AUGMENTED: Final = 2  # versions of each image
+_FITS: Final = 1.1 * math.log2(STEP) / 2.0  # a person is looked for in the level, or two, of about their size
+_BESIDE: Final = 0.3  # IoU with a person from which on a window is no negative
+_ALIKE: Final = 0.6  # IoU of windows of which one is enough
+_LEAST_SCORE: Final = -1.0  # of a window that is hard enough
+_A_PERSON: Final = 6  # detected windows
+_SURENESS: Final = 0.5  # final boxes are means that weigh exp(score); with less, samples are more diverse
+_HARDLY: Final = 1e-4  # share of such weights that is nothing
+_ASIDE: Final = 1.5 * CELL_PX / PERSON_PX  # heights; boxes that are moved by more end up on another person
+_A_LEVEL: Final = 6  # windows that are placed anywhere
+_AN_IMAGE: Final = 12  # negatives
+
+
+class _Hits(NamedTuple):
+    """Windows in which the cascade detects people: boxes (N, 4), scores (N,), and where each begins."""
+
+    box: Floats
+    score: Floats
+    place: list[tuple[Cells, int, int]]
+
+
+def windows_with_people(
+    images: Sequence[ThermalImage], rng: np.random.Generator, kind: WindowKind
+) -> Windows:
+    """Collect windows (N, 1800) that people fill, in augmented images, each also a cell off."""
+    found = [each for windows in in_threads(_filled, _with_people(images, rng, kind)) for each in windows]
+    return np.array(found, np.float16).reshape(-1, CELLS)
+
+
+def detected_windows(
+    images: Sequence[ThermalImage], cascade: Cascade, rng: np.random.Generator, kind: WindowKind
+) -> tuple[Windows, Floats]:
+    """Collect windows (N, 1800) in which the cascade detects people, however badly these fill them.
+
+    Returns:
+        The windows, and the offsets of the people (N, 4): see `encode_boxes`.
+    """
+    drawn = _with_people(images, rng, kind)
+    found = [
+        each for some in in_threads(lambda one: _let_through(*one, cascade, kind), drawn) for each in some
+    ]
+    windows = np.array([window for window, _ in found], np.float16).reshape(-1, CELLS)
+    return windows, np.array([each for _, each in found]).reshape(-1, 4)
+
+
+def _with_people(
+    images: Sequence[ThermalImage], rng: np.random.Generator, kind: WindowKind
+) -> Iterator[tuple[ThermalImage, np.random.Generator]]:
+    """Yield augmented images with people to train on, with random numbers of their own."""
+    return _augment(
+        (image for image in images if has_people(image, kind) for _ in range(_AUGMENTED)), rng, kind
+    )
+
+
+def _augment(
+    images: Iterable[ThermalImage], rng: np.random.Generator, kind: WindowKind
+) -> Iterator[tuple[ThermalImage, np.random.Generator]]:
+    """Yield augmented images, each with random numbers of its own."""
+    for image in images:
+        own = np.random.default_rng(rng.integers(2**63))
+        yield augment_for(image, own, kind), own
+
+
+def _filled(drawn: tuple[ThermalImage, np.random.Generator]) -> list[Windows]:
+    image, rng = drawn
+    box, found = image.box[image.is_good], []
+    for level in pyramid_levels(image.grey, image.change, None, SMALLEST_PX):
+        off = np.abs(np.log2(box[:, 3] * level.scale[0] / PERSON_PX))
+        for own in box[off < _FITS]:
+            row, column = level.windows(own[None])[0].round().astype(int).tolist()
+            aside = rng.integers(-1, 2, 2).tolist()
+            places = sorted({(row, column), (row + aside[0], column + aside[1])})
+            found += [_cut(level.cells, *place) for place in places]
+    return found
+
+
+def _let_through(
+    image: ThermalImage, rng: np.random.Generator, cascade: Cascade, kind: WindowKind
+) -> list[tuple[Windows, Floats]]:
+    hits, found = _hits(image, cascade, kind), []
+    overlap = iou(hits.box[:, None], image.box[None])
+    for person in np.flatnonzero(image.is_good).tolist():
+        offset = encode_boxes(hits.box, image.box[person][None])
+        is_own = (overlap[:, person] >= overlap.max(axis=1)) & (overlap[:, person] > _BESIDE)
+        own = np.flatnonzero(is_own & (np.abs(offset[:, 0]) <= _ASIDE))
+        if len(own):
+            weight = np.exp(_SURENESS * (hits.score[own] - hits.score[own].max()))
+            most = min(_A_PERSON, int((weight > _HARDLY * weight.sum()).sum()))
+            chosen = rng.choice(own, most, replace=False, p=weight / weight.sum()).tolist()
+            found += [(_cut(*hits.place[k]), offset[k]) for k in chosen]
+    return found
+
+
+def windows_anywhere(
+    images: Sequence[ThermalImage], rng: np.random.Generator, most: int, kind: WindowKind
+) -> Windows:
+    """Collect windows (N, 1800) without people.
+
+    Args:
+        images: images, which are augmented.
+        rng: draws which images, and where.
+        most: how many are enough.
+        kind: of windows.
+    """
+    found: list[Windows] = []
+    for k in rng.permutation(len(images)).tolist():
+        image, here = augment_for(images[k], rng, kind), []
+        for level in pyramid_levels(image.grey, image.change, None, SMALLEST_PX):
+            for first, end in level.rows[kind]:
+                rows = rng.integers(first, end, _A_LEVEL)
+                columns = rng.integers(0, level.cells.shape[2] - COLUMNS + 1, _A_LEVEL)
+                here += _without(image, level, rows, columns)
+        found += [here[k] for k in rng.permutation(len(here))[:_AN_IMAGE]]
+        if len(found) >= most:
+            break
+    return np.array(found, np.float16).reshape(-1, CELLS)
+
+
+def false_positives(
+    images: Sequence[ThermalImage], cascade: Cascade, rng: np.random.Generator, most: int, kind: WindowKind
+) -> Windows:
+    """Collect windows (N, 1800) without people that the cascade detects, the worst of each image.
+
+    Args:
+        images: images, which are augmented.
+        cascade: whose errors are collected.
+        rng: draws which images.
+        most: how many are enough.
+        kind: of windows.
+    """
+    found: list[Windows] = []
+    order = _augment((images[k] for k in rng.permutation(len(images)).tolist()), rng, kind)
+    for here in in_threads(lambda drawn: _false_positives(drawn[0], cascade, kind), order):
+        found += here
+        if len(found) >= most:
+            break
+    return np.array(found, np.float16).reshape(-1, CELLS)
+
+
+def _false_positives(image: ThermalImage, cascade: Cascade, kind: WindowKind) -> list[Windows]:
+    hits = _hits(image, cascade, kind)
+    is_left = _is_clear(hits.box, image)
+    chosen: list[int] = []
+    for k in np.argsort(-hits.score, kind="stable").tolist():
+        if is_left[k] and len(chosen) < _AN_IMAGE:
+            chosen.append(k)
+            is_left &= iou(hits.box[k], hits.box) < _ALIKE
+    return [_cut(*hits.place[k]) for k in chosen]
+
+
+def _hits(image: ThermalImage, cascade: Cascade, kind: WindowKind) -> _Hits:
+    boxes, scores, places = [np.empty((0, 4))], [np.empty(0)], []
+    for level in pyramid_levels(image.grey, image.change, None, SMALLEST_PX):
+        sums = integrate(level.cells)
+        for rows in level.rows[kind]:
+            hits = cascade.scan(sums, rows)
+            is_some = hits.score >= _LEAST_SCORE
+            row, column = hits.row[is_some], hits.column[is_some]
+            boxes.append(level.boxes(row, column))
+            scores.append(hits.score[is_some])
+            places += [(level.cells, *place) for place in zip(row.tolist(), column.tolist(), strict=True)]
+    return _Hits(np.concatenate(boxes), np.concatenate(scores), places)
+
+
+def _without(
+    image: ThermalImage, level: Level, rows: NDArray[np.int64], columns: NDArray[np.int64]
+) -> list[Windows]:
+    is_clear = _is_clear(level.boxes(rows, columns), image)
+    return [
+        _cut(level.cells, row, column)
+        for row, column in zip(rows[is_clear].tolist(), columns[is_clear].tolist(), strict=True)
+    ]
+
+
+def _is_clear(box: Floats, image: ThermalImage) -> NDArray[np.bool_]:
+    """Tell which boxes (N, 4) overlap no person much; a part of a person is a negative."""
+    return np.asarray((iou(box[:, None], image.box[None]) < _BESIDE).all(axis=1), np.bool_)
+
+
+def _cut(cells: Cells, row: int, column: int) -> Windows:
+    """Return the cells (1800,) of a window; beyond the border the last cell is repeated."""
+    _, high, wide = cells.shape
+    rows = np.clip(np.arange(row, row + ROWS), 0, high - 1)
+    columns = np.clip(np.arange(column, column + COLUMNS), 0, wide - 1)
+    return cells[:, rows[:, None], columns].astype(np.float16).ravel()
+
+
+# The features that trees may choose from.
+
+Box = tuple[int, int, int, int]
+
+DRAWN: Final = 6000
+_GROWS: Final = (0.25, 0.35)  # chance that a rectangle has no more rows, columns
+_MOST_ROWS: Final = 16
+_ALONE: Final = 0.25  # of what is drawn
+_ADJACENT: Final = 0.35  # likewise, of equal size beside, above or below each other
+_MIRRORED: Final = 0.2  # likewise; the rest lie anywhere
+_NOTHING: Final = (0, 0, 0, 0)
+_SEED: Final = 5
+
+
+def patch_pool(drawn: int = DRAWN) -> Patches:
+    """Return every cell of every channel, and rectangles and pairs drawn at random; always the same."""
+    rng = np.random.default_rng(_SEED)
+    cells = [(row, column, row + 1, column + 1) for row in range(ROWS) for column in range(COLUMNS)]
+    first, second = cells * CHANNELS, [_NOTHING] * (len(cells) * CHANNELS)
+    channel = [number for number in range(CHANNELS) for _ in cells]
+    for _ in range(drawn):
+        box = _rectangle(rng)
+        channel.append(int(rng.integers(CHANNELS)))
+        first.append(box)
+        second.append(_partner(box, rng))
+    return Patches(*(np.array(column, np.uint8) for column in (channel, first, second)))
+
+
+def _rectangle(rng: np.random.Generator) -> Box:
+    rows, columns = (1 + int(rng.geometric(chance)) for chance in _GROWS)
+    rows, columns = min(rows, _MOST_ROWS), min(columns, COLUMNS)
+    row, column = int(rng.integers(ROWS - rows + 1)), int(rng.integers(COLUMNS - columns + 1))
+    return row, column, row + rows, column + columns
+
+
+def _partner(box: Box, rng: np.random.Generator) -> Box:
+    """Draw the rectangle that is subtracted from another."""
+    top, left, bottom, right = box
+    kind = rng.random()
+    if kind < _ALONE:
+        return _NOTHING
+    if kind < _ALONE + _ADJACENT:
+        rows, columns = bottom - top, right - left
+        moves = [(rows, 0), (-rows, 0), (0, columns), (0, -columns)]
+        beside = [(top + down, left + on, bottom + down, right + on) for down, on in moves]
+        inside = [one for one in beside if min(one) >= 0 and one[2] <= ROWS and one[3] <= COLUMNS]
+        return inside[int(rng.integers(len(inside)))] if inside else _NOTHING
+    if kind < _ALONE + _ADJACENT + _MIRRORED:
+        mirrored = (top, COLUMNS - right, bottom, COLUMNS - left)
+        return _NOTHING if mirrored == box else mirrored
+    return _rectangle(rng)

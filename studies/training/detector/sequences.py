@@ -1,0 +1,171 @@
+"""Rendered sequences of the thermal camera: images some time apart, what moved in them, and the people."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.scenarios.files.load import parse_scenario
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.running.blind_drive import blind_drive
+from peopleboy.sim.people.body.postures import Posture
+from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.studies.training.detector.worlds import world_of
+from peopleboy.studies.training.samples import Arrays, SampleTask
+from peopleboy.tracker.camera_mount import Mount, mount_of
+from peopleboy.tracker.detector.image_change import EARLIER_S, image_difference, rotation_homography
+from peopleboy.tracker.frame import THERMAL
+
+Floats = NDArray[np.float64]
+Grey = NDArray[np.uint8]
+
+APART_S: Final = 0.5
+"""Between two images that are kept."""
+
+_LOW: Final = (Posture.SITTING, Posture.BENDING)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ThermalSequence(Arrays):
+    """Images of one run with the truth about them.
+
+    Attributes:
+        grey: (N, H, W) images.
+        change: (N, H, W) by how much greys changed in 0.2 s beyond what the robot's turn does.
+        mount: (3,) row of the horizon [px], focal length [px] and height [m] of the camera.
+        image: (P,) int64 in which image a person is, visible or not.
+        box: (P, 4) [px] from head to feet.
+        visible: (P,) share of the silhouette that is seen.
+        inside: (P,) share of it that lies inside the image.
+        shown_px: (P,) pixels that are seen.
+        is_upright: (P,) whether they stand or walk, not sit or bend.
+    """
+
+    grey: Grey
+    change: Grey
+    mount: Floats
+    image: NDArray[np.int64]
+    box: Floats
+    visible: Floats
+    inside: Floats
+    shown_px: Floats
+    is_upright: NDArray[np.bool_]
+
+    def camera_mount(self) -> Mount:
+        """Return the mount of the camera."""
+        horizon_px, focal_px, height_m = self.mount.tolist()
+        return Mount(horizon_px, focal_px, height_m)
+
+
+def render_thermal(scenario: Scenario, seed: int) -> ThermalSequence:
+    """Render a scenario with the thermal camera; images between those that are kept are not rendered.
+
+    Raises:
+        BadInput: the robot needs images to drive.
+    """
+    rows = scenario.world(seed).robot.cameras[THERMAL].camera.height
+    calibration = calibrations_of(scenario.world(seed).robot.cameras).get(THERMAL)
+    mount = mount_of(calibration, rows)
+    greys: list[Grey] = []
+    changes: list[Grey] = []
+    people: list[tuple[int, PersonTruth]] = []
+    before: tuple[Grey, float] | None = None
+    begin_s = 0.0  # when the next pair begins
+    for world, observation in blind_drive(scenario, seed):
+        if THERMAL not in observation.images:
+            continue
+        heading = observation.odometry.heading
+        if before is None:
+            if observation.time_s >= begin_s:
+                before, begin_s = (observation.images[THERMAL].copy(), heading), observation.time_s
+            continue
+        if observation.time_s < begin_s + EARLIER_S - 1e-6:
+            continue
+        grey = observation.images[THERMAL].copy()
+        turn_rad = math.remainder(heading - before[1], math.tau)
+        people += [(len(greys), person) for person in world.truth().people if person.box is not None]
+        greys.append(grey)
+        homography = rotation_homography(mount, grey.shape, turn_rad)
+        changes.append(image_difference(before[0], grey, homography))
+        before, begin_s = None, begin_s + APART_S
+    return ThermalSequence(
+        grey=np.array(greys),
+        change=np.array(changes),
+        mount=np.array([mount.horizon_px, mount.focal_px, mount.height_m]),
+        image=np.array([k for k, _ in people], np.int64),
+        box=np.array([person.box for _, person in people], np.float64).reshape(-1, 4),
+        visible=np.array([person.visible_fraction for _, person in people], np.float64),
+        inside=np.array([person.inside_fraction for _, person in people], np.float64),
+        shown_px=np.array([person.visible_px for _, person in people], np.float64),
+        is_upright=np.array([person.posture not in _LOW for _, person in people], np.bool_),
+    )
+
+
+def render_world(seed: int) -> ThermalSequence:
+    """Draw the world of a seed, and render it."""
+    return render_thermal(parse_scenario(world_of(seed), source=f"world_{seed}", folder=Path()), seed)
+
+
+def render_task(folder: Path, seed: int) -> SampleTask:
+    """Return the task of rendering the world of a seed."""
+    return SampleTask(folder / f"world_{seed}.npz", render_world, (seed,))
+
+
+_LEAST_VISIBLE: Final = 0.35
+_LEAST_INSIDE: Final = 0.5
+_LEAST_CLEAR: Final = 0.45  # visible share of what lies inside the image, of a person that is good
+_LITTLE_INSIDE: Final = 0.25  # a person that is clear has more of the silhouette inside the image
+_CLEAR: Final = 0.7  # and is visible by this share of that
+HIGHEST: Final = 0.25  # share of the height that may be above the image
+_LEAST_SHOWN_PX: Final = 8.0  # people of fewer visible pixels are ignored
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ThermalImage:
+    """One image with its people.
+
+    Attributes:
+        grey: (H, W) image.
+        change: (H, W) by how much greys changed.
+        mount: of the camera.
+        box: (P, 4) [px] of all people that are visible in part, from head to feet, as wide as the torso.
+        is_good: (P,) whether to train on them: upright, and not mostly hidden.
+        is_clear: (P,) upright, and most of what lies inside the image is visible, however little that is.
+    """
+
+    grey: Grey
+    change: Grey
+    mount: Mount
+    box: Floats
+    is_good: NDArray[np.bool_]
+    is_clear: NDArray[np.bool_]
+
+
+def load_images(paths: Iterable[Path]) -> Iterator[ThermalImage]:
+    """Yield all images of sequences."""
+    for path in paths:
+        sequence = ThermalSequence.load(path)
+        for k in range(len(sequence.grey)):
+            yield _image(sequence, k)
+
+
+def _image(sequence: ThermalSequence, k: int) -> ThermalImage:
+    here = (sequence.image == k) & (sequence.shown_px > _LEAST_SHOWN_PX)
+    box = sequence.box[here]
+    visible, inside, is_upright = sequence.visible[here], sequence.inside[here], sequence.is_upright[here]
+    is_clear = is_upright & (inside > _LITTLE_INSIDE) & (visible > _CLEAR * inside)
+    is_good = (
+        is_upright
+        & (visible > _LEAST_VISIBLE)
+        & (inside > _LEAST_INSIDE)
+        & (visible > _LEAST_CLEAR * inside)
+        & (box[:, 1] > -HIGHEST * box[:, 3])
+    )
+    return ThermalImage(sequence.grey[k], sequence.change[k], sequence.camera_mount(), box, is_good, is_clear)

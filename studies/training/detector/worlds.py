@@ -1,0 +1,159 @@
+"""Random worlds that the detector is trained on: as drawn, full of people, plain, warm."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+import numpy as np
+
+from peopleboy.scenarios.random_worlds.distribution import ODDS, RANGES, SHARES, Distribution
+from peopleboy.scenarios.random_worlds.draw_scene import is_valid, rounded
+from peopleboy.scenarios.random_worlds.random_world import random_world
+from peopleboy.sim.random_streams import stream
+
+World = dict[str, Any]
+
+_RANGES: Final[Mapping[str, tuple[float, float]]] = {
+    "room_length": (9.0, 20.0),
+    "room_width": (6.0, 14.0),
+    "street_length": (18.0, 40.0),
+    "ceiling": (3.6, 5.0),
+    "things": (0, 10),
+    "people": (5, 10),
+    "camera_height": (0.8, 3.4),
+    "pitch": (-4.0, 20.0),
+    "vertical_fov": (20.0, 50.0),
+}
+_SHARES: Final[Mapping[str, Mapping[str, float]]] = {
+    "place": {"room": 0.35, "street": 0.65},
+    "robot": {"stands": 0.9, "drives": 0.1},
+}
+_ODDS: Final[Mapping[str, float]] = {"begins_in_view": 0.9, "enters_later": 0.1}
+_CROWDS: Final = Distribution(
+    ranges={**RANGES, **{key: replace(RANGES[key], low=a, high=b) for key, (a, b) in _RANGES.items()}},
+    shares={**SHARES, **_SHARES},
+    odds={**ODDS, **{key: (odds, ODDS[key][1]) for key, odds in _ODDS.items()}},
+)
+_TOGETHER: Final = 0.5  # of all people have a companion
+_APART_M: Final = (0.45, 0.9)
+_TRIES: Final = 4
+
+
+def crowded_world(seed: int) -> dict[str, Any]:
+    """Draw a world of 5 to 10 people, as far as there is room, and of companions who walk beside them."""
+    world = random_world(seed, distribution=_CROWDS)
+    rng = stream(seed, "crowded_world")
+    for person in world.get("people", ()):
+        if rng.random() < _TOGETHER:
+            world = _with_companion(world, person, rng)
+    return world
+
+
+def _with_companion(
+    world: dict[str, Any], person: dict[str, Any], rng: np.random.Generator
+) -> dict[str, Any]:
+    """Add a person that walks the same path a little aside, if that is free."""
+    for _ in range(_TRIES):
+        way, far = rng.uniform(-math.pi, math.pi), rng.uniform(*_APART_M)
+        aside = np.array([far * math.cos(way), far * math.sin(way)])
+        path = [
+            point | {"at_m": [rounded(x) for x in np.array(point["at_m"]) + aside]}
+            for point in person["path"]
+        ]
+        other = person | {"name": f"{person['name']}_beside", "path": path}
+        fuller = world | {"people": [*world["people"], other]}
+        if is_valid(fuller):
+            return fuller
+    return world
+
+
+_WARMEST_C: Final = 25.0
+_SURFACES: Final = ("walls_c", "floor_c", "ceiling_c", "surroundings_c", "air_c")
+_OF_CAMERA: Final = ("kind", "mount_m", "pitch_deg", "vertical_fov_deg")
+_WARM_AIR_C: Final = (27.0, 31.0)
+
+
+def with_library_span(world: World) -> World:
+    """Return a world without details, in the robot's own span of 24..36 degC: most of it is black."""
+    place = {key: value for key, value in world["place"].items() if key != "sun"}
+    warmth = place.get("temperatures", {})
+    if max((warmth.get(surface, 0.0) for surface in _SURFACES), default=0.0) > _WARMEST_C:
+        del place["temperatures"]
+    return world | {"detail": "plain", "place": place, "robot": _with_own_camera(world["robot"])}
+
+
+def _with_own_camera(robot: World) -> World:
+    """Return a robot whose thermal camera has the default span."""
+    cameras = robot["cameras"]
+    own = {key: value for key, value in cameras["thermal"].items() if key in _OF_CAMERA}
+    return robot | {"cameras": cameras | {"thermal": own}}
+
+
+def with_warm_air(world: World, air_c: float) -> World:
+    """Return a world without details, in the same span, with all temperatures shifted by as much as air."""
+    place = {key: value for key, value in world["place"].items() if key != "sun"}
+    warmth = place["temperatures"]
+    warmer = air_c - warmth["air_c"]
+    walls = {name: rounded(value + warmer) for name, value in warmth["single_walls_c"].items()}
+    warm = {key: rounded(value + warmer) for key, value in warmth.items() if key != "single_walls_c"}
+    place |= {"temperatures": warm | {"single_walls_c": walls}}
+    return world | {"detail": "plain", "place": place, "robot": _with_own_camera(world["robot"])}
+
+
+@dataclass(frozen=True, slots=True)
+class WorldKind:
+    """A kind of worlds.
+
+    Attributes:
+        description: what they are.
+        first_seed: they have seeds from here on, at most 1000.
+        share: of all worlds that are trained on.
+        draw: returns the data of a scenario of a seed.
+    """
+
+    description: str
+    first_seed: int
+    share: float
+    draw: Callable[[int], World]
+
+    def seeds(self, worlds: int) -> range:
+        """Return the seeds of its share of so many worlds, one at least."""
+        return range(self.first_seed, self.first_seed + max(round(self.share * worlds), 1))
+
+
+def _library_world(seed: int) -> World:
+    return with_library_span(random_world(seed))
+
+
+def _library_crowd(seed: int) -> World:
+    return with_library_span(crowded_world(seed))
+
+
+def _warm_world(seed: int) -> World:
+    return with_warm_air(random_world(seed), rounded(stream(seed, "warm_world").uniform(*_WARM_AIR_C)))
+
+
+KINDS: Final = (
+    WorldKind("random worlds", 1000, 0.44, random_world),
+    WorldKind("crowds", 2000, 0.1, crowded_world),
+    WorldKind("worlds in the robot's own span", 3000, 0.3, _library_world),
+    WorldKind("plain worlds as warm as people", 4000, 0.06, _warm_world),
+    WorldKind("crowds in the robot's own span", 5000, 0.1, _library_crowd),
+)
+
+LATER: Final = 10_000
+"""Kinds come again after so many seeds."""
+
+
+def world_of(seed: int) -> World:
+    """Draw the world of a seed; those below the first kind's are of that kind, too."""
+    kind = next((kind for kind in reversed(KINDS) if seed % LATER >= kind.first_seed), KINDS[0])
+    return kind.draw(seed)
+
+
+def seeds_of(worlds: int) -> list[int]:
+    """Return the seeds of so many worlds, one of each kind at least."""
+    return [seed for kind in KINDS for seed in kind.seeds(worlds)]

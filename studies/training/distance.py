@@ -1,0 +1,381 @@
+"""Train the distance network of the 2003 paper: from a silhouette's cues to how far away a person is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Any, ClassVar, Final
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.running.engine.engine import work_through
+from peopleboy.scenarios.running.engine.store import Store, code_digest
+from peopleboy.scenarios.running.engine.task import Tell, Workers
+from peopleboy.scenarios.running.frame_cache import film_key
+from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.truth.scenes import ImageFreeTruth
+from peopleboy.studies.training.specification import Specification, option
+from peopleboy.tracker.frame import PANORAMA, Frame
+from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
+from peopleboy.tracker.panoramic.paper.depth_cues import (
+    EMPTY_IMAGES,
+    MeasuredFigure,
+    learn_background,
+    measure,
+)
+from peopleboy.tracker.panoramic.paper.distance_network import (
+    CUES,
+    HIGH,
+    LOW,
+    DistanceModel,
+    DistanceNetwork,
+    file_name,
+    scaled,
+    with_bias,
+)
+from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig
+from peopleboy.tracker.panoramic.paper.position_filter import STEP_S, estimate_noise
+
+Floats = NDArray[np.float64]
+Row = list[float]
+"""A sample as plain data: person, time [s], three cues [px], bearing seen [rad], x and y in truth [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class DistanceSamples:
+    """The samples of one run, in the order of time.
+
+    Attributes:
+        person: (N,) number of the person.
+        time_s: (N,) of the image [s].
+        cues: (N, 3) as `DepthCues` has them [px].
+        bearing_rad: (N,) where the silhouette is, left positive [rad].
+        true_m: (N, 2) where the person stands in the robot's frame [m]; the middle between the feet, not the
+            hat of the paper.
+    """
+
+    person: NDArray[np.int64]
+    time_s: Floats
+    cues: Floats
+    bearing_rad: Floats
+    true_m: Floats
+
+    @property
+    def distance_m(self) -> Floats:
+        """True distances (N,) from the robot's middle [m]."""
+        return np.asarray(np.hypot(*self.true_m.T), np.float64)
+
+    @property
+    def angle_error_rad(self) -> Floats:
+        """What the silhouette's bearing is off by, (N,) in 0..pi [rad]."""
+        off = self.bearing_rad - np.arctan2(self.true_m[:, 1], self.true_m[:, 0])
+        return np.asarray(np.abs(np.angle(np.exp(1j * off))), np.float64)
+
+    def positions_at(self, distance_m: Floats) -> Floats:
+        """Place people on the floor, (N, 2) in the robot's frame, at estimated distances (N,) [m]."""
+        way = np.stack([np.cos(self.bearing_rad), np.sin(self.bearing_rad)], axis=1)
+        return np.asarray(distance_m[:, None] * way, np.float64)
+
+    @classmethod
+    def from_rows(cls, rows: list[Row]) -> DistanceSamples:
+        """Make samples out of plain data, equal to the last digit."""
+        table = np.array(rows, np.float64).reshape(-1, 8)
+        return cls(
+            person=table[:, 0].astype(np.int64),
+            time_s=table[:, 1],
+            cues=table[:, 2:5],
+            bearing_rad=table[:, 5],
+            true_m=table[:, 6:],
+        )
+
+
+def collect_distances(scenario: str, seed: int) -> dict[str, Any]:
+    """Run a scenario with the panoramic camera, and keep what is measured while one person is there.
+
+    Returns:
+        Plain data: the camera's `view`, `rows` of samples, and how many images `missed` the person.
+
+    Raises:
+        BadInput: an unknown scenario, somebody in the first images, or a camera that nobody can calibrate or
+            that sees no floor where people walk.
+    """
+    loaded = load_scenario(scenario).mounting((PANORAMA,))
+    config = loaded.world(seed)
+    view = check_floor(config, scenario)
+    rows, missed = _measured(panoramas(config, loaded.duration_s), scenario)
+    return {"view": asdict(view), "rows": rows, "missed": missed}
+
+
+def check_floor(config: WorldConfig, scenario: str) -> PanoramaView:
+    """Describe the panoramic camera, before anything is rendered.
+
+    Raises:
+        BadInput: it cannot be calibrated, or nobody ever walks where it sees the floor.
+    """
+    camera, calibrations = config.robot.cameras[PANORAMA], calibrations_of(config.robot.cameras)
+    if PANORAMA not in calibrations:
+        raise BadInput(f"{scenario}: camera {PANORAMA!r} of kind {camera.kind!r} cannot be calibrated")
+    ways = [point.at_m for person in config.people for point in person.path]
+    if not ways:
+        raise BadInput(f"{scenario}: nobody walks there")
+    away = np.subtract(ways, config.robot.at_m)
+    farthest = np.array([[float(np.hypot(*away.T).max()), 0.0, 0.0]])
+    row = float(calibrations[PANORAMA].project(farthest)[0, 1])
+    if not row < camera.camera.height:  # as below: steeper than any row looks; NaN: no lens sees it
+        raise BadInput(
+            f"{scenario}: camera {PANORAMA!r} sees no floor where people walk; take another mirror"
+        )
+    return view_of(calibrations[PANORAMA], camera.camera.width, camera.camera.height)
+
+
+def panoramas(config: WorldConfig, duration_s: float) -> Iterator[tuple[NDArray[np.uint8], ImageFreeTruth]]:
+    """Yield every image (H, W, 3) of the panoramic camera, and the people there; render no others."""
+    from peopleboy.sim.world import World  # here, as samples that are there can be read without PyBullet
+
+    with World(config) as world:
+        for _ in range(round(duration_s * config.control_hz)):
+            observation = world.observe()
+            if PANORAMA in observation.images:
+                frame = Frame(images=observation.images, time_s=observation.time_s)
+                yield frame.rgb(PANORAMA), world.scene()
+            world.step(0.0, 0.0)
+
+
+def _measured(
+    instants: Iterator[tuple[NDArray[np.uint8], ImageFreeTruth]], scenario: str
+) -> tuple[list[Row], int]:
+    """Measure the one person of each image after the empty ones, and count the images that show nobody."""
+    first = list(islice(instants, EMPTY_IMAGES))
+    if len(first) < EMPTY_IMAGES or any(scene.people for _, scene in first):
+        raise BadInput(
+            f"{scenario}: the first {EMPTY_IMAGES} panoramas must be empty: they are the background"
+        )
+    background = learn_background([image for image, _ in first])
+    rows, missed = [], 0
+    for image, scene in instants:
+        figure = measure(background.silhouette(image), PanoramicConfig().least_px)
+        if len(scene.people) == 1 and figure is not None:
+            rows.append(_row(figure, scene))
+        missed += bool(scene.people) and figure is None
+    return rows, missed
+
+
+def _row(figure: MeasuredFigure, scene: ImageFreeTruth) -> Row:
+    (person,) = scene.people
+    place = scene.robot.to_local(person.position_m)
+    return [float(person.id), scene.time_s, *figure.cues, figure.bearing_rad, *place]
+
+
+@dataclass(frozen=True, slots=True)
+class DistanceTask:
+    """Run a scenario with one seed, and keep what is measured of the people.
+
+    Attributes:
+        scenario, seed: what is run.
+        key: of all that its images depend on.
+    """
+
+    scenario: str
+    seed: int
+    key: str
+    size: int = 1
+
+    @property
+    def name(self) -> str:
+        """Run, and version of the scenario."""
+        return f"{self.scenario}-{self.seed}-{self.key}"
+
+    def __call__(self, tell: Tell) -> dict[str, Any]:  # noqa: ARG002
+        """Collect the samples."""
+        return collect_distances(self.scenario, self.seed)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Backpropagation:
+    """Settings of the paper's online backpropagation.
+
+    The paper gives the hidden units and the rate, with which it did best. It gives neither how often the
+    samples are gone through nor the first weights; ours are these.
+
+    Attributes:
+        hidden: units of the hidden layer.
+        rate: by which each sample's gradient changes the weights.
+        epochs: how often all samples are gone through, each time in another order.
+        first_weight: the first weights are drawn evenly between this and its negative.
+    """
+
+    hidden: int = 4
+    rate: float = 0.3
+    epochs: int = 2000
+    first_weight: float = 0.5
+
+
+def fit_distances(
+    cues: Floats, distances_m: Floats, rng: np.random.Generator, settings: Backpropagation | None = None
+) -> DistanceNetwork:
+    """Train a network online by backpropagation of the squared error.
+
+    Args:
+        cues: (N, 3) of the samples [px].
+        distances_m: (N,) true distances [m].
+        rng: draws the first weights and the order of the samples.
+        settings: of the training.
+
+    Raises:
+        BadInput: next to no samples, or all at one distance.
+
+    Source: OMNIVIS 2003, section 4.4.
+    """
+    _check_samples(cues, distances_m)
+    settings = Backpropagation() if settings is None else settings
+    ranges = np.stack([cues.min(axis=0), cues.max(axis=0)], axis=1)
+    nearest, farthest = float(distances_m.min()), float(distances_m.max())
+    inputs = with_bias(scaled(cues, ranges))
+    targets = LOW + (HIGH - LOW) * (distances_m - nearest) / (farthest - nearest)
+    limit = settings.first_weight
+    hidden = rng.uniform(-limit, limit, (settings.hidden, CUES + 1))
+    output = rng.uniform(-limit, limit, settings.hidden + 1)
+    for _ in range(settings.epochs):
+        run_epoch(inputs, targets, rng.permutation(len(inputs)), hidden, output, settings.rate)
+    return DistanceNetwork(
+        hidden=hidden, output=output, cue_ranges=ranges, distance_range_m=(nearest, farthest)
+    )
+
+
+@njit(cache=True)
+def run_epoch(
+    inputs: Floats,
+    targets: Floats,
+    order: NDArray[np.int64],
+    hidden: Floats,
+    output: Floats,
+    rate: float,
+) -> None:
+    """Go once through the samples, and change the weights in place after each.
+
+    Each change is the negative gradient of half the squared error, times the rate.
+    """
+    units = np.empty(len(hidden))
+    for sample in order:
+        total = output[-1]
+        for j in range(len(hidden)):
+            units[j] = 1.0 / (1.0 + np.exp(-np.dot(hidden[j], inputs[sample])))
+            total += output[j] * units[j]
+        told = 1.0 / (1.0 + np.exp(-total))
+        blame = (targets[sample] - told) * told * (1.0 - told)
+        for j in range(len(hidden)):
+            passed = blame * output[j] * units[j] * (1.0 - units[j])
+            output[j] += rate * blame * units[j]
+            hidden[j] += rate * passed * inputs[sample]
+        output[-1] += rate * blame
+
+
+def _check_samples(cues: Floats, distances_m: Floats) -> None:
+    if len(cues) < 10:
+        raise BadInput(f"{len(cues)} samples of distances: at least 10 are needed; take more sequences")
+    if np.ptp(distances_m) <= 0.0 or np.any(np.ptp(cues, axis=0) <= 0.0):
+        raise BadInput("samples of distances: all are alike, so there is nothing to train on")
+
+
+def walks(run: DistanceSamples, measured: Floats) -> list[tuple[Floats, Floats]]:
+    """Cut a run where the person changes or an image is missing: true and measured positions (N, 2) [m]."""
+    is_cut = (np.diff(run.person) != 0) | (np.diff(run.time_s) > 1.5 * STEP_S)
+    cuts = np.flatnonzero(is_cut) + 1
+    pieces = zip(np.split(run.true_m, cuts), np.split(measured, cuts), strict=True)
+    return [(true, seen) for true, seen in pieces if len(true) > 2]
+
+
+TRAINING_SHARE: Final = 0.3
+"""Share of the samples that is trained on (OMNIVIS 2003, section 4.4)."""
+BLOCKS: Final = 20
+"""Parts into which a sequence is cut where neighbouring images must not count as independent."""
+
+
+def block_split(count: int, rng: np.random.Generator) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Split so many images by whole stretches of time, 30 to 70."""
+    block = np.arange(count) * BLOCKS // count
+    is_training = np.isin(block, rng.permutation(BLOCKS)[: round(TRAINING_SHARE * BLOCKS)])
+    return np.flatnonzero(is_training), np.flatnonzero(~is_training)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DistanceTraining(Specification[list[dict[str, Any]]]):
+    """Train on a scenario that begins with five empty panoramas, and has one person at a time later."""
+
+    HINT: ClassVar[str] = "`peopleboy reproduce --paper panoramic` measures it by the paper's experiments"
+
+    sequences: int = option(10, "Runs of the scenario.", minimum=1)
+    scenario: str = option("room_long", "Scenario, by name or path.")
+    epochs: int = option(2000, "How often the network goes through its samples.", minimum=1)
+
+    def default_folder(self, model: str) -> Path:
+        """Return a folder of the scenario's own."""
+        return Path("runs") / f"{model}-{Path(self.scenario).stem}"
+
+    def collect(self, out: Path, workers: Workers) -> list[dict[str, Any]]:
+        """Run the scenario; samples that are there are used if neither code nor scenario has changed."""
+        scenario = load_scenario(self.scenario).mounting((PANORAMA,))
+        check_floor(scenario.world(0), self.scenario)
+        store = Store(out / "samples.jsonl", code_digest(Path(__file__)))
+        seeds = range(self.sequences)
+        tasks = [DistanceTask(self.scenario, seed, film_key(scenario, seed)[:12]) for seed in seeds]
+        missing = [task for task in tasks if task.name not in store]
+        work_through(missing, workers, "samples", lambda task, result: store.add(task.name, result))
+        for seed, task in enumerate(tasks):
+            if len(store[task.name]["rows"]) < 100:
+                raise BadInput(
+                    f"{self.scenario}, seed {seed}: one person alone is in {len(store[task.name]['rows'])} "
+                    "panoramas; at least 100 are needed to train on"
+                )
+        return [store[task.name] for task in tasks]
+
+    def fit(self, data: list[dict[str, Any]]) -> Mapping[str, DistanceModel]:
+        """Train the network on all samples."""
+        runs, settings = _runs(data), Backpropagation(epochs=self.epochs)
+        cues = np.concatenate([run.cues for run in runs])
+        distances = np.concatenate([run.distance_m for run in runs])
+        network = fit_distances(cues, distances, np.random.default_rng(0), settings)
+        all_walks = [walk for run in runs for walk in walks(run, run.positions_at(network.predict(run.cues)))]
+        name = load_scenario(self.scenario).name
+        model = DistanceModel(
+            network=network,
+            view=PanoramaView.of_plain(data[0]["view"]),
+            noise=estimate_noise(all_walks, uses_velocity=False),
+            about={
+                "trained on": f"{len(cues)} images of {name}, seeds 0 to {len(runs) - 1}",
+                "training": f"{settings.epochs} epochs, rate {settings.rate:g}, online",
+                "left out": f"{sum(one['missed'] for one in data)} images in which the person was not seen",
+            },
+        )
+        return {file_name(name): model}
+
+    def evaluate(self, model: DistanceModel, data: list[dict[str, Any]]) -> Mapping[str, str]:
+        """Measure the error on the samples, and where 30 % of each run were trained on, by blocks of time."""
+        settings, seen, unseen = Backpropagation(epochs=self.epochs), [], []
+        for run in _runs(data):
+            seen.append(model.network.predict(run.cues) - run.distance_m)
+            rng = np.random.default_rng((0, 0))
+            rows, rest = block_split(len(run.cues), rng)
+            network = fit_distances(run.cues[rows], run.distance_m[rows], rng, settings)
+            unseen.append((network.predict(run.cues) - run.distance_m)[rest])
+        return {"error on those": _error(seen), "error on the rest, by blocks": _error(unseen)}
+
+    def is_replaced(self, path: Path, model: DistanceModel) -> bool:
+        """Tell whether a shipped file is of the same mirror."""
+        return path.match(file_name("*")) and not DistanceModel.load(path).view.refusal(model.view)
+
+
+def _runs(data: Sequence[Mapping[str, Any]]) -> list[DistanceSamples]:
+    return [DistanceSamples.from_rows(result["rows"]) for result in data]
+
+
+def _error(parts: Sequence[Floats]) -> str:
+    errors = np.abs(np.concatenate(parts))
+    return f"{errors.mean():.3f} ± {errors.std():.3f} m"

@@ -1,1 +1,0 @@
-"""Learning from runs how far away a person is in the panorama."""

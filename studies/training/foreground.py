@@ -1,0 +1,295 @@
+"""Train the network that separates people from background in panoramas."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, Final
+
+import cv2
+import jax
+import jax.numpy as jnp
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.running.engine.task import Workers
+from peopleboy.studies.training.optimiser import Optimiser, Weights, he_weights
+from peopleboy.studies.training.panorama_sequences import (
+    PanoramaSequence,
+    panorama_calibration,
+    render_task,
+    scenario_path,
+)
+from peopleboy.studies.training.random_scenes import FIRST_SEED
+from peopleboy.studies.training.samples import collect_missing
+from peopleboy.studies.training.specification import Specification, option, report
+from peopleboy.tracker.frame import Calibration
+from peopleboy.tracker.networks.mask_network import BLOCK, DILATIONS, INPUTS, OUTPUTS, MaskNetwork
+from peopleboy.tracker.panoramic.foreground.foreground import FILE, Foreground, ForegroundModel
+from peopleboy.tracker.panoramic.panorama_view import view_of
+
+Linear = NDArray[np.float32]
+Floats = NDArray[np.float64]
+Sample = tuple[NDArray[np.float16], NDArray[np.bool_]]
+"""The network's input (R, WIDE, INPUTS), and which pixels are people (R, WIDE, OUTPUTS)."""
+
+UNITS: Final = 24
+EVERY: Final = 4
+"""Which images of a sequence are trained on; all are played."""
+WIDE: Final = 40
+"""Columns of squares of a sample: most of an image shows nothing to train on."""
+BATCH: Final = 8
+RATES: Final = (4e-3, 1e-4)
+"""Learning rate at the beginning and at the end; it falls by the same factor in each round."""
+NEAREST_M: Final = 1.2
+FARTHEST_M: Final = 6.0
+"""Between these distances people are evaluated one by one."""
+
+_SEQUENCES_A_ROUND: Final = 100  # samples of so many are in memory
+_RARE: Final = -3.0  # evidence that the last layer begins with, since few pixels are people
+_LEAST_PX: Final = 12  # of a person, to be evaluated
+_REACH_PX: Final = 6  # round a person, within which foreground counts as that person's
+
+
+@dataclass(frozen=True, slots=True)
+class ForegroundData:
+    """Files of sequences for training and validation, and the calibration of the camera."""
+
+    training: list[Path]
+    validation: list[Path]
+    calibration: Calibration
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ForegroundTraining(Specification[ForegroundData]):
+    """Train on panoramas of scenes drawn at random.
+
+    In each round a hundred scenes are played to the network as it is by then, so that the background in its
+    input is one that it has helped to make itself, as when it is used.
+    """
+
+    sequences: int = option(400, "Scenes to train on.", minimum=1)
+    validation: int = option(20, "Other scenes, to evaluate it.", minimum=0)
+    rounds: int = option(12, "How often a hundred of the scenes are trained on.", minimum=1)
+
+    def collect(self, out: Path, workers: Workers) -> ForegroundData:
+        """Render the scenes."""
+        folder = out / "sequences"
+        validation = [render_task(folder, seed) for seed in range(self.validation)]
+        training = [render_task(folder, FIRST_SEED + k) for k in range(self.sequences)]
+        collect_missing([*validation, *training], workers, "sequences")
+        scenario = load_scenario(scenario_path(folder, FIRST_SEED))
+        return ForegroundData(
+            [task.path for task in training],
+            [task.path for task in validation],
+            panorama_calibration(scenario, 0),
+        )
+
+    def fit(self, data: ForegroundData) -> Mapping[str, ForegroundModel]:
+        """Train in rounds, and report the loss of each."""
+        height, width = PanoramaSequence.load(data.training[0]).images.shape[1:3]
+        view, rng = view_of(data.calibration, width, height), np.random.default_rng(0)
+        optimiser = Optimiser(mask_loss, first_weights(height // BLOCK, rng))
+        rates = np.geomspace(*RATES, self.rounds + 1).tolist()
+        for number, (first, last) in enumerate(pairwise(rates), 1):
+            chosen = [data.training[k] for k in rng.permutation(len(data.training))[:_SEQUENCES_A_ROUND]]
+            model = ForegroundModel(network=MaskNetwork(**optimiser.weights), view=view)
+            samples = [one for path in chosen for one in collect_samples(path, model, data.calibration, rng)]
+            for ends in ((first, last), (last, last)):
+                loss = run_epoch(optimiser, samples, rng, ends)
+            report(f"round {number} of {self.rounds}: {loss:.4f} nat a pixel")
+        about = {
+            "trained on": f"{len(data.training)} scenes drawn at random, seeds from {FIRST_SEED}",
+            "training": f"{self.rounds} rounds, {optimiser.steps} steps",
+        }
+        return {FILE: ForegroundModel(network=MaskNetwork(**optimiser.weights), view=view, about=about)}
+
+    def evaluate(self, model: ForegroundModel, data: ForegroundData) -> Mapping[str, str]:
+        """Measure overlap and single people, of a standing and of a driving robot."""
+        sums = {"a standing robot": MaskScores(), "a driving robot": MaskScores()}
+        for path in data.validation:
+            sequence = PanoramaSequence.load(path)
+            robot = "a driving robot" if sequence.is_driven else "a standing robot"
+            score_masks(sequence, segment(sequence, model, data.calibration), sums[robot])
+        return {f"on other scenes, {robot}": str(scores) for robot, scores in sums.items() if scores.images}
+
+
+def segment(sequence: PanoramaSequence, model: ForegroundModel, calibration: Calibration) -> Iterator[Linear]:
+    """Yield for each image of a sequence the probability (H, W) that a pixel is a person."""
+    foreground = Foreground(model)
+    for k, image in enumerate(sequence.images):
+        yield foreground.update(image, float(sequence.time_s[k]), sequence.odometry(k), calibration)
+
+
+def collect_samples(
+    path: Path, model: ForegroundModel, calibration: Calibration, rng: np.random.Generator
+) -> Iterator[Sample]:
+    """Play an augmented sequence, and yield two excerpts of some images: anywhere, and round a person."""
+    sequence = _augment(PanoramaSequence.load(path), rng)
+    foreground, begin = Foreground(model), int(rng.integers(EVERY))
+    for k, image in enumerate(sequence.images):
+        foreground.update(image, float(sequence.time_s[k]), sequence.odometry(k), calibration)
+        if k % EVERY != begin:
+            continue
+        squares, people = foreground.squares.transpose(1, 2, 0), _squares(sequence.person[k] > 0)
+        yield _excerpt(squares, people, int(rng.integers(people.shape[1])))
+        columns = np.flatnonzero(people.any(axis=(0, 2)))
+        if len(columns) > 0:
+            yield _excerpt(squares, people, int(rng.choice(columns)))
+
+
+def run_epoch(
+    optimiser: Optimiser, samples: Sequence[Sample], rng: np.random.Generator, rates: tuple[float, float]
+) -> float:
+    """Train once on all samples, while the rate goes from one to another; return their mean loss [nat]."""
+    order, losses = rng.permutation(len(samples)), []
+    for start in range(0, len(order), BATCH):
+        batch = [samples[k] for k in order[start : start + BATCH]]
+        squares, people = (np.stack(parts).astype(np.float32) for parts in zip(*batch, strict=True))
+        rate = rates[0] + start / len(order) * (rates[1] - rates[0])
+        losses.append(optimiser.step((squares, people), rate)["entropy"])
+    return float(np.mean(losses))
+
+
+def first_weights(rows: int, rng: np.random.Generator) -> Weights:
+    """Draw an untrained network for images of so many rows of squares."""
+    layers = len(DILATIONS)
+    return {
+        "first": he_weights(rng, (INPUTS, UNITS), INPUTS),
+        "rows": np.zeros((rows, UNITS), np.float32),
+        "between": he_weights(rng, (layers, 9, UNITS, UNITS), 9 * UNITS) * np.float32(0.5),
+        "biases": np.zeros((layers, UNITS), np.float32),
+        "last": he_weights(rng, (UNITS + INPUTS, OUTPUTS), UNITS + INPUTS) * np.float32(0.1),
+        "bias": np.full(OUTPUTS, _RARE, np.float32),
+    }
+
+
+def mask_loss(weights: Weights, batch: Any, key: jax.Array) -> tuple[jax.Array, dict[str, jax.Array]]:  # noqa: ARG001
+    """Return the mean cross entropy [nat] of squares (N, R, C, INPUTS) and masks (N, R, C, OUTPUTS)."""
+    squares, people = batch
+    units = jax.nn.relu(squares @ weights["first"] + weights["rows"][:, None])
+    for kernel, bias, dilation in zip(weights["between"], weights["biases"], DILATIONS, strict=True):
+        # Columns wrap round, while there is nothing above and below the image.
+        ring = jnp.pad(units, ((0, 0), (0, 0), (dilation, dilation), (0, 0)), mode="wrap")
+        grown = jax.lax.conv_general_dilated(
+            ring,
+            kernel.reshape(3, 3, *kernel.shape[1:]),
+            (1, 1),
+            [(dilation, dilation), (0, 0)],
+            rhs_dilation=(dilation, dilation),
+            dimension_numbers=("NHWC", "HWIO", "NHWC"),
+        )
+        units += jax.nn.relu(grown + bias)
+    evidence = jnp.concatenate([units, squares], axis=-1) @ weights["last"] + weights["bias"]
+    entropy = (jnp.logaddexp(0.0, evidence) - people * evidence).mean()
+    return entropy, {"entropy": entropy}
+
+
+def _excerpt(squares: Linear, people: NDArray[np.bool_], middle: int) -> Sample:
+    """Cut out the columns round one, over the seam."""
+    chosen = np.arange(middle - WIDE // 2, middle + WIDE // 2) % people.shape[1]
+    return squares[:, chosen].astype(np.float16), people[:, chosen]
+
+
+def _augment(sequence: PanoramaSequence, rng: np.random.Generator) -> PanoramaSequence:
+    """Permute colours, and swap left and right in half of all sequences: more rooms than were rendered."""
+    images = sequence.images[..., rng.permutation(3)]
+    if rng.random() < 0.5:
+        return replace(sequence, images=np.ascontiguousarray(images))
+    return replace(
+        sequence,
+        images=np.ascontiguousarray(images[:, :, ::-1]),
+        person=np.ascontiguousarray(sequence.person[:, :, ::-1]),
+        motion=sequence.motion * (1.0, -1.0, -1.0),
+        place_m=sequence.place_m * (1.0, -1.0),
+    )
+
+
+def _squares(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Cut a mask (H, W) into squares (H / BLOCK, W / BLOCK, OUTPUTS), whose pixels go row by row."""
+    height, width = mask.shape
+    pixels = mask.reshape(height // BLOCK, BLOCK, width // BLOCK, BLOCK).transpose(0, 2, 1, 3)
+    return pixels.reshape(height // BLOCK, width // BLOCK, OUTPUTS)
+
+
+@dataclass(slots=True, kw_only=True)
+class MaskScores:
+    """Sums over images, and errors of single people.
+
+    Attributes:
+        both, either: pixels that are people in truth and as predicted, and those that are one of both.
+        false_px, images: predicted pixels far from any person, and images.
+        foot_px: by how many rows the lowest one is off, positive if it is too low.
+        column_px: by how many columns the mean one is off.
+        found: for each person that was evaluated, whether half of it was predicted.
+    """
+
+    both: int = 0
+    either: int = 0
+    false_px: int = 0
+    images: int = 0
+    foot_px: list[float] = field(default_factory=list)
+    column_px: list[float] = field(default_factory=list)
+    found: list[bool] = field(default_factory=list)
+
+    def __str__(self) -> str:
+        foot, column = _mean_size(self.foot_px), _mean_size(self.column_px)
+        return (
+            f"overlap {self.both / max(self.either, 1):.3f}, {_mean_size(self.found):.1%} of people found, "
+            f"lowest foot off by {foot:.2f} rows, middle by {column:.2f} columns, "
+            f"{self.false_px / max(self.images, 1):.1f} false pixels an image"
+        )
+
+
+def score_masks(sequence: PanoramaSequence, predicted: Iterable[Linear], sums: MaskScores) -> None:
+    """Score probabilities for each image of a sequence, and add to the sums."""
+    for k, probability in enumerate(predicted):
+        _score_image(sums, sequence.person[k], probability > 0.5, np.hypot(*sequence.place_m[k].T))
+
+
+def _score_image(
+    sums: MaskScores, person: NDArray[np.uint8], mask: NDArray[np.bool_], away_m: Floats
+) -> None:
+    is_person = person > 0
+    sums.images += 1
+    sums.both += int((mask & is_person).sum())
+    sums.either += int((mask | is_person).sum())
+    sums.false_px += int((mask & ~_dilate(is_person)).sum())
+    for k in np.flatnonzero((away_m >= NEAREST_M) & (away_m <= FARTHEST_M)).tolist():
+        own = person == k + 1
+        if own.sum() >= _LEAST_PX:
+            _score_person(sums, own, mask & _dilate(own) & (own | ~is_person))
+
+
+def _score_person(sums: MaskScores, own: NDArray[np.bool_], mask: NDArray[np.bool_]) -> None:
+    sums.found.append(bool((mask & own).sum() >= 0.5 * own.sum()))
+    if mask.any():
+        sums.foot_px.append(float(_lowest(mask) - _lowest(own)))
+        turn = np.angle(_mean_direction(mask) / _mean_direction(own))
+        sums.column_px.append(float(turn / (2.0 * np.pi) * own.shape[1]))
+
+
+def _mean_size(values: Sequence[float]) -> float:
+    return float(np.abs(np.asarray(values, np.float64)).mean()) if values else math.nan
+
+
+def _lowest(mask: NDArray[np.bool_]) -> int:
+    """Return the lowest row with two pixels, or with one if no row has more."""
+    counts = mask.sum(axis=1)
+    return int(np.flatnonzero(counts >= min(2, counts.max()))[-1])
+
+
+def _mean_direction(mask: NDArray[np.bool_]) -> complex:
+    turns = np.arange(mask.shape[1]) / mask.shape[1]
+    return complex(mask.sum(axis=0) @ np.exp(2j * np.pi * turns))
+
+
+def _dilate(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Grow a mask on all sides, over the seam."""
+    ring = np.pad(mask.astype(np.uint8), ((0, 0), (_REACH_PX, _REACH_PX)), mode="wrap")
+    size = 2 * _REACH_PX + 1
+    return np.asarray(cv2.dilate(ring, np.ones((size, size), np.uint8))[:, _REACH_PX:-_REACH_PX], np.bool_)

@@ -1,1 +1,0 @@
-"""Learning from rendered scenes which pixels of the panorama are people."""

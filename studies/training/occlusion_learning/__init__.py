@@ -1,1 +1,0 @@
-"""Learning from runs who of two people is in front."""

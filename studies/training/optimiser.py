@@ -1,0 +1,86 @@
+"""The optimiser of all networks: Adam by JAX and Optax, which a running tracker does without."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, Final
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import optax
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float32]
+Weights = dict[str, Any]
+"""Arrays by name."""
+Loss = Callable[[Weights, Any, jax.Array], tuple[jax.Array, dict[str, jax.Array]]]
+"""Of weights, a batch and a random key: what is minimised, and results to report by name."""
+
+_LEAST_SHARE: Final = 0.002  # of a step's weights in the average (Polyak and Juditsky 1992)
+_WARM_UP: Final = 9.0  # steps, so that the n-th has a share of 9 / (9 + n) at first
+
+
+class Optimiser:
+    """Weights that are trained step by step.
+
+    Attributes:
+        steps: taken so far.
+    """
+
+    def __init__(
+        self, loss: Loss, weights: Weights, *, seed: int = 0, decay: float = 0.0, averages: bool = False
+    ) -> None:
+        """Begin with some weights.
+
+        Args:
+            loss: to minimise.
+            weights: to begin with.
+            seed: of the keys that the loss gets.
+            decay: share of the rate by which matrices shrink in each step (AdamW, ICLR 2019).
+            averages: whether the result is a running average of the weights of all steps.
+        """
+        self.steps = 0
+        self._weights: Weights = {name: jnp.asarray(array) for name, array in weights.items()}
+        self._average = self._weights if averages else None
+        matrices = {name: array.ndim > 1 for name, array in self._weights.items()}
+        adam = optax.chain(optax.scale_by_adam(), optax.add_decayed_weights(decay, matrices))
+        self._state, self._key = adam.init(self._weights), jax.random.key(seed)
+
+        def step(
+            weights: Weights, state: optax.OptState, batch: Any, key: jax.Array, rate: float
+        ) -> tuple[Weights, optax.OptState, dict[str, jax.Array]]:
+            (_, results), slopes = jax.value_and_grad(loss, has_aux=True)(weights, batch, key)
+            steps, state = adam.update(slopes, state, weights)
+            return {name: array - rate * steps[name] for name, array in weights.items()}, state, results
+
+        self._step = jax.jit(step)
+
+    def step(self, batch: Any, rate: float) -> dict[str, float]:
+        """Take a step of a learning rate on a batch; return the results of the loss."""
+        self.steps += 1
+        key = jax.random.fold_in(self._key, self.steps)
+        self._weights, self._state, results = self._step(self._weights, self._state, batch, key, rate)
+        if self._average is not None:
+            share = max(_LEAST_SHARE, _WARM_UP / (_WARM_UP + self.steps))
+            self._average = {
+                name: kept + share * (self._weights[name] - kept) for name, kept in self._average.items()
+            }
+        return {name: float(result) for name, result in results.items()}
+
+    @property
+    def weights(self) -> dict[str, Floats]:
+        """The weights, or their average."""
+        kept = self._weights if self._average is None else self._average
+        return {name: np.array(array) for name, array in kept.items()}
+
+
+def he_weights(rng: np.random.Generator, shape: tuple[int, ...], inputs: int) -> Floats:
+    """Draw first weights for rectified linear units with so many inputs (He et al., ICCV 2015)."""
+    return (rng.standard_normal(shape) * math.sqrt(2.0 / inputs)).astype(np.float32)
+
+
+def huber(off: jax.Array, linear_from: float) -> jax.Array:
+    """Return half of squares, that go on as lines from some value on (Huber 1964)."""
+    return jnp.where(off < linear_from, 0.5 * off * off, linear_from * (off - 0.5 * linear_from))

@@ -1,0 +1,121 @@
+"""Rendered sequences of the panoramic camera, with the truth about every pixel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+
+from peopleboy.geometry.pose2 import Pose2
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.run_folder.atomic_output import atomic
+from peopleboy.scenarios.running.blind_drive import blind_drive
+from peopleboy.sim.truth.truth import Truth
+from peopleboy.studies.training.random_scenes import random_scene
+from peopleboy.studies.training.samples import Arrays, SampleTask
+from peopleboy.tracker.frame import PANORAMA, Odometry
+from peopleboy.tracker.panorama_calibration import PanoramaCalibration
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PanoramaSequence(Arrays):
+    """The images of one run, with the truth about them.
+
+    Attributes:
+        images: (N, H, W, 3) uint8 RGB.
+        person: (N, H, W) uint8 number of the person at each pixel, 0 for none.
+        time_s: (N,) of the images [s].
+        motion: (N, 3) forward [m], to the left [m] and turn [rad] since the image before, by odometry.
+        place_m: (N, P, 2) where people 1, 2, ... stand in the robot's frame [m]; NaN while they are away.
+    """
+
+    # A hundred sequences of 10 MB are read in each round of training.
+    IS_COMPRESSED: ClassVar[bool] = False
+
+    images: NDArray[np.uint8]
+    person: NDArray[np.uint8]
+    time_s: Floats
+    motion: Floats
+    place_m: Floats
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether the robot moves by more than its wheels' noise."""
+        return bool(np.abs(self.motion).sum() > 0.05)
+
+    def odometry(self, k: int) -> Odometry | None:
+        """Return how the robot moved before image k; None for the first."""
+        if k == 0:
+            return None
+        advance, aside, turn = self.motion[k].tolist()
+        return Odometry(advance_m=advance, aside_m=aside, turn_rad=turn)
+
+
+def render_panoramas(scenario: Scenario, seed: int) -> PanoramaSequence:
+    """Render a scenario with the panoramic camera; other cameras' images are never made.
+
+    Raises:
+        BadInput: the robot needs images to drive.
+    """
+    scenario = scenario.mounting((PANORAMA,))
+    seen: dict[str, list[Any]] = {name: [] for name in ("images", "person", "time_s", "motion", "place_m")}
+    before: Pose2 | None = None
+    for world, observation in blind_drive(scenario, seed):
+        if PANORAMA in observation.images:
+            truth, now = world.truth(PANORAMA), observation.odometry
+            seen["images"].append(np.array(observation.images[PANORAMA]))
+            seen["person"].append(np.array(truth.instance))
+            seen["time_s"].append(observation.time_s)
+            seen["motion"].append(_motion(before, now))
+            seen["place_m"].append(_places(truth, len(world.config.people)))
+            before = now
+    return PanoramaSequence(**{name: np.array(values) for name, values in seen.items()})
+
+
+def render_random_scene(folder: Path, seed: int) -> PanoramaSequence:
+    """Draw the scene of a seed, leave its scenario in the folder, and render it."""
+    path = scenario_path(folder, seed)
+    with atomic(path) as part:
+        part.write_text(yaml.safe_dump(random_scene(seed), sort_keys=False), encoding="utf-8")
+    return render_panoramas(load_scenario(path), seed)
+
+
+def scenario_path(folder: Path, seed: int) -> Path:
+    """Return the path of the scenario of a seed."""
+    return folder / f"scene_{seed}.yaml"
+
+
+def render_task(folder: Path, seed: int) -> SampleTask:
+    """Return the task of rendering the scene of a seed."""
+    return SampleTask(scenario_path(folder, seed).with_suffix(".npz"), render_random_scene, (folder, seed))
+
+
+def panorama_calibration(scenario: Scenario, seed: int) -> PanoramaCalibration:
+    """Return the calibration of a scenario's panoramic camera."""
+    cameras = scenario.mounting((PANORAMA,)).world(seed).robot.cameras
+    calibration = calibrations_of(cameras)[PANORAMA]
+    if not isinstance(calibration, PanoramaCalibration):
+        raise TypeError(f"{scenario.name}: camera {PANORAMA} is no panoramic one")
+    return calibration
+
+
+def _motion(before: Pose2 | None, now: Pose2) -> tuple[float, float, float]:
+    if before is None:
+        return 0.0, 0.0, 0.0
+    motion = now.relative_to(before)
+    return motion.x, motion.y, motion.heading
+
+
+def _places(truth: Truth, people: int) -> Floats:
+    places = np.full((people, 2), np.nan)
+    for person in truth.people:
+        places[person.id - 1] = truth.robot.to_local(person.position_m)
+    return places

@@ -1,1 +1,0 @@
-"""Teaching the detector of people in thermal images, with rendered ones."""

@@ -1,1 +1,0 @@
-"""Teaching the panoramic tracker to read where people stand."""

@@ -1,0 +1,397 @@
+"""Train the networks on patches of panoramas: whether a person is there, where, and how sure that is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from hashlib import sha256
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.run_folder.atomic_output import writing_to
+from peopleboy.scenarios.running.engine.task import Workers
+from peopleboy.studies.training.optimiser import Optimiser, Weights
+from peopleboy.studies.training.panorama_sequences import (
+    PanoramaSequence,
+    panorama_calibration,
+    render_panoramas,
+    render_task,
+    scenario_path,
+)
+from peopleboy.studies.training.random_scenes import FIRST_SEED
+from peopleboy.studies.training.samples import Arrays, SampleTask, collect_missing, load_samples
+from peopleboy.studies.training.specification import Specification, option
+from peopleboy.tracker.networks.inference import DenseNetwork
+from peopleboy.tracker.networks.weights_archive import SHIPPED
+from peopleboy.tracker.panorama_calibration import PanoramaCalibration
+from peopleboy.tracker.panoramic.foreground.foreground import FILE as FOREGROUND
+from peopleboy.tracker.panoramic.foreground.foreground import Foreground
+from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
+from peopleboy.tracker.panoramic.people.figure_patch import PATCH, Map
+from peopleboy.tracker.panoramic.people.panorama_patches import Scene, promising_places
+from peopleboy.tracker.panoramic.people.place_model import FILE, PlaceModel, with_distance
+
+Floats = NDArray[np.float64]
+
+LIBRARY: Final = {"room_long": 12, "panoramic_crossing": 10, "panoramic_moving": 14}
+"""Runs of scenarios of the library, which are trained on, too."""
+VALIDATION: Final = 20
+"""Scenes of the validation split: the first ones."""
+
+IMAGES: Final = 300
+"""At most so many images of a sequence are sampled, and at most half of them; all are played."""
+
+NEAREST_M: Final = 0.8
+FARTHEST_M: Final = 8.0
+LEAST_PX: Final = 10
+BLIND_SHARE: Final = 0.7
+"""A person that is nearer, farther, smaller, or occluded more is neither positive nor negative."""
+
+NEAR_M: Final = 0.42
+APART_M: Final = 0.6
+"""Within the first of these from a person a place is positive; beyond the second from all, negative."""
+
+_SPREADS: Final = ((0.05, 0.03), (0.18, 0.1), (0.18, 0.1))
+"""Deviations, away and across, of the places that are sampled round a person: nearly right, and expected."""
+
+_WARM_UP_S: Final = 0.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlaceSamples(Arrays):
+    """N samples.
+
+    Attributes:
+        patches: (N, PATCH) of the panorama.
+        distance_m: (N,) of the place that is evaluated.
+        offset_m: (N, 2) where the person is from there, farther away and to the left; NaN for a negative.
+    """
+
+    patches: NDArray[np.float16]
+    distance_m: Floats
+    offset_m: Floats
+
+    @property
+    def inputs(self) -> Map:
+        """Inputs of the networks, (N, INPUTS)."""
+        return with_distance(self.patches.astype(np.float32), self.distance_m)
+
+    @property
+    def is_person(self) -> NDArray[np.bool_]:
+        """Whether a person is there, (N,)."""
+        return ~np.isnan(self.offset_m[:, 0])
+
+
+_NONE: Final = PlaceSamples(np.zeros((0, PATCH), np.float16), np.zeros(0), np.zeros((0, 2)))
+
+
+class _Standing(NamedTuple):
+    """A person in an image: number, place (2,) and its polar form, and how many pixels show it."""
+
+    number: int
+    place_m: tuple[float, float]
+    pixels: int
+
+    @property
+    def distance_m(self) -> float:
+        return math.hypot(*self.place_m)
+
+    @property
+    def bearing_rad(self) -> float:
+        return math.atan2(self.place_m[1], self.place_m[0])
+
+
+def sample_places(sequence: PanoramaSequence, calibration: PanoramaCalibration, seed: int) -> PlaceSamples:
+    """Play a sequence to the tracker's foreground, and keep patches at and beside people."""
+    rng, foreground = np.random.default_rng((seed, 2003)), Foreground()
+    parts = [_NONE]
+    every = max(2, math.ceil(len(sequence.images) / IMAGES))
+    for k, image in enumerate(sequence.images):
+        mask = foreground.update(image, float(sequence.time_s[k]), sequence.odometry(k), calibration)
+        if k % every == seed % every and sequence.time_s[k] >= _WARM_UP_S:
+            people = _people(sequence, k)
+            scene = Scene.of(image, mask, foreground.novelty, calibration)
+            parts.extend(_sample_image(scene, people, rng))
+    return PlaceSamples.join(parts)
+
+
+def _people(sequence: PanoramaSequence, k: int) -> list[_Standing]:
+    """List the people that are there, the nearest first."""
+    pixels = np.bincount(sequence.person[k].ravel(), minlength=len(sequence.place_m[k]) + 1)
+    found = [
+        _Standing(number + 1, (x, y), int(pixels[number + 1]))
+        for number, (x, y) in enumerate(sequence.place_m[k].tolist())
+        if not math.isnan(x)
+    ]
+    return sorted(found, key=lambda one: one.distance_m)
+
+
+def _sample_image(
+    scene: Scene, people: Sequence[_Standing], rng: np.random.Generator
+) -> Iterator[PlaceSamples]:
+    """Search an image as the tracker does: nearest first, covering those that are found, then newcomers."""
+    yield _sample(scene, promising_places(scene.figures, 3), people)
+    for one in people:
+        yield _sample(scene, _beside(one, rng), people)
+        if not _is_visible(one, scene):
+            continue
+        yield _sample(scene, _around(one, rng), people)
+        if rng.random() < 0.9:
+            scene.cover(
+                one.bearing_rad + rng.normal(0.0, 0.03) / one.distance_m,
+                one.distance_m + rng.normal(0.0, 0.05),
+            )
+    yield _sample(scene, promising_places(scene.figures, 3), people)
+
+
+def _sample(scene: Scene, polar: Floats, people: Sequence[_Standing]) -> PlaceSamples:
+    """Label places (N, 2), bearing and distance; what is neither clearly a person nor none is left out."""
+    places = polar[:, 1:] * np.stack([np.cos(polar[:, 0]), np.sin(polar[:, 0])], axis=1)
+    offset, is_sure = np.full((len(polar), 2), np.nan), np.ones(len(polar), np.bool_)
+    for one in people:
+        away = np.hypot(*(places - one.place_m).T)
+        is_near = away < NEAR_M
+        if _is_visible(one, scene):
+            offset[is_near] = _offsets(polar[is_near], one)
+            is_sure &= is_near | (away > APART_M)
+        else:
+            is_sure &= away > APART_M
+    patches = scene.figures.patches(polar[is_sure, 0], polar[is_sure, 1])
+    return PlaceSamples(patches.astype(np.float16), polar[is_sure, 1], offset[is_sure])
+
+
+def _is_visible(one: _Standing, scene: Scene) -> bool:
+    is_in_reach = NEAREST_M < one.distance_m < FARTHEST_M and one.pixels >= LEAST_PX
+    return is_in_reach and scene.hidden_share(one.bearing_rad, one.distance_m) < BLIND_SHARE
+
+
+def _offsets(polar: Floats, one: _Standing) -> Floats:
+    turn = np.remainder(one.bearing_rad - polar[:, 0] + math.pi, math.tau) - math.pi
+    return np.stack([one.distance_m - polar[:, 1], turn * polar[:, 1]], axis=1)
+
+
+def _around(one: _Standing, rng: np.random.Generator) -> Floats:
+    """Draw places (N, 2), bearing and distance, at which a person that is here may be expected."""
+    off = rng.normal(0.0, 1.0, (len(_SPREADS), 2)) * _SPREADS
+    off = np.clip(off, -0.3, 0.3)
+    distance = np.maximum(one.distance_m + off[:, 0], 0.6)
+    return np.stack([one.bearing_rad + off[:, 1] / distance, distance], axis=1)
+
+
+def _beside(one: _Standing, rng: np.random.Generator) -> Floats:
+    """Draw places beside, before and behind a person, and one anywhere."""
+    side, depth = rng.choice([-1.0, 1.0], 2)
+    beside = one.bearing_rad + side * rng.uniform(0.55, 1.2) / one.distance_m, one.distance_m
+    behind = one.bearing_rad + rng.normal(0.0, 0.05), one.distance_m + depth * rng.uniform(0.65, 2.5)
+    anywhere = rng.uniform(-math.pi, math.pi), rng.uniform(1.0, FARTHEST_M)
+    places = np.array([beside, behind, anywhere])
+    return places[places[:, 1] > NEAREST_M]
+
+
+Split = tuple[PlaceSamples, PlaceSamples]
+"""For training and for validation."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PlaceWeights:
+    """A model with the camera that it holds for.
+
+    Attributes:
+        model: the networks.
+        view: of the camera.
+        about: what they were trained on.
+    """
+
+    model: PlaceModel
+    view: PanoramaView
+    about: Mapping[str, str] = field(default_factory=dict)
+
+    def save(self, path: Path) -> None:
+        """Write the model."""
+        self.model.save(path, self.view, self.about)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlacesTraining(Specification[Split]):
+    """Train on scenes drawn at random, after `peopleboy train foreground --ship`, which it builds on."""
+
+    sequences: int = option(400, "Scenes to train on.", minimum=2)
+    rendered: Path = option(  # noqa: RUF009
+        Path("runs/foreground/sequences"), "Folder of rendered scenes, which `train foreground` uses, too."
+    )
+
+    def collect(self, out: Path, workers: Workers) -> Split:
+        """Render scenes and sample them; samples depend on the foreground network."""
+        with writing_to(self.rendered, "--rendered"):
+            self.rendered.mkdir(parents=True, exist_ok=True)
+        folder = out / f"samples-{_digest()}"
+
+        def task(seed: int, scenario: str = "") -> SampleTask:
+            path = folder / f"{scenario or 'scene'}_{seed}.npz"
+            return SampleTask(path, collect_places, (scenario, seed, self.rendered))
+
+        others = [task(seed) for seed in range(VALIDATION)]
+        tasks = [task(FIRST_SEED + k) for k in range(self.sequences)]
+        tasks += [task(FIRST_SEED + k, name) for name, count in LIBRARY.items() for k in range(count)]
+        collect_missing([*others, *tasks], workers, "samples")
+        return load_samples(PlaceSamples, tasks), load_samples(PlaceSamples, others)
+
+    def fit(self, data: Split) -> Mapping[str, PlaceWeights]:
+        """Train the three networks."""
+        samples, people = data[0], int(data[0].is_person.sum())
+        calibration = panorama_calibration(load_scenario(next(iter(LIBRARY))), FIRST_SEED)
+        about = {
+            "trained on": f"{people} patches of people and {len(samples.distance_m) - people} of none, "
+            f"in {self.sequences} scenes drawn at random, and {', '.join(LIBRARY)}, seeds from {FIRST_SEED}"
+        }
+        view = view_of(calibration, calibration.width, calibration.height)
+        return {FILE: PlaceWeights(model=fit_places(samples), view=view, about=about)}
+
+    def evaluate(self, model: PlaceWeights, data: Split) -> Mapping[str, str]:
+        """Measure offsets, their deviations, and presence."""
+        samples = data[1]
+        found = model.model.look(samples.patches.astype(np.float32), samples.distance_m)
+        is_person, is_found = samples.is_person, found.evidence > 0
+        along, across = np.abs(found.offset_m - samples.offset_m)[is_person].mean(axis=0)
+        squared = ((found.offset_m - samples.offset_m) / found.deviation_m)[is_person] ** 2
+        return {
+            "on other scenes": f"off by {along:.3f} m in distance and {across:.3f} m across, squared error "
+            f"over predicted variance {squared.mean():.2f}; people found {is_found[is_person].mean():.1%}, "
+            f"false positives {is_found[~is_person].mean():.1%}"
+        }
+
+
+def collect_places(scenario: str, seed: int, rendered: Path) -> PlaceSamples:
+    """Sample a scenario of the library, or a scene drawn at random, which is rendered unless it is there."""
+    if scenario:
+        loaded = load_scenario(scenario)
+        sequence = render_panoramas(loaded, seed)
+    else:
+        task = render_task(rendered, seed)
+        if not task.path.is_file():
+            task(lambda _: None)
+        sequence, loaded = PanoramaSequence.load(task.path), load_scenario(scenario_path(rendered, seed))
+    return sample_places(sequence, panorama_calibration(loaded, seed), seed)
+
+
+def _digest() -> str:
+    """A hash of what samples depend on beside the sequences."""
+    digest = sha256((SHIPPED / FOREGROUND).read_bytes())
+    digest.update(Path(__file__).read_bytes())
+    return digest.hexdigest()[:8]
+
+
+class DenseRecipe(NamedTuple):
+    """How a dense network is trained.
+
+    Attributes:
+        units: of the hidden layers.
+        epochs: of full rate, followed by a quarter as many with a tenth of it.
+        rate: of learning.
+        shrinkage: weight of the squared weights in the loss of all samples.
+    """
+
+    units: tuple[int, ...]
+    epochs: int
+    rate: float
+    shrinkage: float
+
+
+PLACE: Final = DenseRecipe((96, 32), 24, 2e-3, 1e-2)
+PRESENCE: Final = DenseRecipe((24,), 10, 1e-3, 1e-3)
+DOUBT: Final = DenseRecipe((24,), 8, 2e-3, 1e-2)
+_BATCH: Final = 200
+_LEAST_ERROR_M: Final = 1e-3
+_LOG_OF_NORMAL: Final = 0.6352
+"""Minus the mean of log |e| for a normal e of deviation 1."""
+
+
+def fit_places(samples: PlaceSamples, *, seed: int = 0) -> PlaceModel:
+    """Train where people are, how sure that is, and whether they are there.
+
+    How sure it is, is trained on the errors on that half of the samples that a network was not trained on.
+
+    Args:
+        samples: in the order in which they were collected, so that halves have other scenes.
+        seed: draws first weights and order.
+    """
+    inputs, is_person = samples.inputs, samples.is_person
+    people, offset = inputs[is_person], samples.offset_m[is_person]
+    half, errors = len(people) // 2, np.empty_like(offset)
+    for own, other in ((slice(half), slice(half, None)), (slice(half, None), slice(half))):
+        network = fit_dense(PLACE, _squares, people[other], offset[other], seed)
+        errors[own] = network.predict(people[own]) - offset[own]
+    logarithms = np.log(np.abs(errors) + _LEAST_ERROR_M) + _LOG_OF_NORMAL
+    return PlaceModel(
+        presence=fit_dense(PRESENCE, _cross_entropy, inputs, is_person[:, None], seed),
+        place=fit_dense(PLACE, _squares, people, offset, seed),
+        doubt=fit_dense(DOUBT, _squares, people, logarithms, seed),
+    )
+
+
+def fit_dense(
+    recipe: DenseRecipe,
+    error: Callable[[jax.Array, jax.Array], jax.Array],
+    inputs: Map,
+    targets: NDArray[Any],
+    seed: int,
+) -> DenseNetwork:
+    """Train a dense network to lower an error of outputs and targets (N, outputs), summed over outputs."""
+    rng, targets = np.random.default_rng(seed), targets.astype(np.float32)
+    widths, size = (inputs.shape[1], *recipe.units, targets.shape[1]), min(_BATCH, len(inputs))
+    optimiser = Optimiser(
+        partial(_dense_loss, len(widths) - 1, error, recipe.shrinkage), _glorot(widths, rng)
+    )
+    for epoch in range(recipe.epochs + max(recipe.epochs // 4, 1)):
+        rate, order = (
+            recipe.rate if epoch < recipe.epochs else recipe.rate / 10.0,
+            rng.permutation(len(inputs)),
+        )
+        for begin in range(0, len(order) - size + 1, size):
+            rows = order[begin : begin + size]
+            optimiser.step((inputs[rows], targets[rows]), rate)
+    weights = optimiser.weights
+    return DenseNetwork([(weights[f"weights{k}"], weights[f"bias{k}"]) for k in range(len(widths) - 1)])
+
+
+def _glorot(widths: Sequence[int], rng: np.random.Generator) -> Weights:
+    """Draw first weights (Glorot and Bengio, AISTATS 2010)."""
+    weights: Weights = {}
+    for k, (before, after) in enumerate(pairwise(widths)):
+        limit = math.sqrt(6.0 / (before + after))
+        weights[f"weights{k}"] = rng.uniform(-limit, limit, (before, after)).astype(np.float32)
+        weights[f"bias{k}"] = rng.uniform(-limit, limit, after).astype(np.float32)
+    return weights
+
+
+def _dense_loss(
+    layers: int,
+    error: Callable[[jax.Array, jax.Array], jax.Array],
+    shrinkage: float,
+    weights: Weights,
+    batch: Any,
+    key: jax.Array,  # noqa: ARG001
+) -> tuple[jax.Array, dict[str, jax.Array]]:
+    units, targets = batch
+    for k in range(layers - 1):
+        units = jax.nn.relu(units @ weights[f"weights{k}"] + weights[f"bias{k}"])
+    outputs = units @ weights[f"weights{layers - 1}"] + weights[f"bias{layers - 1}"]
+    norm = sum((weights[f"weights{k}"] ** 2).sum() for k in range(layers))
+    return error(outputs, targets).sum(axis=1).mean() + 0.5 * shrinkage * norm / len(targets), {}
+
+
+def _squares(outputs: jax.Array, targets: jax.Array) -> jax.Array:
+    return 0.5 * (outputs - targets) ** 2
+
+
+def _cross_entropy(outputs: jax.Array, targets: jax.Array) -> jax.Array:
+    return jnp.logaddexp(0.0, outputs) - targets * outputs

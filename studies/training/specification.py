@@ -1,0 +1,182 @@
+"""What a model is trained on and how, and the one procedure that trains all of them."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from importlib import import_module
+from pathlib import Path
+from typing import Any, ClassVar, Final, Generic, TypeVar
+
+from rich.console import Console
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.run_folder.atomic_output import atomic, writing_to
+from peopleboy.scenarios.running.engine.task import Workers
+from peopleboy.tracker.networks.weights_archive import SHIPPED
+
+MODELS: Final[Mapping[str, tuple[str, str]]] = {
+    "cascade": (
+        "detector.cascade:CascadeTraining",
+        "Boosted trees of the detector: whether a window of a thermal image shows a person, and where.",
+    ),
+    "rescoring": (
+        "detector.rescoring:RescoringTraining",
+        "Network that corrects scores and boxes of the cascade's detections.",
+    ),
+    "box-refinement": (
+        "detector.box_refinement:BoxRefinementTraining",
+        "Network that corrects the boxes of the detector's final detections.",
+    ),
+    "occlusion": (
+        "occlusion:OcclusionTraining",
+        "Classifier of which of two overlapping people is in front, for the contour trackers.",
+    ),
+    "foreground": (
+        "foreground:ForegroundTraining",
+        "Network that separates people from background in panoramas.",
+    ),
+    "places": (
+        "places:PlacesTraining",
+        "Networks of the tracker panoramic: presence and position of people in patches of panoramas.",
+    ),
+    "distance": (
+        "distance:DistanceTraining",
+        "Network of the tracker panoramic-paper: how far away a person in the panorama is.",
+    ),
+    "windows": (
+        "windows:WindowsTraining",
+        "Support vector machines of the tracker rgbd: whether a window shows a person.",
+    ),
+}
+"""For each model, where its specification is and what the model does."""
+
+_PACKAGES: Final = {"jax": "jax", "optax": "optax", "sklearn": "scikit-learn"}  # of the extra `train`
+
+Data = TypeVar("Data")
+
+
+def option(default: Any, help: str, **limits: Any) -> Any:  # noqa: A002
+    """Declare an option of `peopleboy train MODEL`, a field of the model's specification.
+
+    Args:
+        default: if the option is left out.
+        help: what it is for.
+        limits: `minimum` and `maximum` of a whole number; `choices` of names.
+    """
+    return field(default=default, metadata={"help": help, **limits})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Specification(ABC, Generic[Data]):
+    """A model's training: its fields are the options, its methods are the steps.
+
+    Every model has an option `sequences`, how many are rendered or run to train on. A trained model is a
+    dataclass with `about`, which is for the reader of its file, and `save(path)`.
+    """
+
+    SHIPPED_IN: ClassVar[Path] = SHIPPED
+    HINT: ClassVar[str] = ""
+    """What to do next, printed after training."""
+
+    sequences: int
+
+    def default_folder(self, model: str) -> Path:
+        """Return the folder of samples and weights if none is given."""
+        return Path("runs") / model
+
+    @abstractmethod
+    def collect(self, out: Path, workers: Workers) -> Data:
+        """Collect samples for training and validation; what is in the folder already is used.
+
+        Raises:
+            BadInput: a path or sequences that cannot be used.
+            TasksFailed: some sequences failed, after all others were done.
+        """
+
+    @abstractmethod
+    def fit(self, data: Data) -> Mapping[str, Any]:
+        """Train on samples, and return the trained models by the names of their files.
+
+        Raises:
+            BadInput: a package is missing, or there are too few samples.
+        """
+
+    @abstractmethod
+    def evaluate(self, model: Any, data: Data) -> Mapping[str, str]:
+        """Measure a trained model on the validation split: results by what they were measured on."""
+
+    def is_replaced(self, path: Path, model: Any) -> bool:  # noqa: ARG002
+        """Tell whether a shipped file is removed when a model is shipped under another name."""
+        return False
+
+
+def load_specification(model: str) -> type[Specification[Any]]:
+    """Return the specification of a model.
+
+    Raises:
+        BadInput: its packages are missing.
+    """
+    module, name = MODELS[model][0].split(":")
+    try:
+        found: type[Specification[Any]] = getattr(import_module(f"peopleboy.studies.training.{module}"), name)
+    except ModuleNotFoundError as error:
+        if error.name not in _PACKAGES:
+            raise
+        raise missing_package(model, _PACKAGES[error.name]) from None
+    return found
+
+
+def train(specification: Specification[Data], out: Path, workers: Workers, *, ship: bool) -> Sequence[Path]:
+    """Collect samples, train on them, evaluate the models and write them.
+
+    Args:
+        specification: of the model.
+        out: folder of samples, and of the weights unless they are shipped.
+        workers: that collect samples.
+        ship: whether to put the weights among those that come with the trackers.
+
+    Raises:
+        BadInput: a path that cannot be used, a missing package, or too few samples; a new folder is not left
+            behind empty then.
+        TasksFailed: some sequences failed, after all others were done.
+    """
+    with writing_to(out):
+        out.mkdir(parents=True, exist_ok=True)
+    try:
+        data = specification.collect(out, workers)
+    finally:
+        with suppress(OSError):
+            out.rmdir()  # which refuses, unless nothing was left there
+    paths = []
+    for file, model in specification.fit(data).items():
+        results = specification.evaluate(model, data)
+        for where, result in results.items():
+            report(f"{Path(file).stem}, {where}: {result}")
+        folder = specification.SHIPPED_IN if ship else out
+        with writing_to(folder):
+            folder.mkdir(parents=True, exist_ok=True)
+            with atomic(folder / file) as part:
+                replace(model, about={**model.about, **results}).save(part)
+        if ship:
+            _remove_replaced(specification, folder / file, model)
+        paths.append(folder / file)
+    return paths
+
+
+def _remove_replaced(specification: Specification[Data], shipped: Path, model: Any) -> None:
+    for path in sorted(shipped.parent.iterdir()):
+        if path != shipped and specification.is_replaced(path, model):
+            path.unlink()
+
+
+def report(line: str) -> None:
+    """Print a line of progress on standard error."""
+    Console(stderr=True).print(line, highlight=False)
+
+
+def missing_package(what: str, package: str) -> BadInput:
+    """Make the refusal of a training whose package is not installed."""
+    return BadInput(f"training of {what} needs {package}: pip install {package}")

@@ -1,1 +1,0 @@
-"""Teaching the RGB-D tracker what people look like."""

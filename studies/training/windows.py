@@ -1,0 +1,313 @@
+"""Train linear support vector machines that tell people by windows of colour and depth images."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario, parse_scenario
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.running.blind_drive import blind_drive
+from peopleboy.scenarios.running.engine.task import Workers
+from peopleboy.sim.truth.truth import PersonTruth, Truth
+from peopleboy.studies.training.random_scenes import FIRST_SEED, random_scene
+from peopleboy.studies.training.samples import Arrays, SampleTask, collect_missing, load_samples
+from peopleboy.studies.training.specification import Specification, missing_package, option
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR
+from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
+from peopleboy.tracker.rgbd.pre_detection import HumanSize, Layout, PreDetection, PreDetector
+from peopleboy.tracker.rgbd.u_depth import UDepthConfig
+from peopleboy.tracker.rgbd.verification.window_model import WindowModel, feature_length, file_name
+from peopleboy.tracker.rgbd.verification.windows import (
+    Features,
+    Image,
+    Range,
+    cut,
+    cut_depth,
+    hog,
+    range_of,
+    window_of,
+)
+from peopleboy.tracker.track import Box
+
+COST: Final = {Range.FAR: 0.01, Range.NEAR: 0.01}
+FALSE_ALARMS: Final = 0.01
+"""Share of windows without people at which recall is measured."""
+VALIDATION: Final[Mapping[str, int]] = {
+    "": 30,
+    "crossing_2_moving": 2,
+    "crowd_8_moving": 1,
+    "fast_turn": 2,
+    "hall_visits": 1,
+}
+"""Sequences of the validation split: of scenes drawn at random, and of scenarios in other places."""
+APART_S: Final = 0.4
+"""Between two images that are kept."""
+
+_SIZE: Final = HumanSize(least=0.005)  # more unlike a human is too easy as a negative
+_NEAR_M: Final = 0.5
+_APART_M: Final = 0.9
+_LEAST_VISIBLE: Final = 0.6
+_MOST_SHOWN: Final = 0.15  # share of a negative window that may show people
+_JITTERS: Final = 3
+_SHIFT: Final = 0.04  # deviation of a window's place, in its sizes
+_SCALE: Final = 0.06  # deviation of the logarithm of its size
+_FLATS: Final = 2  # windows of an image that are placed anywhere
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WindowSamples(Arrays):
+    """Windows by range.
+
+    Attributes:
+        near_features, far_features: (N, 2 F) float16 histograms of oriented gradients, of colour, then depth.
+        near_is_person, far_is_person: (N,) whether a person is there.
+    """
+
+    near_features: NDArray[np.float16]
+    far_features: NDArray[np.float16]
+    near_is_person: NDArray[np.bool_]
+    far_is_person: NDArray[np.bool_]
+
+    def features(self, kind: Range) -> NDArray[np.float16]:
+        """Return the features of a range."""
+        return self.near_features if kind is Range.NEAR else self.far_features
+
+    def is_person(self, kind: Range) -> NDArray[np.bool_]:
+        """Return the labels of a range."""
+        return self.near_is_person if kind is Range.NEAR else self.far_is_person
+
+
+class _Window(NamedTuple):
+    """A window of an image, and whether a person is in it."""
+
+    image: Image
+    depth: Depth
+    z_m: float
+    window: Box
+    kind: Range
+    is_person: bool
+
+
+def collect_windows(scenario: str, seed: int, has_jitter: bool) -> WindowSamples:
+    """Run a scenario, and keep the windows of what has about the size of a human.
+
+    Args:
+        scenario: name in the library; empty for a scene drawn at random.
+        seed: of scene and run.
+        has_jitter: whether windows are also taken a little off, and mirrored, as augmentation.
+
+    Raises:
+        BadInput: the robot needs images to drive.
+    """
+    loaded, rng = _scenario(scenario, seed).mounting((DEPTH,)), np.random.default_rng((seed, 2012))
+    calibration = calibrations_of(loaded.world(seed).robot.cameras)[DEPTH]
+    view, detector = DepthView.of(calibration, DEPTH), PreDetector(_SIZE, UDepthConfig())
+    rows: dict[Range, list[NDArray[np.float16]]] = {kind: [] for kind in Range}
+    labels: dict[Range, list[bool]] = {kind: [] for kind in Range}
+    next_s = 0.0
+    for world, observation in blind_drive(loaded, seed):
+        if DEPTH not in observation.images or observation.time_s < next_s:
+            continue
+        next_s = observation.time_s + APART_S
+        depth, image = observation.images[DEPTH], observation.images[DEPTH_COLOUR]
+        layout = detector(depth, view)
+        for window in _windows(image, depth, layout, view, world.truth(DEPTH), rng):
+            for described in _describe(window, rng, has_jitter=has_jitter):
+                rows[window.kind].append(described)
+                labels[window.kind].append(window.is_person)
+    features = {
+        kind: np.array(rows[kind], np.float16).reshape(-1, 2 * feature_length(kind)) for kind in Range
+    }
+    return WindowSamples(
+        features[Range.NEAR],
+        features[Range.FAR],
+        np.array(labels[Range.NEAR], np.bool_),
+        np.array(labels[Range.FAR], np.bool_),
+    )
+
+
+def _scenario(name: str, seed: int) -> Scenario:
+    if name:
+        return load_scenario(name)
+    data = random_scene(seed, DEPTH)
+    return parse_scenario(data, source=data["name"], folder=Path())
+
+
+def _windows(
+    image: Image,
+    depth: Depth,
+    layout: Layout,
+    view: DepthView,
+    truth: Truth,
+    rng: np.random.Generator,
+) -> Iterator[_Window]:
+    for found in (*layout.detections, *_anywhere(layout, view, image.shape[:2], rng)):
+        kind = range_of(found.z_m, layout.floor, view, image.shape[0])
+        is_person = _is_person(found, truth, view)
+        if is_person is not None:
+            yield _Window(
+                image, depth, found.z_m, window_of(found, kind, layout.floor, view), kind, is_person
+            )
+
+
+def _is_person(found: PreDetection, truth: Truth, view: DepthView) -> bool | None:
+    """Tell whether something is a person; None for what is neither clearly one nor clearly none."""
+    at = view.on_floor(np.array([found.x_m]), np.array([found.z_m]))[0]
+    answer: bool | None = False
+    for person in truth.people:
+        away = math.dist(truth.robot.to_local(person.position_m), at)
+        inside = person.inside_fraction
+        if away < _NEAR_M and inside > 0.0 and person.visible_fraction / inside > _LEAST_VISIBLE:
+            return True if _has_head(person) else None
+        if away < _APART_M and person.visible_px:
+            answer = None
+    return answer if answer is None or not _shows_people(found, truth) else None
+
+
+def _has_head(person: PersonTruth) -> bool:
+    """Tell whether the head is in the image: without it no window shows enough of a person."""
+    return person.whole_box is not None and person.whole_box[1] > -0.02 * person.whole_box[3]
+
+
+def _shows_people(found: PreDetection, truth: Truth) -> bool:
+    left, top, width, height = (max(round(x), 0) for x in found.box)
+    inside = truth.instance[top : top + height, left : left + width]
+    return inside.size > 0 and float((inside > 0).mean()) > _MOST_SHOWN
+
+
+def _anywhere(
+    layout: Layout, view: DepthView, shape: tuple[int, int], rng: np.random.Generator
+) -> Iterator[PreDetection]:
+    """Place bodies anywhere, mostly on plain walls and floors, of which a near window must not pass."""
+    size = HumanSize()
+    for _ in range(_FLATS):
+        z_m = float(rng.uniform(1.2, 8.0))
+        wide = size.width_m * view.focal_px / z_m
+        left = float(rng.uniform(0.0, shape[1] - wide))
+        top = float(layout.floor.raised(rng.uniform(1.5, 1.9)).rows(np.array([z_m]), view)[0])
+        tall = min(size.height_m * view.focal_px / z_m, shape[0] - max(top, 0.0))
+        x_m = (left + wide / 2.0 - view.centre_u) * z_m / view.focal_px
+        yield PreDetection(
+            box=(left, max(top, 0.0), wide, max(tall, 1.0)), x_m=x_m, z_m=z_m,
+            width_m=size.width_m, height_m=size.height_m, depth_m=size.depth_m, probability=0.0,
+        )  # fmt: skip
+
+
+def _describe(one: _Window, rng: np.random.Generator, *, has_jitter: bool) -> Iterator[NDArray[np.float16]]:
+    """Yield the histograms of a window; with jitter, of people also a little off, and of all mirrored."""
+    windows = [one.window]
+    if has_jitter and one.is_person:
+        windows += [_jittered(one.window, rng) for _ in range(_JITTERS)]
+    for window in windows:
+        patches = (
+            cut(one.image, window, one.kind),
+            cut_depth(one.depth, one.z_m, window, one.kind),
+        )
+        yield _histograms(patches, one.kind)
+        if has_jitter:
+            yield _histograms([np.ascontiguousarray(patch[:, ::-1]) for patch in patches], one.kind)
+
+
+def _histograms(patches: Sequence[Image], kind: Range) -> NDArray[np.float16]:
+    return np.concatenate([hog(patch, kind) for patch in patches]).astype(np.float16)
+
+
+def _jittered(window: Box, rng: np.random.Generator) -> Box:
+    left, top, width, height = window
+    grown = math.exp(rng.normal(0.0, _SCALE))
+    left += width * (rng.normal(0.0, _SHIFT) + (1.0 - grown) / 2.0)
+    top += height * (rng.normal(0.0, _SHIFT) + (1.0 - grown) / 2.0)
+    return left, top, grown * width, grown * height
+
+
+Split = tuple[WindowSamples, WindowSamples]
+"""For training and for validation."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WindowsTraining(Specification[Split]):
+    """Train machines for near and far windows, by colour alone and with depth, on scenes drawn at random."""
+
+    sequences: int = option(300, "Scenes to train on.", minimum=1)
+
+    def collect(self, out: Path, workers: Workers) -> Split:
+        """Run scenes, and keep windows."""
+
+        def task(scenario: str, seed: int, *, has_jitter: bool) -> SampleTask:
+            path = out / "samples" / f"{scenario or 'scene'}_{seed}.npz"
+            return SampleTask(path, collect_windows, (scenario, seed, has_jitter))
+
+        others = [task(name, k, has_jitter=False) for name, count in VALIDATION.items() for k in range(count)]
+        tasks = [task("", FIRST_SEED + k, has_jitter=True) for k in range(self.sequences)]
+        collect_missing([*others, *tasks], workers, "samples")
+        return load_samples(WindowSamples, tasks), load_samples(WindowSamples, others)
+
+    def fit(self, data: Split) -> Mapping[str, WindowModel]:
+        """Train both pairs of machines."""
+        about = {"trained on": f"{self.sequences} scenes drawn at random, seeds from {FIRST_SEED}"}
+        return {
+            file_name(sees_depth=sees): WindowModel(
+                {kind: fit_machine(data[0], kind, sees_depth=sees) for kind in Range}, about
+            )
+            for sees in (False, True)
+        }
+
+    def evaluate(self, model: WindowModel, data: Split) -> Mapping[str, str]:
+        """Measure recall and false alarms by range."""
+        return {f"{kind}, on other scenes": evaluate_machine(model, data[1], kind) for kind in Range}
+
+
+def fit_machine(samples: WindowSamples, kind: Range, *, sees_depth: bool) -> Features:
+    """Train a linear support vector machine; return its weights, the bias last.
+
+    Raises:
+        BadInput: scikit-learn is missing, or there are no people or nothing else in this range.
+    """
+    try:
+        from sklearn.svm import LinearSVC  # here, as evaluations use this module without it
+    except ImportError:
+        raise missing_package("windows", "scikit-learn") from None
+    is_person = samples.is_person(kind)
+    if is_person.all() or not is_person.any():
+        raise BadInput(f"{kind} windows: {len(is_person)} with {is_person.sum()} people; take more sequences")
+    count = (1 + sees_depth) * feature_length(kind)
+    machine = LinearSVC(C=COST[kind], class_weight="balanced", random_state=0, max_iter=4000)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # that it did not converge to the last digit
+        machine.fit(samples.features(kind)[:, :count].astype(np.float32), is_person)
+    return np.concatenate([machine.coef_[0], machine.intercept_]).astype(np.float32)
+
+
+def recall_at(scores: NDArray[np.float64], is_person: NDArray[np.bool_], false_alarms: float) -> float:
+    """Return the share of people that score above all but a share of the negatives."""
+    limit = np.quantile(scores[~is_person], 1.0 - false_alarms)
+    return float(np.mean(scores[is_person] > limit))
+
+
+def scores_of(model: WindowModel, samples: WindowSamples, kind: Range) -> NDArray[np.float64]:
+    """Return the scores (N,) of all windows of a range."""
+    weights = model.weights[kind]
+    features = samples.features(kind)[:, : len(weights) - 1].astype(np.float64)
+    return np.asarray(features @ weights[:-1] + weights[-1])
+
+
+def evaluate_machine(model: WindowModel, samples: WindowSamples, kind: Range) -> str:
+    """Return recall and false alarms of the machine of a range, in words."""
+    scores, is_person = scores_of(model, samples, kind), samples.is_person(kind)
+    if is_person.all() or not is_person.any():
+        return "no samples"
+    return (
+        f"{is_person.sum()} people, {(~is_person).sum()} others; recall "
+        f"{recall_at(scores, is_person, FALSE_ALARMS):.3f} at 1 % false alarms; at 0: recall "
+        f"{np.mean(scores[is_person] > 0):.3f}, false alarms {np.mean(scores[~is_person] > 0):.3f}"
+    )

@@ -1,0 +1,100 @@
+from pathlib import Path
+
+import jax
+import numpy as np
+import pytest
+
+from peopleboy.studies.training.detector.augmentation import versions
+from peopleboy.studies.training.detector.box_refinement import BoxRefinementTraining, sample_version
+from peopleboy.studies.training.detector.crops import CropSamples
+from peopleboy.studies.training.detector.sequences import ThermalImage, load_images
+from peopleboy.tracker.boxes import iou
+from peopleboy.tracker.detector.box_refinement import SCALES, BoxRefinementNetwork
+from peopleboy.tracker.detector.box_regression import decode_boxes
+from peopleboy.tracker.detector.crops import normalise_crops
+from tests.helpers.images.drawn_crops import drawn_crops, drawn_weights
+from tests.helpers.images.drawn_films import drawn_film
+
+
+@pytest.fixture(scope="module")
+def shots(tmp_path_factory: pytest.TempPathFactory) -> list[ThermalImage]:
+    path = Path(tmp_path_factory.mktemp("films")) / "film.npz"
+    drawn_film(0, 4).save(path)
+    return list(load_images([path]))
+
+
+def samples_of(images: list[ThermalImage], seed: int, count: int) -> CropSamples:
+    drawn = versions(images, np.random.default_rng(seed), count)
+    return CropSamples.join(map(sample_version, drawn), BoxRefinementNetwork.ARCHITECTURE.crop)
+
+
+def test_boxes_are_about_people_and_offsets_lead_to_them(shots: list[ThermalImage]) -> None:
+    looks = samples_of(shots, 0, 0)
+    people = sum(len(shot.box) for shot in shots)
+    assert 0 < len(looks.overlap) <= people
+    assert looks.crops.shape[1:3] == BoxRefinementNetwork.ARCHITECTURE.crop[:2]
+    assert len({len(each) for each in looks}) == 1
+    assert 0.6 < looks.overlap.mean() < 0.95
+    assert np.abs(looks.offsets[:, 0]).max() < 0.2
+    assert np.abs(looks.offsets[:, 2]).max() < 0.7
+
+
+def test_each_image_is_learned_from_four_times(shots: list[ThermalImage]) -> None:
+    once = samples_of(shots, 1, 0)
+    often = samples_of(shots, 1, 4)
+    assert 2.0 * len(once.overlap) < len(often.overlap) <= 4.0 * sum(len(shot.box) for shot in shots)
+    assert (once.features[:, 8] == 1.0).all()
+    assert 0.2 < (often.features[:, 8] == 0.0).mean() < 0.7
+
+
+def test_the_same_random_numbers_give_the_same_examples(shots: list[ThermalImage]) -> None:
+    one, same = (samples_of(shots, 1, 4) for _ in range(2))
+    for a, b in zip(one, same, strict=True):
+        np.testing.assert_array_equal(a, b, strict=True)
+
+
+def test_who_is_mostly_outside_is_not_learned_from(shots: list[ThermalImage]) -> None:
+    shot = shots[0]
+    away = ThermalImage(
+        shot.grey,
+        shot.change,
+        shot.mount,
+        np.array([[-9.0, 20.0, 10.0, 60.0], [50.0, 20.0, 3.0, 12.0]]),
+        np.ones(2, np.bool_),
+        np.ones(2, np.bool_),
+    )
+    assert len(samples_of([away], 0, 0).overlap) == 0
+
+
+FORM = BoxRefinementNetwork.ARCHITECTURE
+loss = jax.jit(BoxRefinementTraining().loss)
+WINDOW = np.array([[40.0, 50.0, 20.0, 80.0]])
+
+
+def test_the_loss_is_that_of_what_boxes_do_not_share_and_huber_s_of_places() -> None:
+    looks, weights = drawn_crops(FORM, 6), drawn_weights(FORM)
+    planes = normalise_crops(looks.crops)
+    ours = BoxRefinementNetwork(weights).predict(planes, looks.features)
+    window = np.repeat(WINDOW, 6, axis=0)
+    shared = iou(decode_boxes(window, ours), decode_boxes(window, looks.offsets.astype(np.float64)))
+    off = np.abs(ours - looks.offsets) / SCALES
+    bent = np.where(off < 1.0, off**2 / 2.0, off - 0.5)
+    assert bent.max() < 8.0
+    told = loss(weights, planes, looks, 1.0)
+    assert float(told[0]) == pytest.approx(4.0 * (1.0 - shared).mean() + 0.3 * bent.mean(), rel=1e-3)
+    assert float(told[1]["units off"]) == pytest.approx(off.mean(), rel=1e-3)
+
+
+def test_somebody_else_s_box_teaches_no_units() -> None:
+    looks, weights = drawn_crops(FORM, 3), drawn_weights(FORM)
+    planes = normalise_crops(looks.crops)
+    far = looks._replace(offsets=looks.offsets + np.float32(3.0))
+    assert float(loss(weights, planes, far, 1.0)[0]) == pytest.approx(4.0 + 0.3 * 8.0, rel=1e-5)
+
+
+def test_the_score_of_what_was_found_says_nothing_of_where() -> None:
+    looks, weights = drawn_crops(FORM, 3), drawn_weights(FORM)
+    planes, other = normalise_crops(looks.crops), looks.features.copy()
+    other[:, 0] += 1.0
+    one, same = (loss(weights, planes, looks._replace(features=n), 1.0) for n in (looks.features, other))
+    assert float(one[0]) == float(same[0])

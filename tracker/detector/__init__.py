@@ -1,0 +1,1 @@
+"""Detection of people in thermal images, trained on rendered images only."""

@@ -1,0 +1,92 @@
+"""Detections, and non-maximum suppression: one box for each person, of many windows that show them."""
+
+from __future__ import annotations
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.tracker.boxes import area, cover, intersection
+
+Floats = NDArray[np.float64]
+
+SHARED: Final = 0.65  # of the smaller box: from then on two boxes are of one person
+_ALIKE: Final = 0.5  # IoU of boxes of whom the mean is taken
+_TOUCHED: Final = 0.12  # share of a box that is theirs who are to its left and right, each at least
+_BETWEEN: Final = 0.6  # share of it that is one's or the other's
+
+
+class Detections(NamedTuple):
+    """People that were detected in one image.
+
+    Attributes:
+        box: (N, 4) [px] from head to feet, the surest first.
+        score: (N,) log odds on images like those of the training: 0 is even.
+        trees: (N,) likewise, of the cascade alone.
+    """
+
+    box: Floats
+    score: Floats
+    trees: Floats
+
+    @classmethod
+    def from_trees(cls, box: Floats, score: Floats) -> Detections:
+        """Make detections of the cascade alone, before rescoring."""
+        return cls(box, score, score)
+
+    def take(self, rows: NDArray[np.bool_] | NDArray[np.intp]) -> Detections:
+        """Return the detections of these rows."""
+        return Detections(self.box[rows], self.score[rows], self.trees[rows])
+
+
+NO_DETECTIONS: Final = Detections.from_trees(np.empty((0, 4)), np.empty(0))
+
+
+def suppress(found: Detections) -> Detections:
+    """Keep the best of boxes that share much of the smaller one's area, each the mean of those like it.
+
+    Greedy (Dollár et al., PAMI 2012). A box weighs exp(score) in the mean. Of those kept, one is left out
+    that lies between two surer ones and is mostly theirs.
+    """
+    ordered = found.take(np.argsort(-found.score, kind="stable"))
+    means = np.empty((len(ordered.box), 4))
+    kept = _best(ordered.box, ordered.score, means)
+    ours = ordered.take(kept)._replace(box=means[: len(kept)])
+    return ours.take(~_is_between(ours))
+
+
+@njit(cache=True, nogil=True)
+def _best(box: Floats, score: Floats, means: Floats) -> NDArray[np.intp]:  # pragma: no cover
+    """Tell who is the best of those with boxes (N, 4) near, the surest first; give their means (N, 4)."""
+    kept, is_left = np.empty(len(box), np.intp), np.ones(len(box), np.bool_)
+    count = 0
+    for k in range(len(box)):
+        if not is_left[k]:
+            continue
+        total, mean = 0.0, np.zeros(4)
+        for j in range(len(box)):
+            across = min(box[k, 0] + box[k, 2], box[j, 0] + box[j, 2]) - max(box[k, 0], box[j, 0])
+            down = min(box[k, 1] + box[k, 3], box[j, 1] + box[j, 3]) - max(box[k, 1], box[j, 1])
+            common = max(across, 0.0) * max(down, 0.0)
+            ours, theirs = box[k, 2] * box[k, 3], box[j, 2] * box[j, 3]
+            if j == k or (is_left[j] and common > _ALIKE * (ours + theirs - common)):
+                weight = math.exp(score[j] - score[k])
+                total += weight
+                mean += weight * box[j]
+            is_left[j] &= common <= SHARED * min(ours, theirs)
+        means[count], kept[count] = mean / total, k
+        count += 1
+    return kept[:count]
+
+
+def _is_between(found: Detections) -> NDArray[np.bool_]:
+    """Tell which of N boxes show but the arm of somebody to the left, and of another one to the right."""
+    share = cover(intersection(found.box[:, None], found.box[None]), area(found.box)[:, None])
+    share *= found.score[None] > found.score[:, None]
+    middle = found.box[:, 0] + found.box[:, 2] / 2.0
+    is_left = middle[None] < middle[:, None]
+    left, right = ((share * side).max(axis=1, initial=0.0) for side in (is_left, ~is_left))
+    return np.asarray((np.minimum(left, right) > _TOUCHED) & (left + right > _BETWEEN))

@@ -1,0 +1,135 @@
+"""The detector of people in thermal images: cascade, rescoring and box refinement, one after another."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.camera_mount import Mount
+from peopleboy.tracker.detector.box_refinement import (
+    BoxRefinementNetwork,
+    refine_boxes,
+    shipped_box_refinement,
+)
+from peopleboy.tracker.detector.detections import NO_DETECTIONS, SHARED, Detections, suppress
+from peopleboy.tracker.detector.image_change import PastImages
+from peopleboy.tracker.detector.patches import integrate
+from peopleboy.tracker.detector.people_trees import PeopleModel, shipped_people_trees
+from peopleboy.tracker.detector.pyramid import pyramid_levels
+from peopleboy.tracker.detector.rescoring import RescoringNetwork, rescore, shipped_rescoring
+from peopleboy.tracker.frame import Odometry
+from peopleboy.tracker.networks.convolution import Buffer, Workspace
+from peopleboy.tracker.networks.inference import one_thread
+
+Grey = NDArray[np.uint8]
+
+SMALLEST_PX: Final = 24.0
+"""Height of the smallest people that are detected."""
+
+WEAKEST: Final = -3.5
+"""Score from which on a detection of the cascade is rescored."""
+
+
+class PeopleDetector:
+    """Detects people in images that come one after another, and keeps earlier ones, which show what moves."""
+
+    def __init__(
+        self,
+        model: PeopleModel | None = None,
+        rescoring: RescoringNetwork | None = None,
+        box_refinement: BoxRefinementNetwork | None = None,
+        *,
+        smallest_px: float = SMALLEST_PX,
+        least_score: float = 0.0,
+    ) -> None:
+        """Take the shipped trees and networks, or others.
+
+        Args:
+            model: trees of cascade and box regression.
+            rescoring: corrects their detections.
+            box_refinement: corrects the boxes of what is left.
+            smallest_px: height of the smallest people that are detected.
+            least_score: of the detections that are returned.
+        """
+        self._model = shipped_people_trees() if model is None else model
+        self._rescoring = shipped_rescoring() if rescoring is None else rescoring
+        self._box_refinement = shipped_box_refinement() if box_refinement is None else box_refinement
+        self._smallest_px = smallest_px
+        self._least_score = least_score
+        self._past = PastImages()
+        self._buffer, self._workspace = Buffer(), Workspace()
+
+    def update(
+        self,
+        grey: Grey,
+        time_s: float,
+        odometry: Odometry | None = None,
+        mount: Mount | None = None,
+        expected: Detections = NO_DETECTIONS,
+        *,
+        everywhere: bool = True,
+    ) -> Detections:
+        """Detect people.
+
+        Args:
+            grey: (H, W) image; greys may mean anything, as long as that does not change much in 0.2 s.
+            time_s: when it was taken.
+            odometry: how the robot moved since the last one; None if that is not known.
+            mount: of the camera; None if that is not known: then people may be anywhere.
+            expected: known people with the scores that the cascade gave them; it skips their windows.
+            everywhere: whether to detect others, too; if not, and nobody is expected, the image is only kept.
+        """
+        self._past.keep(grey, time_s, odometry)
+        if not everywhere and len(expected.box) == 0:
+            return expected
+        return self.detect(grey, self._past.change(mount), mount, expected, everywhere=everywhere)
+
+    def detect(
+        self, grey: Grey, change: Grey, mount: Mount | None, expected: Detections, *, everywhere: bool
+    ) -> Detections:
+        """Detect people in an image (H, W) with the change of its greys (H, W)."""
+        first = self.detect_first(grey, change, mount, expected) if everywhere else expected
+        with one_thread():  # once for both networks, as each call of the library takes a while
+            found = rescore(self._rescoring, grey, change, first, mount, self._least_score, self._workspace)
+            return refine_boxes(self._box_refinement, grey, change, found, mount, self._workspace)
+
+    def detect_first(self, grey: Grey, change: Grey, mount: Mount | None, known: Detections) -> Detections:
+        """Detect people by the cascade, and add those that are known."""
+        return detect_with_trees(
+            self._model, grey, change, mount, self._smallest_px, WEAKEST, known, self._buffer
+        )
+
+
+def detect_with_trees(
+    model: PeopleModel,
+    grey: Grey,
+    change: Grey,
+    mount: Mount | None,
+    smallest_px: float,
+    least_score: float,
+    known: Detections = NO_DETECTIONS,
+    buffer: Buffer | None = None,
+) -> Detections:
+    """Detect people by the cascade in an image (H, W) with the change of its greys (H, W).
+
+    Windows of known people are skipped; these people are added to the detections.
+    """
+    boxes, scores = [known.box], [known.trees]
+    for level in pyramid_levels(grey, change, mount, smallest_px, buffer or Buffer()):
+        sums = integrate(level.cells)
+        is_known = level.covered(known.box, SHARED) if len(known.box) else None
+        for kind, trees in model.trees.items():
+            for rows in level.rows[kind]:
+                hits = trees.cascade.scan(sums, rows, is_known)
+                is_sure = hits.score >= least_score
+                if not is_sure.any():
+                    continue
+                hits = hits.take(is_sure)
+                if mount is not None:  # without a known mount all windows help
+                    hits = hits.best()
+                row, column = hits.row, hits.column
+                boxes.append(trees.regression.boxes(sums, row, column, level.boxes(row, column)))
+                scores.append(hits.score)
+    return suppress(Detections.from_trees(np.concatenate(boxes), np.concatenate(scores)))

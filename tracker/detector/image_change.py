@@ -1,0 +1,134 @@
+"""Change of an image beyond what the camera's own motion causes, by images of the last half second."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import Final, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.tracker.camera_mount import Mount
+from peopleboy.tracker.frame import Odometry
+
+Grey = NDArray[np.uint8]
+Matrix = NDArray[np.float64]
+
+_STILL_PX: Final = 1.0 / 64.0
+"""Shift up to which no pixel moves: pixels between others are read to 1/32."""
+_SURE: Final = 0.12  # response of the correlation below which nothing is said of a shift
+
+
+def rotation_homography(mount: Mount, shape: tuple[int, int], turn_rad: float) -> Matrix:
+    """Return the homography (3, 3) by which pixels (u, v, 1) move when the robot turns.
+
+    Args:
+        mount: of the camera, whose optical axis is in the middle of the image's columns and rows.
+        shape: rows and columns of the image.
+        turn_rad: to the left.
+    """
+    rows, columns = shape
+    middle = np.array([(columns - 1) / 2.0, (rows - 1) / 2.0])
+    inward = np.array([[mount.focal_px, 0.0, middle[0]], [0.0, mount.focal_px, middle[1]], [0.0, 0.0, 1.0]])
+    pitch = math.atan2(middle[1] - mount.horizon_px, mount.focal_px)
+    # Upright axis in the camera's frame, x right, y down, z forward; a camera that looks down has it behind.
+    axis = np.array([0.0, -math.cos(pitch), -math.sin(pitch)])
+    rotation, _ = cv2.Rodrigues(-turn_rad * axis)
+    return np.asarray(inward @ rotation @ np.linalg.inv(inward), np.float64)
+
+
+def shift_homography(before: Grey, now: Grey) -> Matrix:
+    """Estimate a shift (3, 3) of pixels (u, v, 1) from one image to the next.
+
+    The shift is that of phase correlation at half size; none where that is not sure.
+    """
+    half = (max(now.shape[1] // 2, 1), max(now.shape[0] // 2, 1))
+    smaller = [cv2.resize(image, half, interpolation=cv2.INTER_AREA) for image in (before, now)]
+    edges = [cv2.Laplacian(cv2.GaussianBlur(image, (0, 0), 1.0), cv2.CV_32F) for image in smaller]
+    (right, down), response = cv2.phaseCorrelate(
+        edges[0], edges[1], cv2.createHanningWindow(half, cv2.CV_32F)
+    )
+    matrix = np.eye(3)
+    if response >= _SURE:
+        matrix[:2, 2] = right * now.shape[1] / half[0], down * now.shape[0] / half[1]
+    return matrix
+
+
+def image_difference(before: Grey, now: Grey, moved: Matrix) -> Grey:
+    """Return the absolute difference (H, W) of an image and an earlier one, warped by a homography.
+
+    What has come into view since is no difference.
+    """
+    rows, columns = now.shape
+    if _farthest_px(moved, rows, columns) > _STILL_PX:
+        before = np.asarray(
+            cv2.warpPerspective(
+                before, moved, (columns, rows), dst=now.copy(), borderMode=cv2.BORDER_TRANSPARENT
+            ),
+            np.uint8,
+        )
+    return np.asarray(cv2.absdiff(now, before), np.uint8)
+
+
+def _farthest_px(moved: Matrix, rows: int, columns: int) -> float:
+    """Tell how far the corner of an image moves that moves farthest, along columns or rows."""
+    right, bottom = columns - 1.0, rows - 1.0
+    corners = np.array([[0.0, right, 0.0, right], [0.0, 0.0, bottom, bottom], [1.0, 1.0, 1.0, 1.0]])
+    there = moved @ corners
+    return float(np.abs(there[:2] / there[2] - corners[:2]).max())
+
+
+EARLIER_S: Final = 0.2
+"""Age of the image that the present one is compared with."""
+
+_OLDEST_S: Final = 2.5 * EARLIER_S
+
+
+class _Past(NamedTuple):
+    grey: Grey
+    time_s: float
+    heading_rad: float
+    is_known: bool  # how the robot turned since the image before
+
+
+class PastImages:
+    """Images of one camera that come one after another."""
+
+    def __init__(self) -> None:
+        self._past: deque[_Past] = deque()
+
+    def keep(self, grey: Grey, time_s: float, odometry: Odometry | None = None) -> None:
+        """Take in the next one.
+
+        Args:
+            grey: (H, W); one of another size begins anew, and so does one that is not later.
+            time_s: when it was taken.
+            odometry: how the robot moved since the last one; None if that is not known.
+        """
+        past = self._past
+        if past and (past[-1].time_s >= time_s or past[-1].grey.shape != grey.shape):
+            past.clear()
+        heading = past[-1].heading_rad if past else 0.0
+        turn_rad = odometry.turn_rad if odometry is not None else 0.0
+        past.append(_Past(grey.copy(), time_s, heading + turn_rad, odometry is not None))
+        while time_s - past[0].time_s > _OLDEST_S:
+            past.popleft()
+
+    def change(self, mount: Mount | None = None) -> Grey:
+        """Give by how much the last one (H, W) differs from that of about 0.2 s before; 0 if there is none.
+
+        Args:
+            mount: of the camera, with which odometry tells how pixels moved; without, the images do.
+        """
+        *earlier, now = self._past
+        if not earlier:
+            return np.zeros_like(now.grey)
+        before = min(earlier, key=lambda one: abs(now.time_s - one.time_s - EARLIER_S))
+        since = [one for one in self._past if one.time_s > before.time_s]
+        if mount is not None and all(one.is_known for one in since):
+            moved = rotation_homography(mount, now.grey.shape, now.heading_rad - before.heading_rad)
+        else:
+            moved = shift_homography(before.grey, now.grey)
+        return image_difference(before.grey, now.grey, moved)

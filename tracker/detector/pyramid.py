@@ -1,0 +1,210 @@
+"""An image in the sizes at which people of all sizes fill the window."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import cv2
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from peopleboy.tracker.camera_mount import Mount
+from peopleboy.tracker.detector.channels import BESIDE, OVER, Cells, Image, channels, noise_of
+from peopleboy.tracker.detector.window import (
+    CELL_PX,
+    COLUMNS,
+    PERSON_PX,
+    ROWS,
+    Floats,
+    WindowKind,
+    boxes_of,
+    cells_of,
+    row_of,
+)
+from peopleboy.tracker.networks.convolution import Buffer
+
+STEP: Final = 2.0 ** (1.0 / 3.0)
+"""Between the sizes of people of one level and the next."""
+
+_STATURES_M: Final = (1.4, 2.0)  # of who is looked for
+_SLACK: Final = 0.15  # of a person's height: the pitch of the camera, the gait, and cells are none of a ray's
+_WHOLE_OVER: Final = 8
+"""Rows of cells that a window of somebody who is mostly in the image may reach beyond it."""
+_CUT_OVER: Final = (6, 9)
+"""Rows above and below the image from which on a window is of somebody who is cut off."""
+_CUT_PX: Final = 48.0  # height of the smallest people who are looked for cut off
+_LEAST_ROWS: Final = 7  # of cells in an image: a third of a window
+_LEAST_WHOLE_ROWS: Final = 12  # likewise; it shows the larger part of whom it cuts off
+_CONTEXT: Final = 12
+"""Cells above and below a window that its channels depend on."""
+
+
+Rows = tuple[int, int]
+"""The first row of a level's cells, and the one after the last."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Level:
+    """One size of the image.
+
+    Attributes:
+        cells: (9, h, w) channels, of those rows that are looked at and some around; with a border.
+        first: row of the first cell in the whole level, the border's not counted.
+        rows: ranges of rows of `cells` where windows of a kind may begin.
+        scale: pixels of the level per pixel of the image, down and right.
+    """
+
+    cells: Cells
+    first: int
+    rows: Mapping[WindowKind, tuple[Rows, ...]]
+    scale: tuple[float, float]
+
+    def boxes(self, row: NDArray[np.int64], column: NDArray[np.int64]) -> Floats:
+        """Give the boxes (N, 4) [px] of the people who fill windows, by their first cell in `cells`."""
+        corner = np.stack([row + self.first - OVER, column - BESIDE]).astype(np.float64)
+        return boxes_of(corner[0], corner[1], self.scale)
+
+    def covered(self, box: Floats, share: float) -> NDArray[np.bool_]:
+        """Tell of windows (h - 19, w - 9) whether their people and one of boxes (K, 4) have much in common.
+
+        Windows are broader than people: theirs are taken to be as broad, in heights, as the one compared.
+
+        Args:
+            box: of some people [px].
+            share: of the smaller box of both, from which on it is much.
+        """
+        _, high, wide = self.cells.shape
+        is_covered = np.zeros((max(high - ROWS + 1, 0), max(wide - COLUMNS + 1, 0)), np.bool_)
+        first, second = self.boxes(np.arange(2), np.arange(2))
+        _cover(box, first, second[:2] - first[:2], share, is_covered)
+        return is_covered
+
+    def windows(self, box: Floats) -> Floats:
+        """Give row and column (N, 2) in `cells` of the windows that people of boxes (N, 4) fill."""
+        return np.asarray(cells_of(box, self.scale) + np.array([OVER - self.first, BESIDE]), np.float64)
+
+
+def pyramid_levels(
+    grey: NDArray[np.uint8],
+    change: NDArray[np.uint8],
+    mount: Mount | None,
+    smallest_px: float,
+    buffer: Buffer | None = None,
+) -> Iterator[Level]:
+    """Yield the levels of an image's pyramid, the one for the smallest people first.
+
+    Args:
+        grey: (H, W) image.
+        change: (H, W) by how much greys changed.
+        mount: of the camera; if it is known, only rows are looked at where people may stand.
+        smallest_px: height of the smallest people.
+        buffer: for the channels; a level then holds until the next one is asked for.
+    """
+    original = grey.astype(np.float32)
+    image, changes = _Halves(original), _Halves(change.astype(np.float32))
+    noise, person_px = noise_of(original), smallest_px
+    rows, columns = grey.shape
+    while True:
+        scale = PERSON_PX / person_px
+        high, wide = round(rows * scale / CELL_PX), round(columns * scale / CELL_PX)
+        if high < _LEAST_ROWS or wide < COLUMNS:
+            return
+        down, right = CELL_PX * high / rows, CELL_PX * wide / columns
+        start, end = _beginnings(mount, high, down)
+        ranges = _ranges(start, end, high, person_px)
+        if any(ranges.values()):
+            start, end = _around(ranges)
+            first, last = max(start - _CONTEXT, 0), min(end + ROWS + _CONTEXT, high)
+            scaled = image.sized((CELL_PX * wide, CELL_PX * high), scale)
+            changed = changes.sized((wide, high), scale / CELL_PX)
+            cells = channels(
+                scaled[CELL_PX * first : CELL_PX * last],
+                changed[first:last],
+                noise * min(1.0, scale),
+                buffer,
+            )
+            yield Level(cells, first, _moved(ranges, OVER - first), (down, right))
+        person_px *= STEP
+
+
+def _ranges(start: int, end: int, high: int, person_px: float) -> dict[WindowKind, tuple[Rows, ...]]:
+    """Tell in which rows windows of each kind begin, of those from a start to an end."""
+    whole = [(-_WHOLE_OVER, high + _WHOLE_OVER - ROWS + 1)] if high >= _LEAST_WHOLE_ROWS else []
+    cut = [(start, 1 - _CUT_OVER[0]), (high + _CUT_OVER[1] - ROWS, end)] if whole else [(start, end)]
+    if person_px < _CUT_PX:
+        cut = []
+    return {WindowKind.WHOLE: _within(whole, start, end), WindowKind.CUT: _within(cut, start, end)}
+
+
+def _within(ranges: list[Rows], start: int, end: int) -> tuple[Rows, ...]:
+    parts = [(max(first, start), min(last, end)) for first, last in ranges]
+    return tuple((first, last) for first, last in parts if first < last)
+
+
+def _around(ranges: Mapping[WindowKind, tuple[Rows, ...]]) -> Rows:
+    rows = [one for several in ranges.values() for one in several]
+    return min(first for first, _ in rows), max(last for _, last in rows)
+
+
+def _moved(ranges: Mapping[WindowKind, tuple[Rows, ...]], by: int) -> dict[WindowKind, tuple[Rows, ...]]:
+    return {kind: tuple((a + by, b + by) for a, b in several) for kind, several in ranges.items()}
+
+
+class _Halves:
+    """An image, half of it, a quarter of it and so on, of which others are made without skipping pixels."""
+
+    def __init__(self, image: Image) -> None:
+        self._images = [image]
+
+    def sized(self, size: tuple[int, int], scale: float) -> Image:
+        """Give the image in another size (columns, rows), which is about a scale of its own."""
+        return np.asarray(cv2.resize(self._at(scale), size), np.float32)
+
+    def _at(self, scale: float) -> Image:
+        """Give the smallest that is as large as a scale asks for."""
+        halvings = max(math.floor(-math.log2(scale) + 1e-9), 0)
+        while len(self._images) <= halvings:
+            rows, columns = self._images[-1].shape
+            half = ((columns + 1) // 2, (rows + 1) // 2)
+            smaller = cv2.resize(self._images[-1], half, interpolation=cv2.INTER_AREA)
+            self._images.append(np.asarray(smaller, np.float32))
+        return self._images[halvings]
+
+
+def _beginnings(mount: Mount | None, high: int, down: float) -> tuple[int, int]:
+    """Tell in which rows of cells windows may begin; the border's are below 0 and beyond."""
+    everywhere = (-OVER, high + OVER - ROWS + 1)
+    if mount is None:
+        return everywhere
+    # Whoever stands has the feet as far below the horizon as the camera is high.
+    height = PERSON_PX / down
+    feet = [mount.horizon_px + height * mount.height_m / stature for stature in _STATURES_M]
+    slack = _SLACK * PERSON_PX / CELL_PX
+    upper, lower = row_of(min(feet) - height, down), row_of(max(feet) - height, down)
+    start, end = math.floor(upper - slack), math.ceil(lower + slack) + 1
+    return max(start, everywhere[0]), min(end, everywhere[1])
+
+
+@njit(cache=True, nogil=True)
+def _cover(
+    boxes: Floats, first: Floats, step: Floats, share: float, is_covered: NDArray[np.bool_]
+) -> None:  # pragma: no cover
+    """Tell of windows, the first of which is a box (4,), at some steps (2,) [px], who covers them."""
+    rows, columns = is_covered.shape
+    wide, high = first[2], first[3]
+    for left, top, width, height in boxes:
+        narrow = width / height * high
+        least = share * min(width * height, narrow * high)
+        for i in range(rows):
+            y = first[1] + i * step[1]
+            down = min(y + high, top + height) - max(y, top)
+            if down <= 0.0:
+                continue
+            for j in range(columns):
+                x = first[0] + j * step[0] + (wide - narrow) / 2.0
+                across = min(x + narrow, left + width) - max(x, left)
+                is_covered[i, j] |= across * down > least

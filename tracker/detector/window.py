@@ -1,0 +1,56 @@
+"""The window that the detector looks through: its cells, and the person that fills it."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Final, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Top = TypeVar("Top", float, Floats)
+
+CELL_PX: Final = 2  # side of a cell of a level of the pyramid
+ROWS: Final = 20
+COLUMNS: Final = 10
+PERSON_PX: Final = 32.0  # height of the person that fills a window, in pixels of its level
+WIDTH_PER_HEIGHT: Final = 0.41  # of a person's box
+ABOVE_PX: Final = (ROWS * CELL_PX - PERSON_PX) / 2.0
+"""Of a window is above the head, and as much below the feet."""
+
+
+class WindowKind(StrEnum):
+    """Whom windows show: people who are mostly in the image, or such of whom head or feet are beyond it."""
+
+    WHOLE = "whole"
+    CUT = "cut"
+
+
+def row_of(top: Top, down: float) -> Top:
+    """Give the row of the windows that people fill whose heads are at some rows of the image, or at one."""
+    return ((top + 0.5) * down - ABOVE_PX) / CELL_PX
+
+
+def boxes_of(row: Floats, column: Floats, scale: tuple[float, float]) -> Floats:
+    """Give the boxes (N, 4) [px] of the people who fill windows.
+
+    Args:
+        row: (N,) of a window's first cell.
+        column: (N,) likewise.
+        scale: pixels of the level per pixel of the image, down and right.
+    """
+    down, right = scale
+    height = np.full(len(row), PERSON_PX / down)
+    width = WIDTH_PER_HEIGHT * height
+    middle = (column + COLUMNS / 2.0) * CELL_PX / right - 0.5
+    top = (row * CELL_PX + ABOVE_PX) / down - 0.5
+    return np.stack([middle - width / 2.0, top, width, height], axis=1)
+
+
+def cells_of(box: Floats, scale: tuple[float, float]) -> Floats:
+    """Give row and column (N, 2) of the windows that the people of boxes (N, 4) fill, as a fraction."""
+    down, right = scale
+    row = row_of(box[:, 1], down)
+    column = (box[:, 0] + box[:, 2] / 2.0 + 0.5) * right / CELL_PX - COLUMNS / 2.0
+    return np.stack([row, column], axis=1)

@@ -1,0 +1,194 @@
+"""Inference of dense networks and of small convolutional networks, with the same bytes on every processor."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import ClassVar, Final, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import ThreadpoolController
+
+from peopleboy.tracker.networks.convolution import Planes, Workspace, convolve, convolve_tiles, tile_kernel
+from peopleboy.tracker.networks.weights_archive import ArraySpec, WeightsArchive
+
+Floats = NDArray[np.float32]
+
+CHANNELS: Final = 3
+"""Of a crop: grey, by how much it changed, and what lies inside the image."""
+
+
+def one_thread() -> AbstractContextManager[object]:
+    """Let NumPy multiply matrices in one thread for a while; small ones take no longer.
+
+    With several threads the last digits depend on how many there are.
+    """
+    if all(library.num_threads == 1 for library in _blas().lib_controllers):
+        return nullcontext()
+    limited: AbstractContextManager[object] = _blas().limit(limits=1)
+    return limited
+
+
+@cache
+def _blas() -> ThreadpoolController:
+    return ThreadpoolController().select(user_api="blas")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DenseNetwork:
+    """Fully connected layers with rectified linear units between them.
+
+    Attributes:
+        layers: (inputs, units) weights and (units,) bias of each layer.
+    """
+
+    layers: Sequence[tuple[Floats, Floats]]
+
+    def predict(self, inputs: Floats) -> Floats:
+        """Return the outputs (N, outputs) for inputs (N, inputs)."""
+        *hidden, (weights, bias) = self.layers
+        for inner, inner_bias in hidden:
+            inputs = inputs @ inner
+            inputs += inner_bias
+            np.maximum(inputs, np.float32(0), out=inputs)
+        return inputs @ weights + bias
+
+
+class Layer(NamedTuple):
+    """A convolution.
+
+    Attributes:
+        side: of its kernels [px].
+        stride: pixels between places where it looks.
+        planes: that it gives.
+    """
+
+    side: int
+    stride: int
+    planes: int
+
+    @property
+    def is_by_tiles(self) -> bool:
+        """Whether Winograd's filtering applies, which takes less than half of the products."""
+        return self.side == 3 and self.stride == 1
+
+
+class CropSize(NamedTuple):
+    """The size of a crop.
+
+    Attributes:
+        rows, columns: of the crop [px].
+        heights: how many heights of the box all rows show.
+    """
+
+    rows: int
+    columns: int
+    heights: float
+
+
+class Architecture(NamedTuple):
+    """The layers of a `CropNetwork`.
+
+    Attributes:
+        crop: its input image.
+        features: how many numbers it gets beside each crop.
+        layers: its convolutions, one after another.
+        units: of the dense layer after them.
+        outputs: of the last layer.
+    """
+
+    crop: CropSize
+    features: int
+    layers: tuple[Layer, ...]
+    units: int
+    outputs: int
+
+    def shapes(self) -> dict[str, tuple[int, ...]]:
+        """Return the shapes of all weights: inputs, outputs."""
+        shapes: dict[str, tuple[int, ...]] = {}
+        depth, rows, columns = CHANNELS, self.crop.rows, self.crop.columns
+        for number, (side, stride, planes) in enumerate(self.layers):
+            shapes |= {f"kernel{number}": (side * side * depth, planes), f"bias{number}": (planes,)}
+            depth, rows, columns = planes, -(-rows // stride), -(-columns // stride)
+        shapes |= {"all": (rows * columns * depth + self.features, self.units), "all_bias": (self.units,)}
+        return shapes | {"last": (self.units, self.outputs), "last_bias": (self.outputs,)}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CropNetwork:
+    """A convolutional network on crops of an image; a subclass fixes architecture and name.
+
+    Attributes:
+        weights: float32 by name, as `shapes` says.
+        about: what it was trained on, for the reader.
+    """
+
+    ARCHITECTURE: ClassVar[Architecture]
+    MODEL: ClassVar[str]
+    """Its name for `peopleboy train`."""
+
+    weights: Mapping[str, Planes]
+    about: Mapping[str, str] = field(default_factory=dict)
+    _tile_kernels: Mapping[int, Planes] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Transform the kernels of those layers that work by tiles."""
+        kernels = {
+            number: tile_kernel(self.weights[f"kernel{number}"])
+            for number, layer in enumerate(self.ARCHITECTURE.layers)
+            if layer.is_by_tiles
+        }
+        object.__setattr__(self, "_tile_kernels", kernels)
+
+    @classmethod
+    def shapes(cls) -> dict[str, tuple[int, ...]]:
+        """Return the shapes of all weights."""
+        return cls.ARCHITECTURE.shapes()
+
+    def outputs(self, planes: Planes, features: Planes, workspace: Workspace | None = None) -> Planes:
+        """Return the outputs (N, outputs) of the last layer for crops (N, rows, columns, 3) and features.
+
+        Args:
+            planes: the crops.
+            features: (N, features).
+            workspace: buffers; None for new ones, which cost a quarter of the time.
+        """
+        weights, count = self.weights, features.shape[1]
+        flat = np.empty((len(planes), len(weights["all"])), np.float32)
+        flat[:, -count:] = features
+        dense = DenseNetwork([(weights["all"], weights["all_bias"]), (weights["last"], weights["last_bias"])])
+        with one_thread():
+            flat[:, :-count] = self._convolve(planes, workspace or Workspace()).reshape(len(planes), -1)
+            return np.asarray(dense.predict(flat), np.float32)
+
+    def _convolve(self, crops: Planes, workspace: Workspace) -> Planes:
+        """Apply all convolutions to crops (N, rows, columns, 3)."""
+        planes = crops
+        for number, layer in enumerate(self.ARCHITECTURE.layers):
+            bias = self.weights[f"bias{number}"]
+            if layer.is_by_tiles:
+                planes = convolve_tiles(planes, self._tile_kernels[number], bias, workspace)
+            else:
+                kernel = self.weights[f"kernel{number}"]
+                planes = convolve(planes, kernel, bias, layer.side, layer.stride, workspace)
+        return planes
+
+    def save(self, path: Path) -> None:
+        """Write the network; weights have 11 bits in the file, which is half as large then."""
+        arrays = {name: array.astype(np.float16) for name, array in self.weights.items()}
+        WeightsArchive(arrays, self.about).save(path)
+
+    @classmethod
+    def load(cls, path: Path) -> Self:
+        """Read a network.
+
+        Raises:
+            BadInput: a file that is missing, is none, or holds another network.
+        """
+        specs = {name: ArraySpec(shape, np.float16) for name, shape in cls.shapes().items()}
+        archive = WeightsArchive.load(path, cls.MODEL, specs)
+        return cls({name: array.astype(np.float32) for name, array in archive.arrays.items()}, archive.about)

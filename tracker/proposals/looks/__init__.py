@@ -1,1 +1,0 @@
-"""Small networks that look again, and closer, at what trees propose."""
