@@ -6,7 +6,6 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from peopleboy.studies.reproductions.measuring.run_units import open_store
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.draw_plan import draw_plan
@@ -16,6 +15,7 @@ from peopleboy.scenarios.run_folder.atomic_output import atomic, atomic_folder
 from peopleboy.scenarios.run_folder.folder import claim_folder
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.frame_cache import film
+from peopleboy.studies.reproductions.units import open_store
 from peopleboy.studies.training.specification import MODELS, load_specification, train
 from tests.helpers.calls.footage_calls import refusal
 from tests.helpers.calls.processes import start
