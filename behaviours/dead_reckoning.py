@@ -11,7 +11,7 @@ from peopleboy.geometry.pose2 import Pose2
 
 
 @dataclass(frozen=True, slots=True)
-class Motion:
+class RobotMotion:
     """A short drive at constant speeds.
 
     Attributes:

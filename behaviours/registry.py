@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from peopleboy.behaviours.behaviour import Behaviour, Command
-    from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig
+    from peopleboy.behaviours.corridor.follow_corridor import FollowCorridorConfig
     from peopleboy.behaviours.following.follow_person import FollowConfig
     from peopleboy.behaviours.safety_guard import Guarded
     from peopleboy.behaviours.safety_limits import SafetyConfig
@@ -41,7 +41,7 @@ class BehaviourSettings:
 
     script: Sequence[tuple[float, Command]] = ()
     follow: FollowConfig | None = None
-    corridor: CorridorConfig | None = None
+    corridor: FollowCorridorConfig | None = None
 
 
 @BEHAVIOURS.register("stand", summary="leaves it where it is")
@@ -99,7 +99,7 @@ def make_behaviour(
     *,
     script: Sequence[tuple[float, Command]] = (),
     follow: FollowConfig | None = None,
-    corridor: CorridorConfig | None = None,
+    corridor: FollowCorridorConfig | None = None,
     safety: SafetyConfig | None = None,
 ) -> Guarded:
     """Make a behaviour by its name; whatever it commands, the sonars limit.

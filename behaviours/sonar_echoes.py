@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from peopleboy.behaviours.dead_reckoning import Motion
+from peopleboy.behaviours.dead_reckoning import RobotMotion
 from peopleboy.behaviours.percept import Percept, Points, Ranges
 
 # The PeopleBot's ring: an ellipse within 3 cm of ARIA's peoplebot-sh.p, SonarUnit 0..15, except the four
@@ -90,7 +90,7 @@ def remember(
         return memory
     heard = echoes(percept, spread_rad)
     step_s = 0.0 if math.isnan(memory.time_s) else percept.time_s - memory.time_s
-    points = np.concatenate([Motion.of(percept, step_s).carry(memory.points), heard])
+    points = np.concatenate([RobotMotion.of(percept, step_s).carry(memory.points), heard])
     heard_s = np.concatenate([memory.heard_s, np.full(len(heard), percept.time_s)])
     is_kept = (np.hypot(points[:, 0], points[:, 1]) < config.within_m) & (
         np.abs(percept.time_s - heard_s) < config.keep_s

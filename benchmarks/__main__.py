@@ -41,7 +41,7 @@ from benchmarks.speed.environments import (
 )
 from benchmarks.speed.full_detail import BULLET, FULL, RAYCAST, render_times
 from benchmarks.speed.memory import long_run, reset_growth
-from peopleboy.sim.physics.physics import PHYSICS
+from peopleboy.sim.physics.physics_engine import PHYSICS
 from peopleboy.tracker.trackers import CONTOUR_TRACKER, DEFAULT_TRACKER
 
 COUNTS = (300, 1000)

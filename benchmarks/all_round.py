@@ -26,8 +26,8 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import Tick, closed_loop, make_frame
 from peopleboy.scenarios.running.blind_drive import blind_drive
-from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.task import Tell, Workers, chosen_workers
+from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.sim.world import World
@@ -35,7 +35,7 @@ from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
 from peopleboy.tracker.evaluation.floor import Places, floor_squares
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.frame import COLOUR, PANORAMA, THERMAL, Frame
-from peopleboy.tracker.fusion.explanations import BothExplanations
+from peopleboy.tracker.fusion.fused_explanations import BothExplanations
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
 from peopleboy.tracker.panoramic.people.place_model import load_places

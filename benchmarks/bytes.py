@@ -28,7 +28,7 @@ TEXTS = ("truth/gt.txt", "tracks.txt")
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class ByteComparison:
     """What came of one scenario.
 
     Attributes:
@@ -42,15 +42,15 @@ class Comparison:
     differing: tuple[str, ...]
 
 
-def compare_folders(scenario: str, ours: Path, theirs: Path) -> Comparison:
+def compare_folders(scenario: str, ours: Path, theirs: Path) -> ByteComparison:
     """Compare images, truth and tracks of two runs byte by byte."""
     names = sorted(set(_files(ours)) | set(_files(theirs)))
-    return Comparison(scenario, len(names), tuple(n for n in names if not _is_same(ours / n, theirs / n)))
+    return ByteComparison(scenario, len(names), tuple(n for n in names if not _is_same(ours / n, theirs / n)))
 
 
 def compare_checkouts(
     scenarios: Sequence[str], other: Path, folder: Path, seed: int = 0, workers: int = 2
-) -> list[Comparison]:
+) -> list[ByteComparison]:
     """Play each scenario from this checkout and from another one, and compare what they leave.
 
     Raises:
@@ -58,7 +58,7 @@ def compare_checkouts(
     """
     programs = {"here": _program(HERE), "there": _program(other)}
 
-    def compare(name: str) -> Comparison:
+    def compare(name: str) -> ByteComparison:
         for side, program in programs.items():
             _play(program, name, seed, folder / side / name)
         return compare_folders(name, folder / "here" / name, folder / "there" / name)

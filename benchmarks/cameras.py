@@ -22,10 +22,10 @@ from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.imaging.electronics import encode_8bit
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
+from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker

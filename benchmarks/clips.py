@@ -22,8 +22,8 @@ from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_truth
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
-from peopleboy.tracker.footage.pictures import open_footage
-from peopleboy.tracker.footage.truth_files import GivenTruth, find_truth, load_truth
+from peopleboy.tracker.footage.footage_truth import GivenTruth, find_truth, load_truth
+from peopleboy.tracker.footage.image_sequences import open_footage
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, is_own
 
 CHOSEN_BY: Final = ("camel_08", "camel_21")
@@ -34,7 +34,7 @@ PEERS: Final = {"HOG x 2 + ByteTrack": 2.0, "HOG x 3 + ByteTrack": 3.0}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Clip:
+class RealClip:
     """The first frames of a clip.
 
     Attributes:
@@ -53,7 +53,7 @@ class Clip:
         return self.folder.name
 
 
-def open_clips(home: Path, only: Sequence[str] = (), frames: int | None = None) -> list[Clip]:
+def open_clips(home: Path, only: Sequence[str] = (), frames: int | None = None) -> list[RealClip]:
     """Open the clips of a folder: those by which values are chosen, then the others, by name.
 
     Args:
@@ -73,12 +73,12 @@ def open_clips(home: Path, only: Sequence[str] = (), frames: int | None = None) 
     return [_open(there[name], frames) for name in names]
 
 
-def _open(folder: Path, frames: int | None) -> Clip:
+def _open(folder: Path, frames: int | None) -> RealClip:
     path, there = find_truth(folder), open_footage(folder).expected
     assert path is not None
     count = there if frames is None else min(frames, there)
     given = _load(path, there)
-    return Clip(folder, replace(given, truth=_first(given.truth, count)), count)
+    return RealClip(folder, replace(given, truth=_first(given.truth, count)), count)
 
 
 def _load(path: Path, frames: int) -> GivenTruth:
@@ -116,7 +116,7 @@ class ClipTask:
         rate_hz: pictures a second; None for what a folder is taken to have.
     """
 
-    clip: Clip
+    clip: RealClip
     tracker: str
     seed: int
     rate_hz: float | None = None
@@ -175,7 +175,7 @@ def _peer(name: str) -> Contestant:
     return make_clip_peer(PEERS[name])
 
 
-def score_clip(clip: Clip, rows: list[tuple[int, int, Floats]]) -> Scores:
+def score_clip(clip: RealClip, rows: list[tuple[int, int, Floats]]) -> Scores:
     """Score rows of frame, id and box against a clip's truth."""
     tracks = track_boxes((frame, identity, box, 1.0) for frame, identity, box in rows)
     return evaluate(clip.given.truth, tracks, frames=clip.frames, is_single=clip.given.is_single)

@@ -22,14 +22,14 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks import call
-from benchmarks.clips import CHOSEN_BY, PEERS, Clip, ClipResult, ClipTask, make_clip_tracker, open_clips
+from benchmarks.clips import CHOSEN_BY, PEERS, ClipResult, ClipTask, RealClip, make_clip_tracker, open_clips
 from benchmarks.sequences import print_head, print_row
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario_file import to_data
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.track_footage import track_footage
-from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.task import Workers
+from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.scenarios.running.run import RunOptions, run
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
@@ -92,7 +92,7 @@ class ClipsOptions:
     jobs: int = 1
     out: Path = OUT
 
-    def tasks(self, clip: Clip) -> list[ClipTask]:
+    def tasks(self, clip: RealClip) -> list[ClipTask]:
         """List the work on a clip, for all trackers in turn; peers draw nothing and see it once."""
         ours = [
             ClipTask(clip, tracker, seed, self.rate_hz)
@@ -106,7 +106,7 @@ class ClipsOptions:
 class ClipRow:
     """One tracker on one clip, all seeds together."""
 
-    clip: Clip
+    clip: RealClip
     tracker: str
     results: Sequence[ClipResult]
 

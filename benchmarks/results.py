@@ -33,7 +33,7 @@ class _Part(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
-class Column(_Part):
+class ResultColumn(_Part):
     """One figure of every row."""
 
     name: str = Field(description="as the table's head says it")
@@ -42,7 +42,7 @@ class Column(_Part):
     factor: float = Field(default=1.0, description="on what was measured")
 
 
-class Row(_Part):
+class ResultRow(_Part):
     """What one scenario, contestant or part came to."""
 
     name: str
@@ -65,8 +65,8 @@ class ResultTable(_Part):
         default="", description="the scenes on which values of the tracker or behaviour were chosen"
     )
     rows_are: str = Field(default="", description="head of the first column")
-    columns: tuple[Column, ...]
-    rows: tuple[Row, ...]
+    columns: tuple[ResultColumn, ...]
+    rows: tuple[ResultRow, ...]
 
     @model_validator(mode="after")
     def _has_a_figure_for_every_column(self) -> ResultTable:
@@ -114,7 +114,7 @@ def take_in(table: ResultTable) -> ResultTable:
     return table.model_copy(update={"rows": rows, "recorded": date.today().isoformat()})
 
 
-def _take_row(row: Row, table: ResultTable) -> Row:
+def _take_row(row: ResultRow, table: ResultTable) -> ResultRow:
     if not row.measured:
         return row
     found = read_measured(row)
@@ -125,7 +125,7 @@ def _take_row(row: Row, table: ResultTable) -> Row:
     return row.model_copy(update={"figures": figures})
 
 
-def read_measured(row: Row) -> Any:
+def read_measured(row: ResultRow) -> Any:
     """Read what a row's figures are looked up in.
 
     Of folders, that is `scores`, of all their frames together; `mean` and `worst`, how the robot drove; and
@@ -142,7 +142,7 @@ def read_measured(row: Row) -> Any:
     return found
 
 
-def _of_file(row: Row) -> Any:
+def _of_file(row: ResultRow) -> Any:
     path, _, inside = row.measured.partition("#")
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
@@ -171,14 +171,14 @@ def _of_runs(folders: Sequence[Path]) -> dict[str, Any]:
     }
 
 
-def _look_up(found: Any, column: Column, row: Row) -> float | None:
+def _look_up(found: Any, column: ResultColumn, row: ResultRow) -> float | None:
     value = _at(found, column.key, row)
     if value is not None and not isinstance(value, int | float):
         raise BadInput(f"{row.measured}: {column.key} is no figure, got {value!r}")
     return None if value is None else column.factor * value
 
 
-def _at(content: Any, key: str, row: Row) -> Any:
+def _at(content: Any, key: str, row: ResultRow) -> Any:
     """Go along a key such as /thesis/CP; numbers count entries of lists."""
     for step in key.split("/")[1:]:
         try:

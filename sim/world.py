@@ -16,14 +16,13 @@ from peopleboy.sim.cameras.imaging.surfaces import MaterialTable, make_material_
 from peopleboy.sim.cameras.kinds import flat_geometry, kind_of
 from peopleboy.sim.cameras.rig import Rig
 from peopleboy.sim.cameras.sensors import CameraView
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.on_demand import OnDemand
 from peopleboy.sim.people.crowd import Crowd, Handling
 from peopleboy.sim.people.walking.social_force import PlanarState
-from peopleboy.sim.physics.physics import Physics, open_physics
+from peopleboy.sim.physics.physics_engine import Physics, open_physics
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.places.textures.texture_place import paint_place
 from peopleboy.sim.random_streams import stream
@@ -39,6 +38,7 @@ from peopleboy.sim.truth.scenes import SCENE, ImageFreeTruth, Records, Scenes
 from peopleboy.sim.truth.truth import BORDER, Box, Truth
 from peopleboy.sim.truth.truth_maker import TruthMaker
 from peopleboy.sim.truth.visibility import known_people, look_at_people
+from peopleboy.sim.world_config import WorldConfig
 
 _STANDS_OUT_K = 5.0  # from the surroundings: what differs by more is seen in mirrors
 _MOST_PEOPLE = 64  # a view's cover has a bit for each

@@ -51,7 +51,7 @@ WITHOUT_PHYSICS = (
     "sim.places",
     "sim.people.body",
     "sim.people.person",
-    "sim.config",
+    "sim.world_config",
     "sim.world",
     "sim.physics.kinematic",
     "sim.observation",

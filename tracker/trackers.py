@@ -110,9 +110,9 @@ def _rgbd_tracker(config: RgbdConfig, rng: np.random.Generator) -> RgbdTracker:
 
 
 def _fused_tracker(rng: np.random.Generator) -> FusedTracker:
+    from peopleboy.tracker.fusion.depth_visibility import is_warm
     from peopleboy.tracker.fusion.fused_tracker import FusedTracker, ThermalDepthTracker
     from peopleboy.tracker.fusion.fusion_config import FusionConfig
-    from peopleboy.tracker.fusion.visibility import is_warm
     from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
     from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
     from peopleboy.tracker.rgbd.verification.window_model import shipped_windows

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from peopleboy.behaviours.dead_reckoning import Motion
+from peopleboy.behaviours.dead_reckoning import RobotMotion
 from peopleboy.behaviours.percept import Points
 
 
@@ -37,7 +37,7 @@ class Unknown:
     reason: str
 
 
-def drive_on(corridor: Corridor, motion: Motion) -> Corridor:
+def drive_on(corridor: Corridor, motion: RobotMotion) -> Corridor:
     """Predict the place after the robot has moved."""
     mean_heading = corridor.heading_rad + motion.turn_rad / 2.0
     return replace(

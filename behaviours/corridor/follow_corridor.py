@@ -35,7 +35,7 @@ from peopleboy.behaviours.corridor.corridor_geometry import (
     in_corridor,
     middle_lane,
 )
-from peopleboy.behaviours.dead_reckoning import Motion
+from peopleboy.behaviours.dead_reckoning import RobotMotion
 from peopleboy.behaviours.percept import Percept
 from peopleboy.behaviours.sonar_echoes import EchoMemory, EchoMemoryConfig, remember
 
@@ -43,7 +43,7 @@ Sense = Literal["sonar", "image"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CorridorConfig:
+class FollowCorridorConfig:
     """Gains and limits of corridor following.
 
     Attributes:
@@ -144,8 +144,8 @@ class FollowCorridor:
 
     following = None
 
-    def __init__(self, config: CorridorConfig | None = None) -> None:
-        self._config = CorridorConfig() if config is None else config
+    def __init__(self, config: FollowCorridorConfig | None = None) -> None:
+        self._config = FollowCorridorConfig() if config is None else config
         self.state = CorridorState()
 
     @property
@@ -165,7 +165,7 @@ class FollowCorridor:
 
 
 def follow_corridor(
-    state: CorridorState, percept: Percept, config: CorridorConfig
+    state: CorridorState, percept: Percept, config: FollowCorridorConfig
 ) -> tuple[CorridorState, Command]:
     """Take one step along the corridor.
 
@@ -196,11 +196,13 @@ def follow_corridor(
     return _go_along(state, corridor, ahead_m, config)
 
 
-def _locate(state: CorridorState, percept: Percept, step_s: float, config: CorridorConfig) -> CorridorState:
+def _locate(
+    state: CorridorState, percept: Percept, step_s: float, config: FollowCorridorConfig
+) -> CorridorState:
     """Move the place by the wheels, and correct it by what is seen of the walls."""
     expected = state.corridor if percept.time_s - state.seen_s <= config.lost_s else None
     if expected is not None:
-        expected = drive_on(expected, Motion.of(percept, step_s))
+        expected = drive_on(expected, RobotMotion.of(percept, step_s))
         if abs(expected.heading_rad) > config.turn_only_rad:  # turning: the walls are yet to come into view
             return replace(state, corridor=expected, seen_s=percept.time_s)
     by_image: Corridor | Unknown = Unknown("")
@@ -220,7 +222,11 @@ def _locate(state: CorridorState, percept: Percept, step_s: float, config: Corri
 
 
 def _remember_people(
-    state: CorridorState, corridor: Corridor, percept: Percept, ahead_m: float | None, config: CorridorConfig
+    state: CorridorState,
+    corridor: Corridor,
+    percept: Percept,
+    ahead_m: float | None,
+    config: FollowCorridorConfig,
 ) -> EchoMemory:
     """Keep the echoes that no wall explains."""
     walls = side_walls(corridor)
@@ -233,7 +239,7 @@ def _remember_people(
 
 
 def _look_aside(
-    state: CorridorState, corridor: Corridor, percept: Percept, ahead_m: float, config: CorridorConfig
+    state: CorridorState, corridor: Corridor, percept: Percept, ahead_m: float, config: FollowCorridorConfig
 ) -> CorridorState:
     """Count the images in which the sides are open, near the wall ahead."""
     if ahead_m > 0.8 * corridor.width_m:
@@ -243,13 +249,13 @@ def _look_aside(
     return replace(state, open_frames=(left, right))
 
 
-def _turning_place(corridor: Corridor, config: CorridorConfig) -> float:
+def _turning_place(corridor: Corridor, config: FollowCorridorConfig) -> float:
     """Give the distance [m] to the wall ahead at which to turn: the middle of a corner as wide as the way."""
     return max(corridor.width_m / 2.0, config.turn_at_m)
 
 
 def _end(
-    state: CorridorState, corridor: Corridor, percept: Percept, ahead_m: float, config: CorridorConfig
+    state: CorridorState, corridor: Corridor, percept: Percept, ahead_m: float, config: FollowCorridorConfig
 ) -> tuple[CorridorState, Command]:
     """Before a wall: turn to an open side, the roomier of two, or turn back."""
     since_s = percept.time_s if state.ended_s is None else state.ended_s
@@ -274,14 +280,14 @@ def _end(
     return replace(state, open_frames=(0, 0), ended_s=None), STOP
 
 
-def _turn(corridor: Corridor, config: CorridorConfig) -> Command:
+def _turn(corridor: Corridor, config: FollowCorridorConfig) -> Command:
     """Turn on the spot into the corridor."""
     turn = -math.copysign(config.max_turn_rad_s, corridor.heading_rad)
     return Command(linear_m_s=0.0, angular_rad_s=turn)
 
 
 def _go_along(
-    state: CorridorState, corridor: Corridor, ahead_m: float | None, config: CorridorConfig
+    state: CorridorState, corridor: Corridor, ahead_m: float | None, config: FollowCorridorConfig
 ) -> tuple[CorridorState, Command]:
     """Drive in the middle, or wait for people who stand there, and at last drive past them."""
     people = beside(in_corridor(state.people.points, corridor), corridor, config.lane)
@@ -306,7 +312,7 @@ def _wait(
     nearest_m: float,
     ahead_m: float | None,
     is_free: bool,
-    config: CorridorConfig,
+    config: FollowCorridorConfig,
 ) -> tuple[CorridorState, Command]:
     """Stop before who is in the way; in a narrow corridor go on slowly to what nobody was seen at."""
     is_unseen = state.time_s - state.people_s > config.unseen_s
@@ -322,7 +328,7 @@ def _wait(
     return state, _steer(corridor, here, speed, ahead_m, config)
 
 
-def _driving(state: CorridorState, config: CorridorConfig) -> CorridorState:
+def _driving(state: CorridorState, config: FollowCorridorConfig) -> CorridorState:
     """Name mode and reason of plain driving, by the sense that steers it."""
     state = replace(state, blocked_s=None, side=0)
     if config.sense == "image" and state.time_s - state.image_s > config.image_s:
@@ -332,7 +338,7 @@ def _driving(state: CorridorState, config: CorridorConfig) -> CorridorState:
 
 
 def _steer(
-    corridor: Corridor, lane: Lane, speed_m_s: float, ahead_m: float | None, config: CorridorConfig
+    corridor: Corridor, lane: Lane, speed_m_s: float, ahead_m: float | None, config: FollowCorridorConfig
 ) -> Command:
     """Head for the lane, slower the more the robot must turn, and before a wall."""
     beside_m = lane.offset_m - corridor.offset_m

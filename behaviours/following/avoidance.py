@@ -64,7 +64,7 @@ def swerve(bearing_rad: float, points: Points, config: AvoidConfig) -> float:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RoomConfig:
+class ClearanceConfig:
     """How much room is made.
 
     Attributes:
@@ -90,7 +90,7 @@ class RoomConfig:
     farthest_m: float = 3.0
 
 
-def is_somebody_near(around: Points, config: RoomConfig, *, was_near: bool) -> bool:
+def is_somebody_near(around: Points, config: ClearanceConfig, *, was_near: bool) -> bool:
     """Tell whether something is close ahead.
 
     Args:
@@ -101,7 +101,7 @@ def is_somebody_near(around: Points, config: RoomConfig, *, was_near: bool) -> b
     return _is_taken(around, config.ahead_m if was_near else config.close_m, config.half_width_m)
 
 
-def is_way_out(around: Points, config: RoomConfig, gone_m: float) -> bool:
+def is_way_out(around: Points, config: ClearanceConfig, gone_m: float) -> bool:
     """Tell whether the robot stands in a narrow place, or beside somebody, and heads for a wide one.
 
     Args:

@@ -6,15 +6,16 @@ import math
 from dataclasses import dataclass, field, replace
 
 from peopleboy.behaviours.behaviour import STOP, Command
-from peopleboy.behaviours.dead_reckoning import Motion
+from peopleboy.behaviours.dead_reckoning import RobotMotion
 from peopleboy.behaviours.following.avoidance import (
     WIDELY,
     AvoidConfig,
-    RoomConfig,
+    ClearanceConfig,
     is_somebody_near,
     is_way_out,
     swerve,
 )
+from peopleboy.behaviours.following.follow_identity import FollowIdentityConfig, company, recognise
 from peopleboy.behaviours.following.last_seen import (
     LastPlace,
     PlaceConfig,
@@ -23,7 +24,6 @@ from peopleboy.behaviours.following.last_seen import (
     on_the_way,
     place_of,
 )
-from peopleboy.behaviours.following.reidentification import ReidentificationConfig, company, recognise
 from peopleboy.behaviours.following.target import (
     OccluderConfig,
     Target,
@@ -111,13 +111,13 @@ class FollowConfig:
     give_up_known_s: float = 300.0
     leaving_rad: float = math.radians(26.0)
     target: TargetConfig = field(default_factory=TargetConfig)
-    identity: ReidentificationConfig = field(default_factory=ReidentificationConfig)
+    identity: FollowIdentityConfig = field(default_factory=FollowIdentityConfig)
     hidden: OccluderConfig = field(default_factory=OccluderConfig)
     place: PlaceConfig = field(default_factory=PlaceConfig)
     avoid: AvoidConfig = field(default_factory=AvoidConfig)
     avoid_alone: AvoidConfig = WIDELY
     heard: EchoMemoryConfig = field(default_factory=lambda: EchoMemoryConfig(keep_s=4.0, within_m=1.7))
-    room: RoomConfig = field(default_factory=RoomConfig)
+    room: ClearanceConfig = field(default_factory=ClearanceConfig)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -228,7 +228,7 @@ def _update_target(state: FollowState, percept: Percept, step_s: float, config: 
     if known is None:
         state = replace(state, target=None, others=frozenset(), place=None)
     else:
-        motion = Motion.of(percept, step_s)
+        motion = RobotMotion.of(percept, step_s)
         known = carry_on(known, motion)
         place = None if state.place is None else carry_place(state.place, motion)
         gone = forget_drift(known, step_s, config.target)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from peopleboy.behaviours.dead_reckoning import Motion
+from peopleboy.behaviours.dead_reckoning import RobotMotion
 from peopleboy.behaviours.following.target import Target
 from peopleboy.behaviours.percept import Percept, Points
 
@@ -70,7 +70,7 @@ def place_of(target: Target, config: PlaceConfig) -> LastPlace:
     return LastPlace(x_m=far * math.cos(target.bearing_rad), y_m=far * math.sin(target.bearing_rad))
 
 
-def carry_place(place: LastPlace, motion: Motion) -> LastPlace:
+def carry_place(place: LastPlace, motion: RobotMotion) -> LastPlace:
     """Express a place in the robot's frame after it has moved."""
     ((x, y),) = motion.carry(np.array([[place.x_m, place.y_m]])).tolist()
     return replace(place, x_m=x, y_m=y)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from peopleboy.behaviours.dead_reckoning import Motion
+from peopleboy.behaviours.dead_reckoning import RobotMotion
 from peopleboy.behaviours.percept import SeenPerson
 
 
@@ -64,7 +64,7 @@ def first_sight(person: SeenPerson, time_s: float, config: TargetConfig) -> Targ
     )
 
 
-def carry_on(target: Target, motion: Motion) -> Target:
+def carry_on(target: Target, motion: RobotMotion) -> Target:
     """Predict the bearing after the robot has moved; nothing else changes."""
     moved = target.bearing_rad + (target.drift_rad_s - motion.angular_rad_s) * motion.step_s
     return replace(target, bearing_rad=math.remainder(moved, math.tau))

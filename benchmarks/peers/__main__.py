@@ -15,13 +15,13 @@ except ImportError as error:
     raise SystemExit("benchmarks.peers: the package trackers is missing; `make peers` installs it") from error
 
 from benchmarks import call
-from benchmarks.peers.compete import FilmTask, Result
+from benchmarks.peers.compete import Result, SequenceTask
 from benchmarks.peers.contestants import contestants
 from benchmarks.peers.show import draw_occlusions, print_occlusions, print_results, write_results
 from peopleboy.scenarios.commands.options import workers_options
 from peopleboy.scenarios.files.suite import load_suite
-from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.task import Workers, chosen_workers
+from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.wording import hint
 
 _QUICK = "crossing_2,crossing_3,same_uniform,pass_behind_pillar,hidden_0_5s,hidden_2s,hidden_5s,crowd_8"
@@ -73,7 +73,9 @@ def _compete_all(
     names: list[str], played: list[str], seeds: int, workers: Workers, out: Path
 ) -> dict[str, list[Result]]:
     """Film by film, so that each is rendered by one process only."""
-    tasks = [FilmTask(tuple(names), shot, seed, out.resolve()) for shot in played for seed in range(seeds)]
+    tasks = [
+        SequenceTask(tuple(names), shot, seed, out.resolve()) for shot in played for seed in range(seeds)
+    ]
     found: dict[str, list[Result]] = {}
     work_through(tasks, workers, "films", lambda task, results: found.update({task.name: results}))
     return {name: [found[task.name][k] for task in tasks] for k, name in enumerate(names)}

@@ -46,7 +46,7 @@ class Result:
 
 
 @dataclass(frozen=True, slots=True)
-class FilmTask:
+class SequenceTask:
     """Score several contestants on one film."""
 
     names: tuple[str, ...]

@@ -36,7 +36,7 @@ print(json.dumps([loop_speed("{SCENARIO}", **options), run_speed("{SCENARIO}", *
 
 
 @dataclass(frozen=True, slots=True)
-class Gain:
+class SpeedRatio:
     """How many times as fast two people are run here as there, in CPU time.
 
     Attributes:
@@ -48,12 +48,12 @@ class Gain:
     run: float
 
 
-def gain_over(other: Path, rounds: int) -> Gain:
+def gain_over(other: Path, rounds: int) -> SpeedRatio:
     """Measure both in turn, and give the medians of the turns."""
     _speeds(other)
     turns = [(_speeds(HERE), _speeds(other)) for _ in range(rounds)]
     loop, run = (median(here[which] / there[which] for here, there in turns) for which in (0, 1))
-    return Gain(loop, run)
+    return SpeedRatio(loop, run)
 
 
 def _speeds(checkout: Path) -> list[float]:

@@ -28,7 +28,7 @@ from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.vector_environment import PeopleBoyVectorEnv
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.physics.bullet_io import projection_matrix, view_matrix
-from peopleboy.sim.physics.physics import PHYSICS
+from peopleboy.sim.physics.physics_engine import PHYSICS
 from peopleboy.sim.shapes.bounds import FAR_M, NEAR_M
 from peopleboy.sim.world import World
 

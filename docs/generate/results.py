@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from benchmarks.results import Column, ResultTable
+from benchmarks.results import ResultColumn, ResultTable
 from docs.generate.markdown import table
 
 
@@ -16,7 +16,7 @@ def results(one: ResultTable) -> str:
     return f"{table(head, rows)}\n{_about(one)}"
 
 
-def _cell(value: float | None, column: Column) -> str:
+def _cell(value: float | None, column: ResultColumn) -> str:
     return "" if value is None else column.form.format(value)
 
 

@@ -28,7 +28,7 @@ from peopleboy.scenarios.drawing.plan_robot import draw_robot
 from peopleboy.scenarios.drawing.plan_sheet import INK, PAPER, Labels, lay_out, sections
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.run_folder.atomic_output import writing_to
-from peopleboy.sim.config import WorldConfig
+from peopleboy.sim.world_config import WorldConfig
 
 _PERSON, _ROBOT = "#1f6fb4", "#c0392b"
 _TIMES: Final = "Times are those of people whom nobody is in the way of; those who make way are later."

@@ -29,7 +29,7 @@ from peopleboy.tracker.boxes import Box, corners
 from peopleboy.tracker.contour.explanation import ContourExplanation
 from peopleboy.tracker.contour.measurement.section_evidence import outline
 from peopleboy.tracker.frame import THERMAL
-from peopleboy.tracker.fusion.explanations import BothExplanations
+from peopleboy.tracker.fusion.fused_explanations import BothExplanations
 from peopleboy.tracker.track import Status, Track
 
 Line = NDArray[np.float64]  # (K, 2) [px] in the thermal image

@@ -43,12 +43,12 @@ from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.scores.following_score import TARGET, following_task
 from peopleboy.sim.batch.snapshot import Snapshot, take_snapshot
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.view import BLIND
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
+from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import Tracker, explanation_of
 

@@ -11,13 +11,13 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput, found_in
 from peopleboy.scenarios.random_worlds.distribution import Distribution, is_number, narrowed
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.appearance.traits import usual_clothes
 from peopleboy.sim.people.body.clothes import Clothes, random_clothes
 from peopleboy.sim.people.person_config import SPEEDS_M_S, PersonConfig
 from peopleboy.sim.places.place import Fixture, Place, air_of
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Material
+from peopleboy.sim.world_config import WorldConfig
 from peopleboy.wording import hint
 
 LIMITS: Final[Mapping[str, tuple[float, float]]] = {

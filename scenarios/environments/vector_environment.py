@@ -16,7 +16,7 @@ from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.episodes import LiveEpisodes
 from peopleboy.scenarios.environments.observations import Arrays
 from peopleboy.scenarios.environments.step_results import Infos, StepResults, join_infos
-from peopleboy.sim.batch.cameras import WorkerPool
+from peopleboy.sim.batch.batch_cameras import WorkerPool
 from peopleboy.sim.batch.snapshot import Snapshot
 from peopleboy.sim.batch.world_batch import WorldBatch
 from peopleboy.sim.shapes.joined_tables import Numbers

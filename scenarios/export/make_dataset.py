@@ -29,7 +29,7 @@ from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import RunTask, play, unfinished
 from peopleboy.scenarios.running.run import RunOptions
-from peopleboy.sim.physics.physics import check_physics
+from peopleboy.sim.physics.physics_engine import check_physics
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -20,12 +20,12 @@ from peopleboy.scenarios.files.check_people import (
 from peopleboy.scenarios.files.people import PersonSpec
 from peopleboy.scenarios.files.robot import ORACLE, RobotSpec, check_cameras
 from peopleboy.scenarios.files.scenario_file import ScenarioSpec
-from peopleboy.sim.config import CONTROL_HZ
 from peopleboy.sim.people.person_config import Waypoint
 from peopleboy.sim.places.floor_plan import FloorPlan, Rectangle
 from peopleboy.sim.places.furniture.place_things import describe_floor, name_things
 from peopleboy.sim.places.furniture.thing_kinds import KINDS
 from peopleboy.sim.places.place import Place
+from peopleboy.sim.world_config import CONTROL_HZ
 from peopleboy.tracker.trackers import TRACKERS
 
 

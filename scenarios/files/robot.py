@@ -14,8 +14,8 @@ from peopleboy.behaviours.registry import BEHAVIOURS
 from peopleboy.scenarios.files.validation import GivenCamera
 from peopleboy.settings import Point, Seconds, meaning_of
 from peopleboy.sim.cameras.kinds import check_rate, colour_from_thermal, configure_camera
-from peopleboy.sim.config import CONTROL_HZ
 from peopleboy.sim.robot.robot_config import RobotConfig
+from peopleboy.sim.world_config import CONTROL_HZ
 
 ORACLE: Final = "truth"
 """Name of the tracker that is given the true positions."""

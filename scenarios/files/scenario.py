@@ -11,23 +11,23 @@ from typing import Any
 from peopleboy.bad_input import BadInput, Key, found_in
 from peopleboy.behaviours.behaviour import Behaviour, Command
 from peopleboy.behaviours.corridor.corridor_from_image import CorridorCamera
-from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig
+from peopleboy.behaviours.corridor.follow_corridor import FollowCorridorConfig
 from peopleboy.behaviours.following.follow_person import FollowConfig
 from peopleboy.behaviours.registry import is_own, make_behaviour
 from peopleboy.scenarios.files.check import Ground, check_scenario, make_ground
-from peopleboy.scenarios.files.drives import KEPT, Repeat, pack_drive, read_drive
 from peopleboy.scenarios.files.own_files import read_own_files
 from peopleboy.scenarios.files.people import PersonSpec, assign_distinct_colours, make_config, resolve_person
+from peopleboy.scenarios.files.recorded_drives import KEPT, Repeat, pack_drive, read_drive
 from peopleboy.scenarios.files.robot import RobotSpec
 from peopleboy.scenarios.files.scenario_file import DrawnSpec, ScenarioSpec, to_data
 from peopleboy.sim.cameras.kinds import KINDS, flat_geometry
-from peopleboy.sim.config import WorldConfig
-from peopleboy.sim.physics.physics import PHYSICS, PhysicsName
+from peopleboy.sim.physics.physics_engine import PHYSICS, PhysicsName
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.make_place import make_place
 from peopleboy.sim.places.place import Place, air_of
 from peopleboy.sim.places.place_config import lay_out
 from peopleboy.sim.random_streams import stream
+from peopleboy.sim.world_config import WorldConfig
 
 RENDERERS = ("raycast", "bullet")
 
@@ -197,11 +197,11 @@ class Scenario:
         keep_height = self.robot.keep_height
         return FollowConfig() if keep_height is None else FollowConfig(keep_height=keep_height)
 
-    def corridor_config(self) -> CorridorConfig:
+    def corridor_config(self) -> FollowCorridorConfig:
         """The sense that tells a robot the walls of a corridor, and its colour camera."""
         camera = flat_geometry(self.robot.config().cameras, "colour")
         view = CorridorCamera(focal_px=camera.focal_px, position_m=camera.position_m)
-        return CorridorConfig(sense=self.robot.walls_by or "sonar", camera=view)
+        return FollowCorridorConfig(sense=self.robot.walls_by or "sonar", camera=view)
 
     def resolved(self, seed: int, versions: dict[str, str] | None = None) -> dict[str, Any]:
         """The scenario as plain data with everything drawn; beside `kept_files` it gives the same world.

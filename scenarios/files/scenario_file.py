@@ -15,7 +15,7 @@ from peopleboy.scenarios.files.people import GroupSpec, PersonSpec
 from peopleboy.scenarios.files.robot import RobotSpec
 from peopleboy.scenarios.files.validation import STRICT
 from peopleboy.settings import Seconds, Word
-from peopleboy.sim.physics.physics import PhysicsName
+from peopleboy.sim.physics.physics_engine import PhysicsName
 from peopleboy.sim.places.furniture.thing_config import ThingConfig
 from peopleboy.sim.places.place_config import PlaceConfig
 from peopleboy.sim.shapes.materials import Detail

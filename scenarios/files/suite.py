@@ -10,9 +10,9 @@ from typing import Annotated, Any
 from pydantic import Field, with_config
 
 from peopleboy.bad_input import BadInput, found_in
-from peopleboy.scenarios.files.drives import read_drive
 from peopleboy.scenarios.files.load import SUITES, load_scenario
 from peopleboy.scenarios.files.read_yaml import read_yaml
+from peopleboy.scenarios.files.recorded_drives import read_drive
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.validation import STRICT, validated
 from peopleboy.settings import Word

@@ -32,7 +32,7 @@ from peopleboy.tracker.boxes import Box
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks, track_line, write_truth
 from peopleboy.tracker.evaluation.table import to_json
-from peopleboy.tracker.footage.truth_files import KEPT_SINGLE, GivenTruth
+from peopleboy.tracker.footage.footage_truth import KEPT_SINGLE, GivenTruth
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Status, Track, confirmed
 from peopleboy.wording import counted

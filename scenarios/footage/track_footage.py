@@ -19,7 +19,7 @@ from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.evaluation.evaluate import Scores
 from peopleboy.tracker.footage.box_kinds import BoxKind, boxed_whole, torso_of
-from peopleboy.tracker.footage.truth_files import GivenTruth, doubts, find_truth, load_truth
+from peopleboy.tracker.footage.footage_truth import GivenTruth, doubts, find_truth, load_truth
 from peopleboy.tracker.frame import DEPTH
 from peopleboy.tracker.trackers import Introducible, Tracker, explanation_of, is_own, make_tracker
 from peopleboy.wording import counted

@@ -21,7 +21,7 @@ from peopleboy.scenarios.footage.options import (
 )
 from peopleboy.tracker.footage.depth_pictures import DepthCounts, pair_up
 from peopleboy.tracker.footage.grey import Radiometry, check_plausible, grey_maker
-from peopleboy.tracker.footage.pictures import PictureFolder, open_footage
+from peopleboy.tracker.footage.image_sequences import PictureFolder, open_footage
 from peopleboy.tracker.footage.read_picture import read_picture, read_row, size_of
 from peopleboy.tracker.footage.sequence_info import find_info, load_odometry, rate_in
 from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, THERMAL, Frame, Odometry, PinholeCalibration

@@ -16,7 +16,7 @@ from peopleboy.tracker.attention.people.attentive_explanation import AttentiveEx
 from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.contour.measurement.contour import FEET, SECTIONS
 from peopleboy.tracker.contour.measurement.section_evidence import Evidence, evidence_of, section_lines
-from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplanation
+from peopleboy.tracker.fusion.fused_explanations import BothExplanations, FusedExplanation
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.tracking.association import DetectionExplanation
 

@@ -44,10 +44,10 @@ from peopleboy.scenarios.recording.still import JPEG, Still
 from peopleboy.sim.cameras.camera_config import DepthConfig
 from peopleboy.sim.cameras.depth import points_of
 from peopleboy.sim.cameras.kinds import colour_from_thermal, shown_to_people, with_boxes
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Matrix, transform
 from peopleboy.sim.shapes.shapes import Vector
 from peopleboy.sim.truth.truth import ThingTruth
+from peopleboy.sim.world_config import WorldConfig
 
 APPLICATION = "peopleboy"
 

@@ -18,7 +18,7 @@ from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.geometry.pinhole import invert_pose, transform
 from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.frame import DEPTH, PANORAMA
-from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplanation
+from peopleboy.tracker.fusion.fused_explanations import BothExplanations, FusedExplanation
 from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicExplanation
 from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation

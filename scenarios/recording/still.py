@@ -25,11 +25,11 @@ from peopleboy.scenarios.recording.layout import (
 )
 from peopleboy.scenarios.recording.solids import Solid, fixture_solids, group_fixtures, urdf_solids
 from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.robot.robot_body import URDF
 from peopleboy.sim.shapes.shapes import UPRIGHT, ShapeKind
+from peopleboy.sim.world_config import WorldConfig
 
 JPEG: Final = "image/jpeg"
 

@@ -23,7 +23,7 @@ from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.tracker.attention.attend import Focus
 from peopleboy.tracker.attention.people.attentive_config import AttentiveConfig
 from peopleboy.tracker.attention.people.attentive_explanation import Attended
-from peopleboy.tracker.attention.people.views import LOOKED_AT, View, box_in
+from peopleboy.tracker.attention.people.person_views import LOOKED_AT, PersonView, box_in
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.track import Box, Status
 
@@ -181,7 +181,7 @@ def _absence(found: RunFindings, learned: _Learned) -> dict[int, str]:
 def _pictures(
     found: RunFindings, learned: _Learned, moments: Mapping[int, str], images: Mapping[int, NDArray[np.uint8]]
 ) -> Iterator[PagePicture]:
-    start = Attended.learned(learned.number, View(learned.camera, images[learned.frame], learned.box))
+    start = Attended.learned(learned.number, PersonView(learned.camera, images[learned.frame], learned.box))
     for frame, what in moments.items():
         if frame in images:
             focus = Attended(start.number, start.camera, start.model, images[frame]).focus()

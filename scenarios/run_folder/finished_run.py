@@ -20,8 +20,8 @@ from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.scenarios.run_folder.run_files import RunFiles, read_files
 from peopleboy.scenarios.run_folder.run_tables import ROBOT, TRUTH
 from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.robot.robot_config import RobotConfig
+from peopleboy.sim.world_config import WorldConfig
 
 _FILES = (
     "scenario.yaml", "truth/gt.txt", "tracks.txt", "truth.parquet", "tracks.parquet", "robot.parquet",

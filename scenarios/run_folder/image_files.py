@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig, ThermalConfig
 from peopleboy.sim.cameras.kinds import Stored, image_folders
-from peopleboy.sim.config import CONTROL_HZ
 from peopleboy.sim.observation import Observation
+from peopleboy.sim.world_config import CONTROL_HZ
 
 
 def make_image_folders(folder: Path, cameras: Mapping[str, CameraConfig]) -> None:

@@ -19,7 +19,7 @@ from peopleboy.tracker.attention.people.attentive_explanation import AttentiveEx
 from peopleboy.tracker.contour.explanation import ContourExplanation, Ellipse
 from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.frame import THERMAL
-from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplanation
+from peopleboy.tracker.fusion.fused_explanations import BothExplanations, FusedExplanation
 from peopleboy.tracker.track import FloorPlace, Status, Track
 
 STATE = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")

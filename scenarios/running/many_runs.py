@@ -15,8 +15,8 @@ from peopleboy.scenarios.files.suite import load_suite, runs_of
 from peopleboy.scenarios.loop.tracker_by_name import tracker_cameras
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.run_folder.atomic_output import check_out
-from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.task import Task, Tell, Workers
+from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.scenarios.running.frame_cache import Film, film
 from peopleboy.scenarios.running.run import RunOptions, is_finished, run, tracker_name
 from peopleboy.tracker.footage.box_kinds import BoxKind

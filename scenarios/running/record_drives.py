@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterator
 
 from peopleboy.behaviours.behaviour import Command
-from peopleboy.scenarios.files.drives import write_drive
+from peopleboy.scenarios.files.recorded_drives import write_drive
 from peopleboy.scenarios.files.suite import SuiteRun, drive_path, load_suite, runs_of
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.sim.random_streams import stream

@@ -28,8 +28,8 @@ from peopleboy.scenarios.scores.comfort_metrics import ComfortLog
 from peopleboy.scenarios.scores.corridor_metrics import CorridorLog
 from peopleboy.scenarios.scores.following_score import FollowingLog, following_task, tracks_on_target
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.world import World
+from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.trackers import knows_again

@@ -27,13 +27,13 @@ from peopleboy.scenarios.scores.reference_boxes import (
     own_camera,
     read_reference_boxes,
 )
-from peopleboy.sim.config import CONTROL_HZ
+from peopleboy.sim.world_config import CONTROL_HZ
 from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind
-from peopleboy.tracker.footage.truth_files import GivenTruth, find_truth, load_truth
+from peopleboy.tracker.footage.footage_truth import GivenTruth, find_truth, load_truth
 from peopleboy.tracker.frame import THERMAL
 
 

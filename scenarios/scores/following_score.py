@@ -17,9 +17,9 @@ from peopleboy.scenarios.scores.following_metrics import (
     score_following,
 )
 from peopleboy.sim.cameras.kinds import flat_geometry
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.sim.truth.truth import Box, Truth
+from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.evaluation.floor import floor_squares
 from peopleboy.tracker.footage.box_kinds import BoxKind

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
+from peopleboy.tracker.footage.footage_truth import NAMES, load_truth
+from peopleboy.tracker.footage.image_sequences import INNER, PictureFolder
 from peopleboy.tracker.footage.picture_names import pictures_in
-from peopleboy.tracker.footage.pictures import INNER, PictureFolder
 from peopleboy.tracker.footage.read_picture import read_picture, size_of
-from peopleboy.tracker.footage.truth_files import NAMES, load_truth
 
 Grey = NDArray[np.uint8]
 

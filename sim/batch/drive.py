@@ -10,11 +10,11 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.sim.batch.batch_people import BatchWalks
 from peopleboy.sim.batch.joined_worlds import JoinedWorlds, slice_world
-from peopleboy.sim.batch.people import BatchWalks
 from peopleboy.sim.physics.kinematic import Kinematic
 from peopleboy.sim.physics.solid_shapes import Array, Placements, refresh
-from peopleboy.sim.physics.vehicle import Motion, Vehicle, advance
+from peopleboy.sim.physics.vehicle import Vehicle, VehicleMotion, advance
 from peopleboy.sim.robot.peoplebot import Gears, approach_target, count_travel
 from peopleboy.sim.robot.robot_body import WHEEL_RADIUS_M, wheel_speeds
 from peopleboy.sim.shapes.joined_tables import Numbers
@@ -23,7 +23,7 @@ from peopleboy.sim.world import World
 _wheel_speeds = njit(cache=True)(wheel_speeds)
 
 
-class Capsules(NamedTuple):
+class BatchCapsules(NamedTuple):
     """Q people of all worlds, one world after the other.
 
     Attributes:
@@ -49,7 +49,7 @@ def drive_step(
     vehicle: Vehicle,
     gears: Gears,
     noise_m: Array,
-    people: Capsules,
+    people: BatchCapsules,
     dt_s: float,
     steps: int,
     touched: NDArray[np.bool_],
@@ -89,8 +89,8 @@ def drive_step(
 
 
 @njit(cache=True)
-def _motion_of(motion: Motion, world: int) -> Motion:
-    return Motion(
+def _motion_of(motion: VehicleMotion, world: int) -> VehicleMotion:
+    return VehicleMotion(
         motion.pose[world], motion.angles[world], motion.speeds[world], motion.velocity[world]
     )  # fmt: skip
 
@@ -104,7 +104,7 @@ def _gears_of(gears: Gears, world: int) -> Gears:
 
 
 @njit(cache=True)
-def _move_people(people: Capsules, world: int, share: float, bodies: Placements) -> None:
+def _move_people(people: BatchCapsules, world: int, share: float, bodies: Placements) -> None:
     """Put solid people where they are when this share of the step has passed."""
     for q in range(people.first[world], people.first[world + 1]):
         if people.is_solid[q]:
@@ -115,7 +115,7 @@ def _move_people(people: Capsules, world: int, share: float, bodies: Placements)
 
 
 @njit(cache=True)
-def _put_people(people: Capsules, world: int, bodies: Placements) -> None:
+def _put_people(people: BatchCapsules, world: int, bodies: Placements) -> None:
     """Put solid people where they are when the step is over, to the last bit."""
     for q in range(people.first[world], people.first[world + 1]):
         if people.is_solid[q]:
@@ -202,11 +202,11 @@ class BatchDrive:
         return touched
 
 
-def _capsules(worlds: Sequence[World], walks: BatchWalks) -> Capsules:
+def _capsules(worlds: Sequence[World], walks: BatchWalks) -> BatchCapsules:
     """By what people are met; where it is comes with each step."""
     people = [person for world in worlds for person in world.crowd.people]
     places = walks.records["position"]
-    return Capsules(
+    return BatchCapsules(
         first=walks.first,
         body=np.array([number for world in worlds for number in _capsule_numbers(world)], np.int64),
         is_solid=np.zeros(len(people), np.bool_),

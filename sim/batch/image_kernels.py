@@ -100,7 +100,7 @@ class KernelCamera(NamedTuple):
     sweep: Array
 
 
-class Views(NamedTuple):
+class ViewBatch(NamedTuple):
     """What the cameras of G worlds look at, one camera each, all alike.
 
     Attributes:
@@ -144,7 +144,7 @@ def make_buffers(lens: Lens, scene: JoinedScene) -> tuple[Canvas, Buffers]:
 
 
 @njit(cache=True)
-def render_view(views: Views, row: int, table: ShapeTable, canvas: Canvas) -> Array:
+def render_view(views: ViewBatch, row: int, table: ShapeTable, canvas: Canvas) -> Array:
     """Draw the shapes of one world; returns the matrices of `part_from_pixel`."""
     world, poses = views.worlds[row], views.poses
     first, end = views.scene.part[world], views.scene.part[world + 1]
@@ -193,7 +193,7 @@ class ColourResponse(NamedTuple):
 def render_colour(
     first: int,
     end: int,
-    views: Views,
+    views: ViewBatch,
     response: ColourResponse,
     level: Array,
     words: NDArray[np.uint64],
@@ -245,7 +245,7 @@ class RadianceTables(NamedTuple):
 def render_radiance(
     first: int,
     end: int,
-    views: Views,
+    views: ViewBatch,
     tables: RadianceTables,
     surroundings: Array,
     margin: int,
@@ -303,7 +303,7 @@ class Detectors(NamedTuple):
 def detect_thermal(
     first: int,
     end: int,
-    views: Views,
+    views: ViewBatch,
     tables: RadianceTables,
     detectors: Detectors,
     margin: int,

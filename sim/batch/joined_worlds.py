@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from peopleboy.sim.physics.solid_shapes import Array, Placements, Solids, refresh
-from peopleboy.sim.physics.vehicle import Motion, State
+from peopleboy.sim.physics.vehicle import VehicleMotion, VehicleState
 from peopleboy.sim.shapes.joined_tables import JoinedTables, Numbers, ends, join_tables, table_of
 
 
@@ -29,13 +29,13 @@ class JoinedWorlds(NamedTuple):
     tables: JoinedTables
     poses: Array
     boxes: Array
-    motion: Motion
+    motion: VehicleMotion
     own: Numbers
     first_body: Numbers
     first_part: Numbers
 
 
-def join_worlds(states: Sequence[State]) -> tuple[JoinedWorlds, list[State]]:
+def join_worlds(states: Sequence[VehicleState]) -> tuple[JoinedWorlds, list[VehicleState]]:
     """Copy the states of worlds into arrays of all of them.
 
     Returns:
@@ -46,7 +46,7 @@ def join_worlds(states: Sequence[State]) -> tuple[JoinedWorlds, list[State]]:
         tables=join_tables([state.solids.table for state in states]),
         poses=np.concatenate([state.solids.poses for state in states]),
         boxes=np.concatenate([state.solids.boxes for state in states]),
-        motion=Motion(*map(np.stack, zip(*(state.motion for state in states), strict=True))),
+        motion=VehicleMotion(*map(np.stack, zip(*(state.motion for state in states), strict=True))),
         own=np.array([state.own for state in states], np.int64),
         first_body=ends([len(state.bodies.places) for state in states]),
         first_part=ends([len(state.bodies.of_part) for state in states]),
@@ -54,9 +54,9 @@ def join_worlds(states: Sequence[State]) -> tuple[JoinedWorlds, list[State]]:
     return joined, [_state_in(joined, number, state) for number, state in enumerate(states)]
 
 
-def _state_in(joined: JoinedWorlds, number: int, before: State) -> State:
+def _state_in(joined: JoinedWorlds, number: int, before: VehicleState) -> VehicleState:
     bodies, solids = slice_world.py_func(joined, number)
-    motion = Motion(*(array[number] for array in joined.motion))
+    motion = VehicleMotion(*(array[number] for array in joined.motion))
     return before._replace(bodies=bodies, solids=solids._replace(table=before.solids.table), motion=motion)
 
 

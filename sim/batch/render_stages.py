@@ -15,7 +15,7 @@ from peopleboy.sim.batch.image_kernels import (
     KernelCamera,
     Poses,
     RadianceTables,
-    Views,
+    ViewBatch,
     detect_thermal,
     render_colour,
     render_radiance,
@@ -79,7 +79,7 @@ class ThermalStage:
         surroundings, blur_px = self._surroundings[worlds], self._config.blur_px
         margin = optics_margin(blur_px)
         sensors = [_thermal(self._worlds[number], self._name) for number in worlds.tolist()]
-        views = Views(worlds, self._scene, poses, self._camera)
+        views = ViewBatch(worlds, self._scene, poses, self._camera)
 
         def fill(first: int, end: int) -> None:
             words = np.stack([sensor.draw_noise() for sensor in sensors[first:end]])
@@ -108,7 +108,7 @@ class ColourStage:
         image = np.empty((len(worlds), self._config.camera.height, self._config.camera.width, 3), np.uint8)
         own = [self._worlds[number] for number in worlds.tolist()]
         sensors = [_colour(world, self._name) for world in own]
-        views = Views(worlds, self._scene, poses, self._camera)
+        views = ViewBatch(worlds, self._scene, poses, self._camera)
         level = np.array([light_level(each.config.place, each.time_s) * self._config.gain for each in own])
 
         def fill(first: int, end: int) -> None:

@@ -8,8 +8,8 @@ from functools import partial
 import numpy as np
 from numba import njit
 
+from peopleboy.sim.batch.batch_people import BatchWalks
 from peopleboy.sim.batch.joined_worlds import JoinedWorlds, slice_world
-from peopleboy.sim.batch.people import BatchWalks
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.physics.solid_shapes import Array, cast_into

@@ -9,10 +9,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.batch.cameras import BatchCameras, WorkerPool, shared_cameras
+from peopleboy.sim.batch.batch_cameras import BatchCameras, WorkerPool, shared_cameras
+from peopleboy.sim.batch.batch_people import BatchLimbs, BatchWalks
 from peopleboy.sim.batch.drive import BatchDrive
 from peopleboy.sim.batch.joined_worlds import join_worlds, refresh_worlds
-from peopleboy.sim.batch.people import BatchLimbs, BatchWalks
 from peopleboy.sim.batch.sensing import BatchSonar, PeopleVisibility
 from peopleboy.sim.batch.snapshot import BatchImages, SeparateImages, Snapshot, take_snapshot
 from peopleboy.sim.cameras.kinds import flat_geometry

@@ -11,6 +11,15 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.people.appearance.finisher import Finisher
 from peopleboy.sim.people.body.anthropometry import HAND_LENGTH, BodySize, measure
+from peopleboy.sim.people.body.body_placement import (
+    BodyFrame,
+    arm_length,
+    carry,
+    least_stoop,
+    put_on_floor,
+    stoop,
+    turn_arm,
+)
 from peopleboy.sim.people.body.body_shapes import ARM_PARTS as _LIMBS
 from peopleboy.sim.people.body.body_shapes import (
     BAG_PART,
@@ -26,15 +35,6 @@ from peopleboy.sim.people.body.clothes import dress
 from peopleboy.sim.people.body.gait import Gait
 from peopleboy.sim.people.body.manner import USUAL, held_arms
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
-from peopleboy.sim.people.body.placing import (
-    Frame,
-    arm_length,
-    carry,
-    least_stoop,
-    put_on_floor,
-    stoop,
-    turn_arm,
-)
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, joint_offsets, joint_points
 from peopleboy.sim.people.body.stance import POSTURES, STANCE, Builds, Gaze, Stances, hold, move_limbs
@@ -261,9 +261,9 @@ class Person:
         return self._gait
 
     @property
-    def frame(self) -> Frame:
+    def frame(self) -> BodyFrame:
         """How its parts hang together."""
-        return Frame(self._offsets, self._soles, self._part_bone, self._part_offset)
+        return BodyFrame(self._offsets, self._soles, self._part_bone, self._part_offset)
 
     @property
     def is_handling(self) -> bool:

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.physics.bullet_bodies import AT_ORIGIN, Bodies, Body, Place, as_unit
+from peopleboy.sim.physics.bullet_bodies import AT_ORIGIN, BulletBodies, BulletBody, Place, as_unit
 from peopleboy.sim.physics.bullet_io import (
     metric_depth,
     projection_matrix,
@@ -92,15 +92,15 @@ class Bullet:
 
     def __init__(self, *, physics_hz: int = 240, gravity: bool = True) -> None:
         self._client = _Client()
-        self._bodies = Bodies()
+        self._bodies = BulletBodies()
         self._poses = np.zeros((0, 4, 4))
         self._hidden = np.zeros(0, np.bool_)
-        self._moved: dict[str, Body] = {}
+        self._moved: dict[str, BulletBody] = {}
         self._known: dict[str, Matrix] = {}  # poses of bodies of files since they last moved
         self._given = GivenBodies()
         self._visible: dict[str, list[VisualShape]] = {}  # of those that PyBullet is not asked about
         self._only_seen: set[str] = set()  # bodies that nothing can touch, while they are not hidden
-        self._unmade: list[tuple[Body, Sequence[Shape]]] = []  # bodies that only TinyRenderer would see
+        self._unmade: list[tuple[BulletBody, Sequence[Shape]]] = []  # bodies that only TinyRenderer would see
         self._loaded = SolidBoxes(self._client.getAABB)
         self._client.setPhysicsEngineParameter(
             fixedTimeStep=1.0 / physics_hz, deterministicOverlappingPairs=1
@@ -146,7 +146,7 @@ class Bullet:
             if shape.mesh is not None:
                 load_triangles(shape.mesh)
         part = len(self._bodies.parts)
-        body = Body(name=name, parts=range(part, part + 1), is_given=True)
+        body = BulletBody(name=name, parts=range(part, part + 1), is_given=True)
         if solid:
             self._make(body, shapes, visible=visible, solid=True)
         else:
@@ -386,7 +386,7 @@ class Bullet:
             if body.ids and not body.moves_by_itself and not body.solid_links:
                 self._tell(body, self._base_place(body))
 
-    def _make(self, body: Body, shapes: Sequence[Shape], *, visible: bool, solid: bool) -> None:
+    def _make(self, body: BulletBody, shapes: Sequence[Shape], *, visible: bool, solid: bool) -> None:
         """Let PyBullet have a body of given shapes."""
         starts = range(0, len(shapes), _SHAPES_A_BODY)
         try:
@@ -433,7 +433,7 @@ class Bullet:
         links = [(number, link) for link in range(_BASE, len(joints))]
         names = [self._client.getBodyInfo(number)[0].decode(), *(joint[12].decode() for joint in joints)]
         first = len(self._bodies.parts)
-        body = Body(
+        body = BulletBody(
             name=name,
             ids=(number,),
             parts=range(first, first + len(names)),
@@ -446,12 +446,12 @@ class Bullet:
         self._add(body, names)
         self._loaded.add(name, body.solid_links)
 
-    def _add(self, body: Body, link_names: Sequence[str]) -> None:
+    def _add(self, body: BulletBody, link_names: Sequence[str]) -> None:
         self._bodies.add(body, link_names)
         self._poses = np.concatenate([self._poses, np.zeros((len(link_names), 4, 4))])
         self._hidden = np.append(self._hidden, np.zeros(len(link_names), np.bool_))
 
-    def _put(self, body: Body, base: Place) -> None:
+    def _put(self, body: BulletBody, base: Place) -> None:
         if body.is_given:
             self._given.put(body.name, *base)
         else:
@@ -460,20 +460,20 @@ class Bullet:
         if body.solid_links or not body.is_given:
             self._tell(body, base)
 
-    def _tell(self, body: Body, place: Place) -> None:
+    def _tell(self, body: BulletBody, place: Place) -> None:
         """Let PyBullet put a body's base somewhere."""
         if body.base_from_inertia != AT_ORIGIN:
             place = pybullet.multiplyTransforms(*place, *body.base_from_inertia)
         for number in body.ids:
             self._client.resetBasePositionAndOrientation(number, *place)
 
-    def _note_move(self, body: Body) -> None:
+    def _note_move(self, body: BulletBody) -> None:
         """Look anew at a body of a file."""
         self._moved[body.name] = body
         self._known.pop(body.name, None)
         self._loaded.forget(body.name)
 
-    def _base_place(self, body: Body) -> Place:
+    def _base_place(self, body: BulletBody) -> Place:
         if body.is_given:
             return self._given.place(body.name)
         if body.put_at is not None:
@@ -483,12 +483,12 @@ class Bullet:
             place = pybullet.multiplyTransforms(*place, *pybullet.invertTransform(*body.base_from_inertia))
         return place
 
-    def _link_places(self, body: Body) -> list[Place]:
+    def _link_places(self, body: BulletBody) -> list[Place]:
         links = range(len(body.parts) - 1)
         states = self._client.getLinkStates(body.ids[0], links, computeForwardKinematics=1)
         return [state[4:6] for state in states]
 
-    def _visible_shapes(self, body: Body) -> list[VisualShape]:
+    def _visible_shapes(self, body: BulletBody) -> list[VisualShape]:
         if body.is_given:
             return self._visible[body.name]
         rows = self._visual_rows(body.ids[0])
@@ -498,12 +498,12 @@ class Bullet:
         """What PyBullet tells of all shapes of one of its bodies that are not transparent."""
         return [row for row in self._client.getVisualShapeData(number) if row[7][3] > 0.0]
 
-    def _set_opacity(self, bodies: Sequence[Body], alpha: float) -> None:
+    def _set_opacity(self, bodies: Sequence[BulletBody], alpha: float) -> None:
         for body in bodies:
             for number, link in body.visible_links:
                 self._client.changeVisualShape(number, link, rgbaColor=[1.0, 1.0, 1.0, alpha])
 
-    def _group_of(self, body: Body) -> int:
+    def _group_of(self, body: BulletBody) -> int:
         """The collision group of one body alone, which rays can leave out."""
         if body.group is None:
             body.group = self._bodies.new_group()

@@ -26,7 +26,7 @@ _LAST_BIT = 30
 
 
 @dataclass(slots=True, eq=False)
-class Body:
+class BulletBody:
     """A named body.
 
     Attributes:
@@ -71,7 +71,7 @@ class Body:
         return [self.joints[joint] for joint in joints]
 
 
-class Bodies:
+class BulletBodies:
     """All bodies of one world, by name, and their parts in the order of creation.
 
     Attributes:
@@ -81,16 +81,16 @@ class Bodies:
 
     def __init__(self) -> None:
         self.parts: list[PartKey] = []
-        self.moving: list[Body] = []
-        self._bodies: dict[str, Body] = {}
-        self._body_of_id: dict[int, Body] = {}
+        self.moving: list[BulletBody] = []
+        self._bodies: dict[str, BulletBody] = {}
+        self._body_of_id: dict[int, BulletBody] = {}
         self._part_of_link: dict[tuple[int, int], int] = {}
         self._groups = 0
 
-    def __iter__(self) -> Iterator[Body]:
+    def __iter__(self) -> Iterator[BulletBody]:
         return iter(self._bodies.values())
 
-    def __getitem__(self, name: str) -> Body:
+    def __getitem__(self, name: str) -> BulletBody:
         try:
             return self._bodies[name]
         except KeyError:
@@ -106,7 +106,7 @@ class Bodies:
         if name in self._bodies:
             raise BadInput(f"body {name!r}: there is one already; choose another name")
 
-    def add(self, body: Body, link_names: Sequence[str]) -> None:
+    def add(self, body: BulletBody, link_names: Sequence[str]) -> None:
         """Take in a body whose base and links have these names."""
         self._bodies[body.name] = body
         if body.moves_by_itself:
@@ -114,7 +114,7 @@ class Bodies:
         self.parts.extend(PartKey(body.name, link - 1, name) for link, name in enumerate(link_names))
         self.know_ids(body)
 
-    def know_ids(self, body: Body) -> None:
+    def know_ids(self, body: BulletBody) -> None:
         """Take in PyBullet's numbers of a body."""
         for number in body.ids:
             self._body_of_id[number] = body

@@ -19,9 +19,9 @@ from peopleboy.sim.physics.model_files import find_model
 from peopleboy.sim.physics.solid_shapes import PartKey, Placements, Solids, cast, make_solids, refresh
 from peopleboy.sim.physics.urdf import read_links
 from peopleboy.sim.physics.vehicle import (
-    Motion,
-    State,
     Vehicle,
+    VehicleMotion,
+    VehicleState,
     advance,
     make_vehicle,
     place_on_floor,
@@ -49,7 +49,7 @@ class _Rolling:
     vehicle: Vehicle
     joints: tuple[str, str]
     wheels: tuple[int, int]
-    motion: Motion
+    motion: VehicleMotion
 
 
 class Kinematic:
@@ -122,7 +122,7 @@ class Kinematic:
                 vehicle=make_vehicle(name, links),
                 joints=(links[left].joint, links[right].joint),
                 wheels=(first + left, first + right),
-                motion=Motion(np.zeros(3), np.zeros(2), np.zeros(2), np.zeros(3)),
+                motion=VehicleMotion(np.zeros(3), np.zeros(2), np.zeros(2), np.zeros(3)),
             )
         self._add_body(name, position, orientation)
         for link in links:
@@ -252,14 +252,14 @@ class Kinematic:
         """Names of the bodies that have a flag, (B,) in the order of creation."""
         return {name for name, number in self._numbers.items() if flags[number]}
 
-    def state(self) -> State:
+    def state(self) -> VehicleState:
         """All that is in the world now, none of it copied; there must be a vehicle."""
         assert self._rolling is not None
         bodies, solids = self._up_to_date()
         rolling = self._rolling
-        return State(bodies, solids, rolling.motion, rolling.vehicle, rolling.body)
+        return VehicleState(bodies, solids, rolling.motion, rolling.vehicle, rolling.body)
 
-    def rebind(self, state: State) -> None:
+    def rebind(self, state: VehicleState) -> None:
         """Keep all that is in the world in other arrays from now on, which hold the same already."""
         assert self._rolling is not None
         bodies = state.bodies

@@ -98,7 +98,7 @@ def _is_round(link: UrdfLink) -> bool:
     return len(link.solid) == 1 and link.solid[0].kind == ShapeKind.CYLINDER
 
 
-class Motion(NamedTuple):
+class VehicleMotion(NamedTuple):
     """How the vehicle stands and moves.
 
     Attributes:
@@ -113,12 +113,12 @@ class Motion(NamedTuple):
     velocity: Array
 
 
-class State(NamedTuple):
+class VehicleState(NamedTuple):
     """A kinematic world with its vehicle, whose body has the number `own`."""
 
     bodies: Placements
     solids: Solids
-    motion: Motion
+    motion: VehicleMotion
     vehicle: Vehicle
     own: int
 
@@ -135,7 +135,7 @@ Contact = tuple[float, float, float, float, float]  # depth, normal x and y, whe
 @njit(cache=True, nogil=True)
 def advance(
     vehicle: Vehicle,
-    motion: Motion,
+    motion: VehicleMotion,
     bodies: Placements,
     solids: Solids,
     own: int,

@@ -18,7 +18,7 @@ from peopleboy.sim.rendering.view import NOBODY, Cover, View, count_cover
 from peopleboy.sim.shapes.shape_table import ShapeTable
 
 if TYPE_CHECKING:
-    from peopleboy.sim.physics.physics import Physics
+    from peopleboy.sim.physics.physics_engine import Physics
 from numba import njit
 
 from peopleboy.sim.geometry.vectors import compose

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix
-from peopleboy.sim.physics.physics import Physics
+from peopleboy.sim.physics.physics_engine import Physics
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, SONAR_POSITION_M
 from peopleboy.sim.robot.robot_config import SonarConfig
 

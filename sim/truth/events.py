@@ -168,19 +168,19 @@ class ThingLog:
     """Turns a sequence of truths into events, each told once: of a move, when the thing stands again."""
 
     def __init__(self) -> None:
-        self._watched: dict[str, _Watch] = {}
+        self._watched: dict[str, _EventWatch] = {}
 
     def update(self, truth: Truth) -> list[ThingEvent]:
         """Compare with the truths before, and return what is new."""
         found = []
         for thing in truth.things:
-            watch = self._watched.setdefault(thing.name, _Watch(thing, truth.time_s))
+            watch = self._watched.setdefault(thing.name, _EventWatch(thing, truth.time_s))
             event = watch.look(thing, truth.time_s)
             found += [event] if event is not None else []
         return found
 
 
-class _Watch:
+class _EventWatch:
     """Remembers where one thing stood last."""
 
     def __init__(self, thing: ThingTruth, time_s: float) -> None:

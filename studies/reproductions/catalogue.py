@@ -18,13 +18,13 @@ from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.studies.reproductions import pictures
 from peopleboy.studies.reproductions.experiment import Experiment, Texts
 from peopleboy.studies.reproductions.experiments import (
+    computing_time,
     drives,
     learning,
-    panorama,
+    panoramic_room,
     situation,
-    timing,
     tracking,
-    windows,
+    window_experiments,
 )
 from peopleboy.studies.reproductions.pictures.canvas import png_address
 from peopleboy.studies.reproductions.units import Measurement, Unit
@@ -57,13 +57,22 @@ KINDS: Final[Mapping[str, Callable[..., Any]]] = {
     for kind in (
         picture,
         *(tracking.contents, tracking.tracking, tracking.delay, tracking.causes),
-        timing.timing,
+        computing_time.timing,
         *(learning.learning, learning.best_classifiers),
-        *(panorama.distances, panorama.correlations, panorama.webcams, panorama.angles),
-        *(panorama.draw_ranges, panorama.draw_correlations, panorama.draw_path),
+        *(
+            panoramic_room.distances,
+            panoramic_room.correlations,
+            panoramic_room.webcams,
+            panoramic_room.angles,
+        ),
+        *(panoramic_room.draw_ranges, panoramic_room.draw_correlations, panoramic_room.draw_path),
         *(drives.drives, drives.goals, drives.legs, drives.draw_drives, drives.draw_legs),
-        *(windows.loop_times, windows.sliding_windows, windows.windows_by_size),
-        *(windows.parameters, windows.window_models),
+        *(
+            window_experiments.loop_times,
+            window_experiments.sliding_windows,
+            window_experiments.windows_by_size,
+        ),
+        *(window_experiments.parameters, window_experiments.window_models),
         *(situation.static_scenes, situation.scene_models, situation.scene_maps),
         *(situation.focus, situation.focus_variants, situation.absences, situation.followers),
     )

@@ -14,7 +14,7 @@ from peopleboy.studies.reproductions.statistics import (
     PAPER,
     PERCENT,
     THESIS,
-    Difference,
+    ResultDifference,
     TTest,
     by_stretches,
     cohens_d,
@@ -57,7 +57,7 @@ class Verdict:
     """
 
     method: str
-    difference: Difference
+    difference: ResultDifference
     outcome: ClaimStatus
     tests: tuple[str, ...] = ()
     times: float | None = None
@@ -105,7 +105,7 @@ def _in_words(name: str, effect: str, test: TTest) -> str:
     return f"{name}: t = {test.t:.2f}, n = {test.count}, {chance}, {size}"
 
 
-def _outcome(claim: Claim, ours: Difference, second: float) -> ClaimStatus:
+def _outcome(claim: Claim, ours: ResultDifference, second: float) -> ClaimStatus:
     """Compare the interval of a difference with the claim; without an interval nothing is decided."""
     if not ours.is_sure:
         return ClaimStatus.UNCLEAR
@@ -124,7 +124,7 @@ def _outcome(claim: Claim, ours: Difference, second: float) -> ClaimStatus:
     return ClaimStatus.UNCLEAR
 
 
-def _alike(ours: Difference, within: float, *, either_way: bool) -> ClaimStatus:
+def _alike(ours: ResultDifference, within: float, *, either_way: bool) -> ClaimStatus:
     """Check whether the interval is within a margin, on either side or below alone."""
     if ours.low >= -within and (ours.high <= within or not either_way):
         return ClaimStatus.HOLDS
@@ -159,7 +159,7 @@ class Compared:
     method: str
     source: float
     ours: float
-    difference: Difference
+    difference: ResultDifference
     standing: Standing
 
     @property
@@ -183,7 +183,7 @@ def compare(samples: Samples, experiment: Experiment) -> Iterator[Compared]:
                 yield Compared(line.group, column, line.method, source, mean_of(ours), away, standing)
 
 
-def _standing(column: str, away: Difference, source: float) -> Standing:
+def _standing(column: str, away: ResultDifference, source: float) -> Standing:
     """Compare the interval with the margin first: within it on both sides is alike."""
     if math.isnan(away.by):
         return Standing.UNKNOWN

@@ -178,7 +178,7 @@ class Effort:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Outcome:
+class ExperimentOutcome:
     """What a finished experiment gave.
 
     Attributes:
@@ -214,7 +214,7 @@ class Outcome:
         return (values for row in self.samples.values() for values in row.values())
 
     @classmethod
-    def of(cls, experiment: Experiment, plan: Plan, store: Store) -> Outcome:
+    def of(cls, experiment: Experiment, plan: Plan, store: Store) -> ExperimentOutcome:
         """Measure and draw an experiment from the results that there are.
 
         Raises:
@@ -230,7 +230,7 @@ class Outcome:
         return cls(experiment, samples, picture, left_out, effort)
 
     @classmethod
-    def so_far(cls, experiment: Experiment, plan: Plan, store: Store) -> Outcome | None:
+    def so_far(cls, experiment: Experiment, plan: Plan, store: Store) -> ExperimentOutcome | None:
         """Measure with as many repeats, up to the plan's, as all units have run for; None for none."""
         fewer: Sequence[int] = () if plan.is_quick else range(plan.repeats - 1, 0, -1)
         for one in (plan, *map(plan.repeated, fewer)):

@@ -27,7 +27,7 @@ from peopleboy.studies.reproductions.comparison import (
     effects_to_source,
     judge,
 )
-from peopleboy.studies.reproductions.experiment import Claim, Experiment, Outcome, Samples
+from peopleboy.studies.reproductions.experiment import Claim, Experiment, ExperimentOutcome, Samples
 from peopleboy.studies.reproductions.plan import QUICK_S, Plan, full_plan
 from peopleboy.studies.reproductions.plots import draw
 from peopleboy.studies.reproductions.statistics import (
@@ -35,7 +35,7 @@ from peopleboy.studies.reproductions.statistics import (
     PART,
     POINTS,
     THESIS,
-    Difference,
+    ResultDifference,
     mean_and_spread,
 )
 
@@ -81,7 +81,7 @@ class Checked:
 class Section:
     """One table or figure on the page."""
 
-    outcome: Outcome
+    outcome: ExperimentOutcome
     columns: tuple[str, ...]
     rows: tuple[PageRow, ...]
     picture: str | None
@@ -167,7 +167,7 @@ def page_text(sections: Sequence[Section], about: PageHead) -> str:
     )
 
 
-def section(outcome: Outcome) -> Section:
+def section(outcome: ExperimentOutcome) -> Section:
     """Lay out one table or figure."""
     experiment, samples = outcome.experiment, outcome.samples
     columns = tuple(dict.fromkeys(name for values in samples.values() for name in values))
@@ -229,7 +229,7 @@ def points(value: float, column: str) -> str:
     return "-" if math.isnan(value) else f"{value:+.{_digits(column)}f}"
 
 
-def span(difference: Difference, column: str) -> str:
+def span(difference: ResultDifference, column: str) -> str:
     """Write a difference with its 95 % interval and effect size, as far as they are known."""
     text = points(difference.by, column)
     if difference.is_sure:
@@ -262,7 +262,7 @@ def _writer(lines: Sequence[Cells]) -> Callable[[str, tuple[float, float | None]
 
 
 def head_of(
-    plan: Plan, outcomes: Sequence[Outcome], store: Store, *, command: str, missing: Sequence[str]
+    plan: Plan, outcomes: Sequence[ExperimentOutcome], store: Store, *, command: str, missing: Sequence[str]
 ) -> PageHead:
     """Describe a run: how much was done, with what, and how long it took.
 

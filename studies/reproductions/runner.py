@@ -22,7 +22,7 @@ from peopleboy.scenarios.running.engine.task import Failure, TasksFailed, Worker
 from peopleboy.scenarios.running.many_runs import films_of
 from peopleboy.scenarios.scores.suite_table import THESIS, Content, add_up, count
 from peopleboy.studies.reproductions.catalogue import choose
-from peopleboy.studies.reproductions.experiment import Experiment, Outcome
+from peopleboy.studies.reproductions.experiment import Experiment, ExperimentOutcome
 from peopleboy.studies.reproductions.page import Checked, Section, head_of, section, span, write_page
 from peopleboy.studies.reproductions.plan import REPEATS, Plan, full_plan, quick_plan
 from peopleboy.studies.reproductions.statistics import mean_and_spread
@@ -83,7 +83,7 @@ def show_so_far(experiments: Sequence[Experiment], plan: Plan, means: Means) -> 
 
 def work_off(
     experiments: Sequence[Experiment], plan: Plan, store: Store, workers: Workers
-) -> tuple[dict[str, Outcome], list[Failure]]:
+) -> tuple[dict[str, ExperimentOutcome], list[Failure]]:
     """Run what is missing, and what that makes possible, until all experiments are finished or lack a unit.
 
     A unit that several experiments need runs once; one that fails stops no experiment that does without it.
@@ -91,14 +91,14 @@ def work_off(
     Raises:
         BadInput: the cluster cannot be used.
     """
-    outcomes: dict[str, Outcome] = {}
+    outcomes: dict[str, ExperimentOutcome] = {}
     failures: dict[str, Failure] = {}
     while True:
         wanted: dict[str, Unit] = {}
         for one in experiments:
             if one.id not in outcomes:
                 try:
-                    outcomes[one.id] = Outcome.of(one, plan, store)
+                    outcomes[one.id] = ExperimentOutcome.of(one, plan, store)
                 except Unfinished as unfinished:
                     wanted |= {unit.key: unit for unit in unfinished.units if unit.key not in failures}
         if not wanted:
@@ -110,14 +110,19 @@ def work_off(
 
 
 def finished(
-    experiments: Sequence[Experiment], plan: Plan, store: Store, known: dict[str, Outcome] | None = None
-) -> tuple[list[Outcome], list[str]]:
+    experiments: Sequence[Experiment],
+    plan: Plan,
+    store: Store,
+    known: dict[str, ExperimentOutcome] | None = None,
+) -> tuple[list[ExperimentOutcome], list[str]]:
     """Return what is finished, each part with as many repeats as it has, and the ids of what is not.
 
     Raises:
         BadInput: nothing is finished.
     """
-    found = {one.id: (known or {}).get(one.id) or Outcome.so_far(one, plan, store) for one in experiments}
+    found = {
+        one.id: (known or {}).get(one.id) or ExperimentOutcome.so_far(one, plan, store) for one in experiments
+    }
     outcomes = [one for one in found.values() if one is not None]
     if not outcomes:
         raise BadInput(f"{store.path}: no table or figure is finished there")
@@ -125,7 +130,7 @@ def finished(
 
 
 def _write(
-    outcomes: Sequence[Outcome], missing: Sequence[str], plan: Plan, means: Means, store: Store
+    outcomes: Sequence[ExperimentOutcome], missing: Sequence[str], plan: Plan, means: Means, store: Store
 ) -> tuple[Path, list[Section]]:
     (means.out / MEANS).write_text(json.dumps(_mean_values(outcomes), indent=1) + "\n", encoding="utf-8")
     sections, page = [section(one) for one in outcomes], means.out / PAGE
@@ -133,7 +138,7 @@ def _write(
     return page, sections
 
 
-def _mean_values(outcomes: Sequence[Outcome]) -> dict[str, Any]:
+def _mean_values(outcomes: Sequence[ExperimentOutcome]) -> dict[str, Any]:
     """Return the mean of every value by experiment, group, method, and column; None for NaN."""
     tables: dict[str, Any] = {}
     for outcome in outcomes:

@@ -35,7 +35,7 @@ _SURE: Final = float(norm.ppf(0.975))  # deviations that hold 95 %
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class ResultDifference:
     """One value less another.
 
     Attributes:
@@ -55,7 +55,7 @@ class Difference:
         return not math.isnan(self.low + self.high)
 
     @classmethod
-    def within(cls, by: float, half: float, effect: str) -> Difference:
+    def within(cls, by: float, half: float, effect: str) -> ResultDifference:
         """Return a difference with an interval of so much on either side."""
         return cls(by, by - half, by + half, effect)
 
@@ -79,7 +79,7 @@ def mean_and_spread(values: Values) -> tuple[float, float | None]:
     return mean_of(values), float(values.std(ddof=1))
 
 
-def paired(column: str, one: Floats | Jackknife, other: Floats | Jackknife) -> Difference:
+def paired(column: str, one: Floats | Jackknife, other: Floats | Jackknife) -> ResultDifference:
     """Compare values (R,) of the same repeats by Student's interval, or those of a single one by sequences.
 
     Splits of one set of examples share most of it; the interval is that of Nadeau and Bengio, "Inference for
@@ -91,41 +91,43 @@ def paired(column: str, one: Floats | Jackknife, other: Floats | Jackknife) -> D
         parts = [one.by_sequence, other.by_sequence]
         # The same sequences are compared one by one, others as two samples.
         apart = [parts[0] - parts[1]] if one.suites == other.suites else parts
-        return Difference.within(by, _welch(map(_variance_of_mean, apart)), _effect(column, *means, ()))
+        return ResultDifference.within(by, _welch(map(_variance_of_mean, apart)), _effect(column, *means, ()))
     if isinstance(one, Jackknife) or isinstance(other, Jackknife) or one.size != other.size or one.size < 2:
-        return Difference(by, effect=_effect(column, *means, ()))
+        return ResultDifference(by, effect=_effect(column, *means, ()))
     away = one - other
     spread = float(away.std(ddof=1)) * math.sqrt(1.0 / away.size + _RETESTED.get(column, 0.0))
-    return Difference.within(by, _reach(away.size - 1) * spread, _effect(column, *means, (one, other)))
+    return ResultDifference.within(by, _reach(away.size - 1) * spread, _effect(column, *means, (one, other)))
 
 
-def to_source(column: str, ours: Floats | Jackknife, source: float, deviation: float | None) -> Difference:
+def to_source(
+    column: str, ours: Floats | Jackknife, source: float, deviation: float | None
+) -> ResultDifference:
     """Compare values (R,) with a printed one; its deviation, if there is one, is that of ten repeats."""
     mean = mean_of(ours)
     by = mean - source
     if isinstance(ours, Jackknife):
         half = _welch([_variance_of_mean(ours.by_sequence)])
-        return Difference.within(by, half, _effect(column, mean, source, ()))
+        return ResultDifference.within(by, half, _effect(column, mean, source, ()))
     count = ours.size
     if count < 2:
-        return Difference(by, effect=_effect(column, mean, source, ()))
+        return ResultDifference(by, effect=_effect(column, mean, source, ()))
     parts = [(float(ours.var(ddof=1)) * (1.0 / count + _RETESTED.get(column, 0.0)), count - 1)]
     if deviation is not None:
         theirs = deviation**2 * (1.0 / SOURCE_REPEATS + _RETESTED.get(column, 0.0))
         parts.append((theirs, SOURCE_REPEATS - 1))
-    return Difference.within(by, _welch(parts), _effect(column, mean, source, (ours,), deviation))
+    return ResultDifference.within(by, _welch(parts), _effect(column, mean, source, (ours,), deviation))
 
 
-def by_stretches(one: ImageErrors, other: ImageErrors) -> Difference:
+def by_stretches(one: ImageErrors, other: ImageErrors) -> ResultDifference:
     """Compare mean errors of images; the interval is over the stretches of time that both were tested on."""
     away = one.block_means - other.block_means
     away = away[np.isfinite(away)]
     by = one.all.mean - other.all.mean
     if away.size < 2:
-        return Difference(by)
+        return ResultDifference(by)
     half = _reach(away.size - 1) * float(away.std(ddof=1)) / math.sqrt(away.size)
     middle = float(away.mean())
-    return Difference(by, middle - half, middle + half)
+    return ResultDifference(by, middle - half, middle + half)
 
 
 def bootstrap_interval(parts: Sequence[T], value: Callable[[Sequence[T]], float]) -> Interval:

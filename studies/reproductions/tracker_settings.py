@@ -10,7 +10,7 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.contour.contour_config import (
-    DepthConfig,
+    DepthOrderConfig,
     HeightConfig,
     InteractionConfig,
     StayBehindConfig,
@@ -23,7 +23,7 @@ Value = float | int | str | bool | tuple[float, ...] | None
 Changes = tuple[tuple[str, Value], ...]
 
 _ONE_PERSON = InteractionConfig(max_persons=1)
-_OPEN = replace(CONTOUR, depth=DepthConfig(), height=HeightConfig(), occlusion=StayBehindConfig())
+_OPEN = replace(CONTOUR, depth=DepthOrderConfig(), height=HeightConfig(), occlusion=StayBehindConfig())
 
 BASES: Mapping[str, TrackerConfig] = {
     "thesis-single": replace(THESIS, interaction=_ONE_PERSON),
@@ -42,7 +42,7 @@ BASES: Mapping[str, TrackerConfig] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Setting:
+class TrackerSetting:
     """A base, and settings of it that are changed.
 
     Attributes:

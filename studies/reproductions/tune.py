@@ -24,7 +24,7 @@ from peopleboy.scenarios.running.engine.store import Store
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.reproductions.experiments.tracking import add_sums, count_unit, metric, sequence_unit
 from peopleboy.studies.reproductions.page import span
-from peopleboy.studies.reproductions.statistics import Difference, margin, paired
+from peopleboy.studies.reproductions.statistics import ResultDifference, margin, paired
 from peopleboy.studies.reproductions.tuned_parameters import Parameter
 from peopleboy.studies.reproductions.units import Unit, open_store, run_units
 
@@ -98,7 +98,7 @@ class Tuned:
         return max(self.accuracy, key=lambda value: (self.accuracy[value].mean(), value == printed))
 
     @property
-    def gain(self) -> Difference:
+    def gain(self) -> ResultDifference:
         """By how much the best value is ahead of the printed one."""
         return paired(CRITERION, self.accuracy[self.best], self.accuracy[self.parameter.printed])
 

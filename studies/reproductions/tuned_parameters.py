@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from peopleboy.bad_input import BadInput
-from peopleboy.studies.reproductions.tracker_settings import BASES, Changes, Setting
+from peopleboy.studies.reproductions.tracker_settings import BASES, Changes, TrackerSetting
 
 _SINGLE: Final = "passers_by"
 _SEVERAL: Final = "hall_visits"
@@ -35,9 +35,9 @@ class Parameter:
     printed: str
     values: Mapping[str, Changes]
 
-    def setting(self, value: str) -> Setting:
+    def setting(self, value: str) -> TrackerSetting:
         """Give the tracker with this value."""
-        return Setting(self.base, self.values[value])
+        return TrackerSetting(self.base, self.values[value])
 
 
 def _number(

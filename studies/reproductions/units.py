@@ -9,9 +9,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.store import Result, Store, code_digest
 from peopleboy.scenarios.running.engine.task import Failure, Task, TasksFailed, Tell, Workers
+from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.studies.reproductions.plan import Plan
 
 Key = TypeVar("Key")

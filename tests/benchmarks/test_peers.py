@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from benchmarks.peers.classic import DetectAndFilter
-from benchmarks.peers.compete import FilmTask
+from benchmarks.peers.compete import SequenceTask
 from benchmarks.peers.detectors import Blobs, Boxes, Detections, Oracle, _from_colour
 from benchmarks.peers.joint_filter import run_chain
 from benchmarks.peers.show import write_results
@@ -54,8 +54,8 @@ def test_boxes_of_the_colour_image_shrink_by_its_zoom_when_they_move_to_the_ther
 
 @pytest.mark.slow
 def test_results_are_kept_and_the_oracle_is_right_about_everybody_it_tracks(tmp_path: Path) -> None:
-    first = FilmTask(("oracle+bytetrack", "blobs+sort"), "crossing_2", 1, tmp_path)(no_news)
-    again = FilmTask(("oracle+bytetrack", "blobs+sort"), "crossing_2", 1, tmp_path)(no_news)
+    first = SequenceTask(("oracle+bytetrack", "blobs+sort"), "crossing_2", 1, tmp_path)(no_news)
+    again = SequenceTask(("oracle+bytetrack", "blobs+sort"), "crossing_2", 1, tmp_path)(no_news)
     assert [run.ms for run in first] == [run.ms for run in again]
     assert first[0].scores.thesis.cp == 100.0
     assert first[0].scores.thesis.cr > first[1].scores.thesis.cr
@@ -68,7 +68,7 @@ def test_what_is_kept_of_the_peers_can_be_taken_into_the_tables_of_results(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("runs/peers").mkdir(parents=True)
-    runs = FilmTask(("oracle+bytetrack",), "crossing_2", 1, tmp_path)(no_news)
+    runs = SequenceTask(("oracle+bytetrack",), "crossing_2", 1, tmp_path)(no_news)
     write_results({"oracle+bytetrack": runs}, Path("runs/peers/results.json"))
     kept = json.loads(Path("runs/peers/results.json").read_text())["oracle+bytetrack"]["kept"]["all"]
     tracked = [o for o in runs[0].occlusions if o.id_before is not None]

@@ -6,7 +6,16 @@ import pytest
 from click.testing import CliRunner
 
 from benchmarks import results as command
-from benchmarks.results import PATH, Column, ResultTable, ResultTables, Row, as_yaml, read_tables, take_in
+from benchmarks.results import (
+    PATH,
+    ResultColumn,
+    ResultRow,
+    ResultTable,
+    ResultTables,
+    as_yaml,
+    read_tables,
+    take_in,
+)
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.run import RunOptions, run
@@ -21,7 +30,7 @@ robot: {at_m: [1.5, 0.0], behaviour: follow_person}
 """
 
 
-def one_row(row: Row, *columns: Column) -> ResultTable:
+def one_row(row: ResultRow, *columns: ResultColumn) -> ResultTable:
     return ResultTable(
         command="make it", recorded="2020-01-01", seeds="seed 0", chosen_on="", columns=columns, rows=(row,)
     )
@@ -34,9 +43,12 @@ def test_the_file_is_written_as_it_is_read() -> None:
 def test_figures_of_a_json_file_are_taken_in_and_gaps_stay(tmp_path: Path) -> None:
     path = tmp_path / "found.json"
     path.write_text(json.dumps({"anna": {"runs": [{}, {}], "mean": {"share": [0.25, 0.1]}}}))
-    row = Row(name="anna", measured=f"{path}#/anna", runs=2, figures=(99.0, None, 7.0))
-    columns = (Column(name="share", key="/mean/share/0", factor=100.0), Column(name="none", key="/none"))
-    taken = take_in(one_row(row, *columns, Column(name="by hand")))
+    row = ResultRow(name="anna", measured=f"{path}#/anna", runs=2, figures=(99.0, None, 7.0))
+    columns = (
+        ResultColumn(name="share", key="/mean/share/0", factor=100.0),
+        ResultColumn(name="none", key="/none"),
+    )
+    taken = take_in(one_row(row, *columns, ResultColumn(name="by hand")))
     assert taken.rows[0].figures == (25.0, None, 7.0)
     assert taken.recorded == date.today().isoformat()
 
@@ -54,9 +66,9 @@ def test_runs_are_scored_together_and_their_drives_averaged(
         metrics = json.loads(Path(name, "metrics.json").read_text(encoding="utf-8"))
         found += metrics["counts"]["matches"]
         errors.append(metrics["following"]["mean_distance_error_m"])
-    row = Row(name="tiny", measured="tiny-*", runs=2, figures=(0.0, 0.0, 0.0))
+    row = ResultRow(name="tiny", measured="tiny-*", runs=2, figures=(0.0, 0.0, 0.0))
     keys = ("/scores/counts/matches", "/mean/mean_distance_error_m", "/worst/mean_distance_error_m")
-    taken = take_in(one_row(row, *(Column(name=key, key=key) for key in keys)))
+    taken = take_in(one_row(row, *(ResultColumn(name=key, key=key) for key in keys)))
     assert taken.rows[0].figures == pytest.approx((found, sum(errors) / 2, max(errors)))
 
 
@@ -76,7 +88,7 @@ def test_what_was_not_measured_is_refused(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("found.json").write_text(json.dumps({"runs": 2, "CP": 99.0, "name": "x"}))
-    table = one_row(Row(name="x", figures=(1.0,), **row), Column(name="CP", key=key))
+    table = one_row(ResultRow(name="x", figures=(1.0,), **row), ResultColumn(name="CP", key=key))
     with pytest.raises(BadInput) as refused:
         take_in(table)
     assert complaint in str(refused.value)
@@ -95,7 +107,9 @@ def test_the_command_writes_what_it_took_in(tmp_path: Path, monkeypatch: pytest.
     Path("found.json").write_text(json.dumps({"CP": 98.0}))
     before = ResultTables(
         tables={
-            "one": one_row(Row(name="x", measured="found.json", figures=(1.0,)), Column(name="CP", key="/CP"))
+            "one": one_row(
+                ResultRow(name="x", measured="found.json", figures=(1.0,)), ResultColumn(name="CP", key="/CP")
+            )
         }
     )
     Path("results.yaml").write_text(as_yaml(before))

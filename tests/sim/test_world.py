@@ -11,7 +11,6 @@ import pytest
 
 import peopleboy.sim.world as world_module
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.physics import bullet
@@ -19,6 +18,7 @@ from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Material, Painting
 from peopleboy.sim.world import World, light_level
+from peopleboy.sim.world_config import WorldConfig
 from tests.helpers.calls.refused import refused
 from tests.helpers.worlds.small_worlds import NO_NOISE, SMALL, box_thing, config, hall, person, robot
 

@@ -13,8 +13,16 @@ from numpy.typing import NDArray
 from peopleboy.tracker.attention.attention_config import AttentionConfig
 from peopleboy.tracker.attention.box_scores import likenesses, mean_scores, pattern_scores
 from peopleboy.tracker.attention.feature_maps import CELL_PX, in_use
-from peopleboy.tracker.attention.image_sums import Sight
-from peopleboy.tracker.attention.part_model import HEAD, TORSO, Mask, Part, PartModel, cells_of, check_box
+from peopleboy.tracker.attention.image_sums import ImageSums
+from peopleboy.tracker.attention.part_model import (
+    HEAD,
+    TORSO,
+    Mask,
+    ModelPart,
+    PartModel,
+    cells_of,
+    check_box,
+)
 from peopleboy.tracker.track import Box
 
 Doubles = NDArray[np.float64]
@@ -39,7 +47,7 @@ class PersonModel:
     """
 
     height: float
-    parts: tuple[tuple[Part, PartModel], ...]
+    parts: tuple[tuple[ModelPart, PartModel], ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,7 +97,7 @@ def middle_of(box: Box) -> tuple[float, float]:
     return left + width / 2.0, top + (TORSO.top + TORSO.height / 2.0) * height
 
 
-def learn(sight: Sight, box: Box, config: AttentionConfig, near: Mask | None = None) -> PersonModel:
+def learn(sight: ImageSums, box: Box, config: AttentionConfig, near: Mask | None = None) -> PersonModel:
     """Learn a person from its box.
 
     Args:
@@ -109,7 +117,7 @@ def learn(sight: Sight, box: Box, config: AttentionConfig, near: Mask | None = N
     return PersonModel(height=box[3], parts=tuple(models))
 
 
-def search(sight: Sight, model: PersonModel, config: AttentionConfig) -> Focus:
+def search(sight: ImageSums, model: PersonModel, config: AttentionConfig) -> Focus:
     """Find where a person is most likely.
 
     The source multiplies the torso's score at the head's place by the head's at the torso's (equation 5.17);
@@ -128,7 +136,7 @@ def search(sight: Sight, model: PersonModel, config: AttentionConfig) -> Focus:
     return Focus(box, score, float(every[second_place]), second_box, scores, parts)
 
 
-def relearn(model: PersonModel, sight: Sight, focus: Focus, config: AttentionConfig) -> PersonModel:
+def relearn(model: PersonModel, sight: ImageSums, focus: Focus, config: AttentionConfig) -> PersonModel:
     """Take in a little of what the person looks like now, if it is likely that it is this one.
 
     Source: situation-awareness thesis, section 5.4.
@@ -143,7 +151,7 @@ def relearn(model: PersonModel, sight: Sight, focus: Focus, config: AttentionCon
 
 
 def _searched(
-    sight: Sight, model: PersonModel, scale: float, config: AttentionConfig
+    sight: ImageSums, model: PersonModel, scale: float, config: AttentionConfig
 ) -> tuple[Doubles, tuple[PartScores, ...]]:
     rows = np.arange(0, sight.rows, STEP_CELLS)
     columns = np.arange(0, sight.columns, STEP_CELLS)
@@ -156,7 +164,7 @@ def _searched(
 
 
 def _part_scores(
-    sight: Sight,
+    sight: ImageSums,
     known: PartModel,
     at: tuple[NDArray[np.int64], NDArray[np.int64]],
     size: tuple[int, int],
@@ -180,7 +188,7 @@ def _part_scores(
     return PartScores(features, found, colour)
 
 
-def attention_map(sight: Sight, known: PartModel, config: AttentionConfig) -> Doubles:
+def attention_map(sight: ImageSums, known: PartModel, config: AttentionConfig) -> Doubles:
     """Give A (rows, columns): excitation minus inhibition, at least 0 (equations 5.9 to 5.11)."""
     assert sight.maps is not None
     weight = known.excites - known.inhibits
@@ -190,7 +198,7 @@ def attention_map(sight: Sight, known: PartModel, config: AttentionConfig) -> Do
     return np.maximum(sight.maps @ weight, 0.0)
 
 
-def _attention(sight: Sight, known: PartModel, config: AttentionConfig) -> Doubles:
+def _attention(sight: ImageSums, known: PartModel, config: AttentionConfig) -> Doubles:
     return np.asarray(cv2.integral(attention_map(sight, known, config), sdepth=cv2.CV_64F), np.float64)
 
 

@@ -69,7 +69,7 @@ _LEAST_PX: Final = 16
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sight:
+class ImageSums:
     """An image in cells of two by two pixels.
 
     Attributes:
@@ -87,7 +87,7 @@ class Sight:
     colours: NDArray[np.uint16]
 
     @classmethod
-    def of(cls, image: NDArray[np.uint8], config: AttentionConfig) -> Sight:
+    def of(cls, image: NDArray[np.uint8], config: AttentionConfig) -> ImageSums:
         """Prepare an image.
 
         Raises:

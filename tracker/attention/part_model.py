@@ -12,7 +12,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.attention.attention_config import AttentionConfig
 from peopleboy.tracker.attention.box_scores import box_means, spreads
 from peopleboy.tracker.attention.feature_maps import CELL_PX
-from peopleboy.tracker.attention.image_sums import COLOUR_BINS, Sight
+from peopleboy.tracker.attention.image_sums import COLOUR_BINS, ImageSums
 from peopleboy.tracker.track import Box
 
 # The two boxes that a person is known by: the head, and the torso at a fixed place below it.
@@ -22,7 +22,7 @@ LEAST_CELLS: Final = 2
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class ModelPart:
     """Where a part is in a box from head to feet; all in the box's heights, from the middle of its top.
 
     Attributes:
@@ -35,8 +35,8 @@ class Part:
     height: float
 
 
-HEAD: Final = Part(top=0.0, width=0.125, height=0.125)
-TORSO: Final = Part(top=0.18, width=0.185, height=0.30)
+HEAD: Final = ModelPart(top=0.0, width=0.125, height=0.125)
+TORSO: Final = ModelPart(top=0.18, width=0.185, height=0.30)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ class Cells:
         )
 
 
-def cells_of(part: Part, box: Box, scale: float = 1.0) -> Cells:
+def cells_of(part: ModelPart, box: Box, scale: float = 1.0) -> Cells:
     """Give the cells of a part of a person with this box [px] from head to feet.
 
     Args:
@@ -126,7 +126,9 @@ class PartModel:
     colour_ratio: Doubles
 
     @classmethod
-    def learned(cls, sight: Sight, cells: Cells, config: AttentionConfig, near: Mask | None = None) -> Self:
+    def learned(
+        cls, sight: ImageSums, cells: Cells, config: AttentionConfig, near: Mask | None = None
+    ) -> Self:
         """Learn a part from a box.
 
         Args:
@@ -163,7 +165,7 @@ class PartModel:
 
 
 def _shares(
-    sight: Sight, cells: Cells, config: AttentionConfig, near: Mask | None
+    sight: ImageSums, cells: Cells, config: AttentionConfig, near: Mask | None
 ) -> tuple[Doubles, Doubles]:
     """Give how much of each map the box has, and the rest (equations 5.4 to 5.6).
 
@@ -196,7 +198,7 @@ def _patterns(sums: Singles, cells: Cells) -> tuple[Singles, Singles]:
     return share.astype(np.float32), (share / np.maximum(other, _RAREST)).astype(np.float32)
 
 
-def _colours(sight: Sight, cells: Cells, near: Mask | None) -> tuple[Doubles, Doubles]:
+def _colours(sight: ImageSums, cells: Cells, near: Mask | None) -> tuple[Doubles, Doubles]:
     """Give the shares of the colours in a box, and the logarithm of their ratio to those in the rest."""
     rows = slice(CELL_PX * cells.row, CELL_PX * (cells.row + cells.height))
     columns = slice(CELL_PX * cells.column, CELL_PX * (cells.column + cells.width))

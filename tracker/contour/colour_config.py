@@ -63,7 +63,7 @@ SPACES = {"rgb": 3, "grey": 1, "hsv": 3}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ColourConfig:
+class ColourDescriptorConfig:
     """How a person's colours are read, remembered and compared.
 
     Attributes:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.contour.colour_config import (
-    ColourConfig,
+    ColourDescriptorConfig,
     check_not_negative,
     check_positive,
     check_share,
@@ -244,7 +244,7 @@ class InteractionConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DepthConfig:
+class DepthOrderConfig:
     """Who is in front of whom, and what that means for the evidence."""
 
     # By whose feet are lower ("foot"), by looks as well ("appearance"), by a boosted classifier ("learned");
@@ -311,8 +311,8 @@ class TrackerConfig:
     box: BoxConfig = field(default_factory=BoxConfig)
     smoothing: SmoothingConfig = field(default_factory=SmoothingConfig)
     interaction: InteractionConfig = field(default_factory=InteractionConfig)
-    colour: ColourConfig | None = None  # None: thermal alone
+    colour: ColourDescriptorConfig | None = None  # None: thermal alone
     appearance: AppearanceConfig | None = None  # None: colours as they are
-    depth: DepthConfig = field(default_factory=DepthConfig)
+    depth: DepthOrderConfig = field(default_factory=DepthOrderConfig)
     height: HeightConfig = field(default_factory=HeightConfig)
     occlusion: StayBehindConfig | WalkOnConfig = field(default_factory=StayBehindConfig)

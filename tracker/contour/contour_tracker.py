@@ -35,7 +35,7 @@ from peopleboy.tracker.contour.measurement.likelihood import ContourModel, clutt
 from peopleboy.tracker.contour.occlusion.depth_order import (
     ExpectedPerson,
     Order,
-    Surroundings,
+    OrderContext,
     expected,
     sorted_by_lead,
     surroundings_of,
@@ -341,7 +341,7 @@ def _shared_filter(config: TrackerConfig, persons: int) -> FilterConfig:
 
 def _carried_on(
     person: TrackedPerson,
-    surroundings: Surroundings,
+    surroundings: OrderContext,
     view: FrameView,
     samples: FilterConfig,
     config: TrackerConfig,
@@ -374,7 +374,7 @@ def _height_kept(person: TrackedPerson, state: Floats, spread: float) -> Floats:
 
 
 def _likeness(
-    person: TrackedPerson, state: Floats, surroundings: Surroundings, view: FrameView, config: TrackerConfig
+    person: TrackedPerson, state: Floats, surroundings: OrderContext, view: FrameView, config: TrackerConfig
 ) -> Floats | None:
     """Tell how likely samples (N,) look like the person (thesis, equation 6.4); None if nobody knows."""
     if person.appearance is None or config.colour is None:

@@ -10,13 +10,13 @@ from typing import Final
 from peopleboy.tracker.contour.colour_config import (
     FAR_AFFINE,
     ROBOT_PARALLAX,
-    ColourConfig,
+    ColourDescriptorConfig,
 )
 from peopleboy.tracker.contour.contour_config import (
     AppearanceConfig,
     BoxConfig,
     ContourConfig,
-    DepthConfig,
+    DepthOrderConfig,
     FilterConfig,
     HeightConfig,
     InteractionConfig,
@@ -76,7 +76,8 @@ speeds of people who walk past.
 """
 
 THESIS_COLOUR = replace(
-    THESIS, colour=ColourConfig(representation="moments1", affine=FAR_AFFINE, parallax=ROBOT_PARALLAX)
+    THESIS,
+    colour=ColourDescriptorConfig(representation="moments1", affine=FAR_AFFINE, parallax=ROBOT_PARALLAX),
 )
 """With the colours of chapter 6; of the representations evaluated there, the first moments.
 
@@ -87,7 +88,7 @@ cameras are 6 cm apart, which no affine map makes up for at every distance, so t
 THESIS_OCCLUSION = replace(
     THESIS_COLOUR,
     interaction=InteractionConfig(occluded_penalty=0.5),
-    depth=DepthConfig(order="learned", table="thesis"),
+    depth=DepthOrderConfig(order="learned", table="thesis"),
     occlusion=StayBehindConfig(head_covered=1.0),
 )
 """With the occlusion handling of chapter 7; a head is hidden once no point of it is seen.
@@ -114,7 +115,7 @@ It names no threshold of the fitness; 18 grey, below the thesis's 22, since sect
 weight.
 """
 
-_CONTOUR_COLOUR = ColourConfig(
+_CONTOUR_COLOUR = ColourDescriptorConfig(
     representation="moments1", sharpness=0.035, frames=30, affine=FAR_AFFINE, parallax=ROBOT_PARALLAX
 )
 
@@ -194,7 +195,7 @@ CONTOUR = TrackerConfig(
     ),
     colour=_CONTOUR_COLOUR,
     appearance=AppearanceConfig(),
-    depth=DepthConfig(order="appearance", remembers_feet=True, removes_front=True, growth=1.2),
+    depth=DepthOrderConfig(order="appearance", remembers_feet=True, removes_front=True, growth=1.2),
     height=HeightConfig(overlapped_spread=0.1),
     occlusion=WalkOnConfig(remembers_lost=True, shows_only_sure=True),
 )

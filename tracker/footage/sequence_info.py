@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Final
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.footage.pictures import beside
+from peopleboy.tracker.footage.image_sequences import beside
 from peopleboy.tracker.frame import Odometry
 
 NAME: Final = "seqinfo.ini"

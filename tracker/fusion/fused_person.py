@@ -11,7 +11,7 @@ import numpy as np
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.frame import THERMAL, Floats, Frame, PinholeCalibration
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
-from peopleboy.tracker.panoramic.people.floor_motion import Motion
+from peopleboy.tracker.panoramic.people.floor_motion import FloorMotion
 from peopleboy.tracker.rgbd.observation_model import similarity
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
@@ -78,7 +78,7 @@ _BEST_FIRST: Final = (Status.TRACKED, Status.PARTLY_OCCLUDED, Status.TOTALLY_OCC
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Person:
+class FusedPerson:
     """Somebody of whom at least one of the trackers has told.
 
     Attributes:
@@ -96,7 +96,7 @@ class Person:
     """
 
     id: int
-    motion: Motion
+    motion: FloorMotion
     heat: int | None = None
     depth: int | None = None
     warm: SensorTrack | None = None
@@ -136,14 +136,14 @@ class Person:
         is_found = self.is_guided and best is Status.TOTALLY_OCCLUDED
         return Status.PARTLY_OCCLUDED if is_found else best
 
-    def later(self, dt_s: float, config: FusionConfig) -> Person:
+    def later(self, dt_s: float, config: FusionConfig) -> FusedPerson:
         """Give the person after it has walked on; nobody has told of it yet."""
         motion = self.motion.later(dt_s, config.restlessness)
         if not self.is_seen:
             motion = motion.slowed(dt_s, config.slow_s)
         return replace(self, motion=motion, warm=None, deep=None, is_guided=False)
 
-    def with_depth(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> Person:
+    def with_depth(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> FusedPerson:
         """Take in what the tracker by depth tells."""
         person = replace(self, depth=reported.id, deep=reported)
         if not reported.is_seen:
@@ -153,7 +153,7 @@ class Person:
         person = person._with_appearance(reported, time_s, config)
         return replace(person, motion=self._placed(reported, config), seen_s=time_s)
 
-    def with_heat(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> Person:
+    def with_heat(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> FusedPerson:
         """Take in what the thermal tracker tells."""
         person = replace(self, heat=reported.id, warm=reported)
         return (
@@ -162,7 +162,7 @@ class Person:
             else person
         )
 
-    def named(self, other: Person) -> Person:
+    def named(self, other: FusedPerson) -> FusedPerson:
         """Give who is here, and is told of so, the number, the measures and the looks of another."""
         return replace(
             self,
@@ -188,11 +188,11 @@ class Person:
         (xx, xy), (_, yy) = covariance.tolist()
         return FloorPlace(position_m=(x, y), covariance_m2=(xx, xy, yy))
 
-    def _placed(self, reported: SensorTrack, config: FusionConfig) -> Motion:
+    def _placed(self, reported: SensorTrack, config: FusionConfig) -> FloorMotion:
         further_m = config.clear_m if reported.is_clear else config.partly_m
         return self.motion.corrected(reported.place_m, reported.error_m2 + np.eye(2) * further_m**2)
 
-    def _measured(self, reported: SensorTrack, share: float, config: FusionConfig) -> Person:
+    def _measured(self, reported: SensorTrack, share: float, config: FusionConfig) -> FusedPerson:
         """Learn height and width."""
         tall = (
             self.tall_m if reported.tall_m is None else self.tall_m + share * (reported.tall_m - self.tall_m)
@@ -206,7 +206,7 @@ class Person:
         )
         return replace(self, tall_m=tall, span_m=span)
 
-    def _with_appearance(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> Person:
+    def _with_appearance(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> FusedPerson:
         """Learn looks, but not those of somebody else."""
         if reported.appearance is None:
             return self
@@ -235,10 +235,10 @@ class Person:
         )
 
 
-def initiate_person(number: int, reported: SensorTrack, time_s: float) -> Person:
+def initiate_person(number: int, reported: SensorTrack, time_s: float) -> FusedPerson:
     """Begin a person where a tracker tells of one."""
-    motion = Motion.begin(reported.place_m, reported.error_m2)
-    return Person(id=number, motion=motion, born_s=time_s, seen_s=time_s)
+    motion = FloorMotion.begin(reported.place_m, reported.error_m2)
+    return FusedPerson(id=number, motion=motion, born_s=time_s, seen_s=time_s)
 
 
 # The box of a person in the thermal image, from the sensors that see it best.
@@ -251,7 +251,7 @@ _TORSO: Final = (0.045, 0.32, 0.47)
 _TORSO_BY_HEAT: Final = (0.065, 0.715)
 
 
-def outline(person: Person, frame: Frame, pose: Pose2) -> Box | None:
+def outline(person: FusedPerson, frame: Frame, pose: Pose2) -> Box | None:
     """Give left, top, width, height [px] in the thermal image, which may lie outside.
 
     Depth knows best where head and feet are, heat where the middle is. Whom only one of them sees has the
@@ -272,7 +272,7 @@ def outline(person: Person, frame: Frame, pose: Pose2) -> Box | None:
     return left + (width - torso) / 2.0, top, torso, tall
 
 
-def with_width(person: Person, frame: Frame, pose: Pose2, share: float) -> Person:
+def with_width(person: FusedPerson, frame: Frame, pose: Pose2, share: float) -> FusedPerson:
     """Learn how wide the torso appears, which changes as the person turns; not of who is hidden in part."""
     contour, standing = _contour(person), standing_box(person, THERMAL, frame, pose)
     if contour is None:
@@ -288,7 +288,7 @@ def with_width(person: Person, frame: Frame, pose: Pose2, share: float) -> Perso
     return replace(person, wide_m=person.wide_m + share * (wide - person.wide_m))
 
 
-def standing_box(person: Person, camera: str, frame: Frame, pose: Pose2) -> Box | None:
+def standing_box(person: FusedPerson, camera: str, frame: Frame, pose: Pose2) -> Box | None:
     """Project a person, upright at its place, in its own measures.
 
     Returns:
@@ -304,6 +304,6 @@ def standing_box(person: Person, camera: str, frame: Frame, pose: Pose2) -> Box 
     return u - width / 2.0, top, width, bottom - top
 
 
-def _contour(person: Person) -> Box | None:
+def _contour(person: FusedPerson) -> Box | None:
     """Give the thermal tracker's box of who is seen whole."""
     return person.warm.box if person.warm is not None and person.warm.is_clear else None

@@ -14,9 +14,10 @@ from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
 from peopleboy.tracker.contour.explanation import ContourExplanation
 from peopleboy.tracker.frame import DEPTH, PANORAMA, THERMAL, Calibration, Frame
-from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplanation
+from peopleboy.tracker.fusion.depth_visibility import depth_visibility
+from peopleboy.tracker.fusion.fused_explanations import BothExplanations, FusedExplanation
 from peopleboy.tracker.fusion.fused_person import (
-    Person,
+    FusedPerson,
     SensorTrack,
     initiate_person,
     outline,
@@ -28,9 +29,8 @@ from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.fusion.guided_search import search_near
 from peopleboy.tracker.fusion.handover_tracker import HandoverTracker
 from peopleboy.tracker.fusion.identity_resolution import IdentityResolution
-from peopleboy.tracker.fusion.sensors import Depth, Heat
+from peopleboy.tracker.fusion.sensor_tracks import Depth, Heat
 from peopleboy.tracker.fusion.track_to_track import distance2, is_contradicted, pairs
-from peopleboy.tracker.fusion.visibility import depth_visibility
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
 from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation, RgbdTracker
@@ -43,8 +43,8 @@ _CROWDED_M: Final = (0.5, 0.7)  # in depth and to the side, within which two peo
 _NOBODYS: Final = -1  # the id of no track
 _UNSURE: Final = 0.1  # confidence in who is not told of
 
-Own = Callable[[Person], int | None]
-Take = Callable[[Person, SensorTrack], Person]
+Own = Callable[[FusedPerson], int | None]
+Take = Callable[[FusedPerson, SensorTrack], FusedPerson]
 
 
 class ThermalDepthTracker:
@@ -63,7 +63,7 @@ class ThermalDepthTracker:
         self._config = config
         self._heat, self._depth = Heat(thermal, config), Depth(rgbd, config)
         self._pose = Pose2()
-        self._people: tuple[Person, ...] = ()
+        self._people: tuple[FusedPerson, ...] = ()
         self._time_s = -math.inf
         self._numbers, self._guests = count(1), count(-1, -1)
 
@@ -112,20 +112,20 @@ class ThermalDepthTracker:
         return tuple(self._track(one, frame) for one in sorted(shown, key=lambda one: one.id))
 
     @property
-    def _known(self) -> list[Person]:
+    def _known(self) -> list[FusedPerson]:
         return [one for one in self._people if not one.is_guest]
 
-    def _with_depth(self, person: Person, reported: SensorTrack) -> Person:
+    def _with_depth(self, person: FusedPerson, reported: SensorTrack) -> FusedPerson:
         return person.with_depth(reported, self._time_s, self._config)
 
-    def _with_heat(self, person: Person, reported: SensorTrack) -> Person:
+    def _with_heat(self, person: FusedPerson, reported: SensorTrack) -> FusedPerson:
         if is_contradicted(person, reported, self._config):
             reported = replace(reported, status=Status.TOTALLY_OCCLUDED)
         return person.with_heat(reported, self._time_s, self._config)
 
     def _joined(
-        self, people: Sequence[Person], reported: Sequence[SensorTrack], own: Own, take: Take
-    ) -> list[Person]:
+        self, people: Sequence[FusedPerson], reported: Sequence[SensorTrack], own: Own, take: Take
+    ) -> list[FusedPerson]:
         """Tell people what a tracker knows of them; whose track is nobody's is a guest."""
         found = pairs(people, reported, [own(one) for one in people], self._time_s, self._config)
         joined = [take(one, reported[found[k]]) if k in found else one for k, one in enumerate(people)]
@@ -137,14 +137,14 @@ class ThermalDepthTracker:
                 joined.append(take(initiate_person(next(self._guests), one, self._time_s), one))
         return joined
 
-    def _is_double(self, reported: SensorTrack, people: Sequence[Person]) -> bool:
+    def _is_double(self, reported: SensorTrack, people: Sequence[FusedPerson]) -> bool:
         """Tell whether a thermal track is likely somebody who has another one."""
         gate, floor_m = self._config.own_gate, self._config.floor_m
         return reported.box is not None and any(
             one.is_seen and distance2(one, reported, floor_m) < gate for one in people
         )
 
-    def _peeked(self, person: Person, people: Sequence[Person], frame: Frame) -> Person:
+    def _peeked(self, person: FusedPerson, people: Sequence[FusedPerson], frame: Frame) -> FusedPerson:
         """Look for somebody where it is expected if nobody sees it whole."""
         config = self._config
         is_due = person.depth is not None and self._time_s - person.seen_s <= config.peek_s
@@ -158,7 +158,7 @@ class ThermalDepthTracker:
         motion = person.motion.corrected(place, error)
         return replace(person, motion=motion, is_guided=True, seen_s=self._time_s)
 
-    def _is_crowded(self, person: Person, people: Sequence[Person]) -> bool:
+    def _is_crowded(self, person: FusedPerson, people: Sequence[FusedPerson]) -> bool:
         here, (deep_m, aside_m) = self._pose.points_to_local(person.motion.place_m), _CROWDED_M
         others = (
             self._pose.points_to_local(one.motion.place_m)
@@ -167,7 +167,7 @@ class ThermalDepthTracker:
         )
         return any(abs(x - here[0]) < deep_m and abs(y - here[1]) < aside_m for x, y in others)
 
-    def _single(self, people: Sequence[Person]) -> list[Person]:
+    def _single(self, people: Sequence[FusedPerson]) -> list[FusedPerson]:
         """Make one of two at one place of whom one is seen by heat alone, and the other by depth alone.
 
         Two who are both known by their looks stay two: heat has taken one for the other.
@@ -186,7 +186,7 @@ class ThermalDepthTracker:
                 kept = [part for one in kept for part in self._settled(one, person, double)]
         return kept
 
-    def _settled(self, one: Person, deep: Person, double: Person) -> tuple[Person, ...]:
+    def _settled(self, one: FusedPerson, deep: FusedPerson, double: FusedPerson) -> tuple[FusedPerson, ...]:
         """Give a thermal track to whom depth sees there; who else had it, and is known by looks, is away."""
         if one is double:
             return () if double.appearance is None else (replace(double, warm=None, heat=None),)
@@ -197,17 +197,17 @@ class ThermalDepthTracker:
             return (replace(both, id=double.id, born_s=double.born_s),)
         return (both,)
 
-    def _is_same(self, deep: Person, other: Person) -> bool:
+    def _is_same(self, deep: FusedPerson, other: FusedPerson) -> bool:
         warm = other.warm
         if other.deep is not None or warm is None or not warm.is_seen:
             return False
         return distance2(deep, warm, self._config.floor_m) < self._config.gate
 
-    def _is_forgotten(self, person: Person) -> bool:
+    def _is_forgotten(self, person: FusedPerson) -> bool:
         limit_s = self._config.away_s if person.is_guest else self._config.remembered_s
         return self._time_s - person.seen_s > limit_s
 
-    def _is_shown(self, person: Person, frame: Frame) -> bool:
+    def _is_shown(self, person: FusedPerson, frame: Frame) -> bool:
         """Tell whether somebody is said to be there: who is hidden for a while, others for a blink."""
         config, late_s = self._config, self._time_s - person.seen_s
         if person.is_seen or late_s > config.hidden_s:
@@ -219,7 +219,7 @@ class ThermalDepthTracker:
             return found.nearer > config.hidden_share
         return person.warm is not None or late_s <= config.blink_s
 
-    def _track(self, person: Person, frame: Frame) -> Track:
+    def _track(self, person: FusedPerson, frame: Frame) -> Track:
         boxes = {
             THERMAL: outline(person, frame, self._pose),
             DEPTH: standing_box(person, DEPTH, frame, self._pose),
@@ -234,7 +234,7 @@ class ThermalDepthTracker:
             occluder=self._occluder_of(person),
         )
 
-    def _occluder_of(self, person: Person) -> int | None:
+    def _occluder_of(self, person: FusedPerson) -> int | None:
         """Name who hides a person, by either tracker; None for nobody."""
         for reported, own in ((person.deep, _depth), (person.warm, _heat)):
             if reported is not None and reported.occluder is not None:
@@ -246,15 +246,15 @@ class ThermalDepthTracker:
         return None
 
 
-def _heat(person: Person) -> int | None:
+def _heat(person: FusedPerson) -> int | None:
     return person.heat
 
 
-def _depth(person: Person) -> int | None:
+def _depth(person: FusedPerson) -> int | None:
     return person.depth
 
 
-def _without(person: Person, own: Own, owners: Mapping[int, int]) -> Person:
+def _without(person: FusedPerson, own: Own, owners: Mapping[int, int]) -> FusedPerson:
     """Take a track from who had it before, if it is somebody else's now: it must not go back and forth."""
     mine = own(person)
     if mine is None or owners.get(mine, person.id) == person.id:

@@ -11,7 +11,7 @@ from typing import Final, Protocol
 from peopleboy.tracker.contour.box_interaction import standing_box
 from peopleboy.tracker.contour.explanation import ContourExplanation
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Calibration, Frame
-from peopleboy.tracker.fusion.explanations import BothExplanations
+from peopleboy.tracker.fusion.fused_explanations import BothExplanations
 from peopleboy.tracker.fusion.handover_links import (
     GATE,
     Departures,

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from peopleboy.tracker.frame import Floats
-from peopleboy.tracker.fusion.fused_person import Person, SensorTrack
+from peopleboy.tracker.fusion.fused_person import FusedPerson, SensorTrack
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.fusion.track_to_track import cheapest
 from peopleboy.tracker.rgbd.observation_model import similarity
@@ -36,7 +36,7 @@ class IdentityResolution:
     time_s: float
     is_lit: bool
 
-    def settled(self, people: Sequence[Person], numbers: Iterator[int]) -> list[Person]:
+    def settled(self, people: Sequence[FusedPerson], numbers: Iterator[int]) -> list[FusedPerson]:
         """Number those who turned up, as soon as it is plain who they are, or late enough.
 
         All of them are compared with all who are away at once. Who is taken for somebody who seemed to be
@@ -60,14 +60,14 @@ class IdentityResolution:
             known[named.id] = named
         return list(known.values())
 
-    def _is_away(self, person: Person) -> bool:
+    def _is_away(self, person: FusedPerson) -> bool:
         """Tell whether somebody may be elsewhere: who is not seen, or not known by looks of late."""
         is_doubted = (
             self.is_lit and person.appearance is not None and self.time_s - person.appearance_s > _DOUBTED_S
         )
         return not person.is_seen or is_doubted
 
-    def _is_plain(self, guest: Person, costs: Floats, chosen: int | None) -> bool:
+    def _is_plain(self, guest: FusedPerson, costs: Floats, chosen: int | None) -> bool:
         """Tell whether it is time to say who somebody is.
 
         Args:
@@ -85,7 +85,7 @@ class IdentityResolution:
         others = np.delete(costs, chosen)
         return bool((others - costs[chosen] >= self.config.plain).all())
 
-    def resolve_swaps(self, people: Sequence[Person]) -> list[Person]:
+    def resolve_swaps(self, people: Sequence[FusedPerson]) -> list[FusedPerson]:
         """Give people who look like another that one's number.
 
         Who has looked otherwise for a while changes with somebody of its looks who is away, or looks
@@ -104,7 +104,7 @@ class IdentityResolution:
                     del known[one.id]
         return list(known.values())
 
-    def _strangeness(self, person: Person, guest: Person) -> float:
+    def _strangeness(self, person: FusedPerson, guest: FusedPerson) -> float:
         """Rate how unlikely it is that a guest is somebody; infinite if it is out of the question."""
         if person.is_seen and guest.appearance is None:
             return math.inf
@@ -115,7 +115,7 @@ class IdentityResolution:
             - (_OWN if is_own else 0.0)
         )
 
-    def _distance(self, person: Person, guest: Person) -> float:
+    def _distance(self, person: FusedPerson, guest: FusedPerson) -> float:
         """Rate the way since somebody was last known by its looks, or seen if there are none: 1 at most."""
         config = self.config
         late_s, last_m = self.time_s - person.seen_s, person.motion.place_m
@@ -126,7 +126,7 @@ class IdentityResolution:
         found = math.dist(guest.motion.place_m, last_m) / reach_m
         return found if found <= 1.0 else math.inf
 
-    def _unlikeness(self, person: Person, guest: Person, *, is_own: bool) -> float:
+    def _unlikeness(self, person: FusedPerson, guest: FusedPerson, *, is_own: bool) -> float:
         """Rate how different looks and height are; height alone decides only where there are no looks."""
         config = self.config
         off = 0.0
@@ -138,10 +138,10 @@ class IdentityResolution:
         is_long_ago = not is_own and self.time_s - person.seen_s > config.lookless_s
         return math.inf if is_long_ago or off > 1.0 else off
 
-    def _is_young(self, person: Person) -> bool:
+    def _is_young(self, person: FusedPerson) -> bool:
         return self.time_s - person.born_s < self.config.young_s
 
-    def _other(self, person: Person, people: Sequence[Person]) -> Person | None:
+    def _other(self, person: FusedPerson, people: Sequence[FusedPerson]) -> FusedPerson | None:
         """Find whose looks somebody has who looks otherwise, or is new."""
         reported, is_strange = person.deep, person.strange >= self.config.strange_frames
         if reported is None or reported.appearance is None:
@@ -160,7 +160,9 @@ class IdentityResolution:
             return None
         return next(other for other in people if other.id == best)
 
-    def _may_be(self, person: Person, other: Person, reported: SensorTrack, *, is_strange: bool) -> bool:
+    def _may_be(
+        self, person: FusedPerson, other: FusedPerson, reported: SensorTrack, *, is_strange: bool
+    ) -> bool:
         if other.id == person.id or other.is_guest or reported.tall_m is None:
             return False
         if other.is_seen:

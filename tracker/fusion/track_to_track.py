@@ -9,14 +9,14 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from peopleboy.tracker.frame import Floats
-from peopleboy.tracker.fusion.fused_person import Person, SensorTrack
+from peopleboy.tracker.fusion.fused_person import FusedPerson, SensorTrack
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.rgbd.observation_model import similarity
 
 _NEVER: Final = 1e6
 
 
-def distance2(person: Person, reported: SensorTrack, floor_m: float) -> float:
+def distance2(person: FusedPerson, reported: SensorTrack, floor_m: float) -> float:
     """Tell by how much what is told differs from a person's place: squared, in standard deviations.
 
     A thermal track is sure of its bearing and not of its range; one by depth is sure of both.
@@ -27,7 +27,7 @@ def distance2(person: Person, reported: SensorTrack, floor_m: float) -> float:
 
 
 def cost(
-    person: Person, reported: SensorTrack, own: int | None, time_s: float, config: FusionConfig
+    person: FusedPerson, reported: SensorTrack, own: int | None, time_s: float, config: FusionConfig
 ) -> float:
     """Tell how unlikely it is that a person is told of; infinite if it is out of the question.
 
@@ -48,7 +48,7 @@ def cost(
     return np.inf if is_out else away + unlike
 
 
-def is_contradicted(person: Person, reported: SensorTrack, config: FusionConfig) -> bool:
+def is_contradicted(person: FusedPerson, reported: SensorTrack, config: FusionConfig) -> bool:
     """Tell whether a thermal track is in another bearing than somebody whom depth sees whole."""
     deep = person.deep
     if reported.box is None or deep is None or not deep.is_clear:
@@ -57,7 +57,7 @@ def is_contradicted(person: Person, reported: SensorTrack, config: FusionConfig)
     return abs(float(across @ (reported.place_m - deep.place_m))) > config.beside_m
 
 
-def _unlikeness(person: Person, reported: SensorTrack, config: FusionConfig) -> float:
+def _unlikeness(person: FusedPerson, reported: SensorTrack, config: FusionConfig) -> float:
     """Rate how different looks and height are; 0 as far as they are not known."""
     found = 0.0
     if reported.appearance is not None and person.appearance is not None:
@@ -68,7 +68,7 @@ def _unlikeness(person: Person, reported: SensorTrack, config: FusionConfig) -> 
 
 
 def pairs(
-    people: Sequence[Person],
+    people: Sequence[FusedPerson],
     reported: Sequence[SensorTrack],
     owns: Sequence[int | None],
     time_s: float,

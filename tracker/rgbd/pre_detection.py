@@ -14,15 +14,15 @@ from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
 from peopleboy.tracker.rgbd.u_depth import (
     STEP_1_M,
+    DepthPiece,
     Ints,
-    Piece,
     UDepthConfig,
     depths_m,
     find_pieces,
     u_depth,
 )
 from peopleboy.tracker.rgbd.v_disparity import HeightLine, find_ceiling, find_floor, v_disparity
-from peopleboy.tracker.rgbd.walls import Wall, bands_mm, find_walls, tall_disparity, without
+from peopleboy.tracker.rgbd.walls import DepthWall, bands_mm, find_walls, tall_disparity, without
 from peopleboy.tracker.track import Box
 
 # Whether something has the size of a human.
@@ -114,7 +114,7 @@ class Layout:
 
     floor: HeightLine
     ceiling: HeightLine | None
-    walls: tuple[Wall, ...]
+    walls: tuple[DepthWall, ...]
     counts: Ints
     detections: tuple[PreDetection, ...]
 
@@ -137,7 +137,7 @@ class PreDetector:
         floor = find_floor(counts, view) or HeightLine(view.horizon_px / view.focal_px, view.height_m)
         ceiling = find_ceiling(counts, view)
         first, last = self._row_limits(floor, ceiling, view)
-        walls: tuple[Wall, ...] = ()
+        walls: tuple[DepthWall, ...] = ()
         if self.config.has_walls:
             walls, depth = self._without_walls(depth, first, floor, view)
         above = u_depth(depth, first, last, self.config.row_m)
@@ -157,7 +157,7 @@ class PreDetector:
 
     def _without_walls(
         self, depth: Depth, first: Floats, floor: HeightLine, view: DepthView
-    ) -> tuple[tuple[Wall, ...], Depth]:
+    ) -> tuple[tuple[DepthWall, ...], Depth]:
         """Find walls by what stands above people's heads; give the image (H, W) without them, too."""
         heads = floor.raised(_TALL_M).rows(depths_m(self.config.row_m), view)
         tall = tall_disparity(depth, first, heads, self.config.row_m, view)
@@ -165,7 +165,7 @@ class PreDetector:
         return walls, without(depth, *bands_mm(walls, tall, self.config.wall_m, view))
 
     def _rate(
-        self, piece: Piece, depth: Depth, first: Floats, last: Floats, floor: HeightLine, view: DepthView
+        self, piece: DepthPiece, depth: Depth, first: Floats, last: Floats, floor: HeightLine, view: DepthView
     ) -> PreDetection | None:
         """Find the rows of a piece (SA 4.4.1, step 5), and rate its size."""
         scale = piece.depth_m / view.focal_px

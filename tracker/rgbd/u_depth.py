@@ -29,7 +29,7 @@ _GAPS: Final = np.array([2, 4, 6, 10])
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class DepthPiece:
     """One connected piece of the view from above.
 
     Attributes:
@@ -87,7 +87,7 @@ def depths_m(row_m: float) -> Floats:
     return np.asarray((np.arange(round(FARTHEST_M / row_m) + 1) + 0.5) * row_m)
 
 
-def find_pieces(counts: Ints, config: UDepthConfig) -> tuple[Piece, ...]:
+def find_pieces(counts: Ints, config: UDepthConfig) -> tuple[DepthPiece, ...]:
     """Find the connected pieces, the nearest first."""
     kept = (counts > _LEAST_PX).astype(np.uint8)
     if config.has_connector:
@@ -100,9 +100,9 @@ def find_pieces(counts: Ints, config: UDepthConfig) -> tuple[Piece, ...]:
     return tuple(sorted(likely, key=lambda piece: piece.depth_m))
 
 
-def _piece(row: list[float], row_m: float) -> Piece:
+def _piece(row: list[float], row_m: float) -> DepthPiece:
     left, right, near, far, mean, mass = row
-    return Piece(int(left), int(right), near * row_m, (far + 1.0) * row_m, mean * row_m, int(mass))
+    return DepthPiece(int(left), int(right), near * row_m, (far + 1.0) * row_m, mean * row_m, int(mass))
 
 
 def gaps(config: UDepthConfig) -> Ints:

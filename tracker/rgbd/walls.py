@@ -28,7 +28,7 @@ _STEPS: Final = 1.1  # of the sensor, by which readings of a wall may be off, to
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Wall:
+class DepthWall:
     """A vertical plane: disparity is linear in the column.
 
     Attributes:
@@ -75,13 +75,13 @@ def tall_disparity(
     return _middle(depth, limits[0], limits[1], round(1000.0 * row_m), 1000.0 * view.disparity_px_m)
 
 
-def find_walls(tall: Floats, view: DepthView) -> tuple[Wall, ...]:
+def find_walls(tall: Floats, view: DepthView) -> tuple[DepthWall, ...]:
     """Find the lines that most columns (W, 2) of disparities are on, the longest first.
 
     There are none where readings scatter too much, as they would leave pieces of a human's size.
     """
     columns = np.flatnonzero(np.isfinite(tall[:, 0]))
-    walls: list[Wall] = []
+    walls: list[DepthWall] = []
     if not len(columns) or np.median(tall[columns, 1]) > _MOST_SCATTER_PX:
         return ()
     while len(columns) >= _LEAST_COLUMNS and len(walls) < _MOST_WALLS:
@@ -91,13 +91,13 @@ def find_walls(tall: Floats, view: DepthView) -> tuple[Wall, ...]:
             break
         slope, offset = np.polyfit(u[on], disparity[on], 1).tolist()
         left, right = columns[on][[0, -1]].tolist()
-        walls.append(Wall(slope=slope, offset_px=offset, left=left, right=right))
+        walls.append(DepthWall(slope=slope, offset_px=offset, left=left, right=right))
         columns = columns[~on & (np.abs(offset + slope * u - disparity) >= _OFF_PX)]
     return tuple(wall for wall in walls if _length_m(wall, view) >= _LEAST_M)
 
 
 def bands_mm(
-    walls: tuple[Wall, ...], tall: Floats, off_m: float, view: DepthView
+    walls: tuple[DepthWall, ...], tall: Floats, off_m: float, view: DepthView
 ) -> tuple[NDArray[np.uint16], NDArray[np.uint16]]:
     """Give the nearest and the farthest depth (K, W) [mm] of each wall by column; 0 and 0 where it is not.
 
@@ -126,7 +126,7 @@ def bands_mm(
     return near, far
 
 
-def _length_m(wall: Wall, view: DepthView) -> float:
+def _length_m(wall: DepthWall, view: DepthView) -> float:
     ends = np.array([wall.left, wall.right], np.float64)
     z = wall.depth_m(ends, view)
     return float(np.hypot(np.diff((ends - view.centre_u) * z / view.focal_px), np.diff(z))[0])

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from peopleboy.tracker.frame import Floats
-from peopleboy.tracker.scene_model.scene import Change, Happening, SeenPerson
+from peopleboy.tracker.scene_model.scene import Change, Happening, ScenePerson
 from peopleboy.tracker.scene_model.scene_config import ThingsConfig
 from peopleboy.tracker.scene_model.things import Thing
 
@@ -48,9 +48,9 @@ class Ledger:
         self._come: list[_Half] = []
         self._known: list[_Half] = []
         self._first: dict[int, tuple[float, tuple[float, float]]] = {}
-        self._people: deque[tuple[float, tuple[SeenPerson, ...]]] = deque()
+        self._people: deque[tuple[float, tuple[ScenePerson, ...]]] = deque()
 
-    def note(self, time_s: float, persons: tuple[SeenPerson, ...]) -> None:
+    def note(self, time_s: float, persons: tuple[ScenePerson, ...]) -> None:
         """Remember who is where."""
         self._people.append((time_s, persons))
         while self._people and self._people[0][0] < time_s - _REMEMBERED_S:

@@ -15,7 +15,7 @@ Labels = NDArray[np.int32]
 Place = tuple[float, float, float]
 
 
-class State(StrEnum):
+class ObjectState(StrEnum):
     """Where a movable thing is."""
 
     STANDS = "stands"
@@ -49,11 +49,11 @@ class SceneObject:
     place_m: Place
     size_m2: float
     first_seen_s: float
-    state: State
+    state: ObjectState
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SeenPerson:
+class ScenePerson:
     """A person in the depth image.
 
     Attributes:
@@ -115,7 +115,7 @@ class VistaScene:
     background_m: Metres
     people: Labels
     things: Labels
-    persons: tuple[SeenPerson, ...] = ()
+    persons: tuple[ScenePerson, ...] = ()
     objects: tuple[SceneObject, ...] = ()
     happenings: tuple[Happening, ...] = ()
     is_frozen: bool = False

@@ -15,20 +15,20 @@ from peopleboy.tracker.frame import DEPTH, Frame
 from peopleboy.tracker.scene_model.geometry import Geometry, shades_of
 from peopleboy.tracker.scene_model.happenings import Ledger
 from peopleboy.tracker.scene_model.layers import Layers
-from peopleboy.tracker.scene_model.people import People, PeopleSeen
 from peopleboy.tracker.scene_model.readings import Readings
 from peopleboy.tracker.scene_model.scene import (
     Change,
     Happening,
     Labels,
     Metres,
+    ObjectState,
     Place,
     SceneObject,
-    SeenPerson,
-    State,
+    ScenePerson,
     VistaScene,
 )
 from peopleboy.tracker.scene_model.scene_config import SceneConfig
+from peopleboy.tracker.scene_model.scene_people import People, PeopleSeen
 from peopleboy.tracker.scene_model.things import (
     Thing,
     ThingMoment,
@@ -258,7 +258,7 @@ class SceneModel:
             if any(math.dist(one.place_m, points) < config.hand_m for one in people.persons):
                 things.ravel()[pixels] = missing.id
 
-    def _placed(self, person: SeenPerson) -> SeenPerson:
+    def _placed(self, person: ScenePerson) -> ScenePerson:
         return replace(person, place_m=self._pose.transform_point(person.place_m))
 
     def _known(self, one: Happening) -> Happening:
@@ -269,7 +269,7 @@ class SceneModel:
 
     def _object(self, thing: Thing, things: Labels) -> SceneObject:
         is_seen = bool((things == thing.id).any())
-        state = State.GONE if thing.is_gone else State.STANDS if is_seen else State.HIDDEN
+        state = ObjectState.GONE if thing.is_gone else ObjectState.STANDS if is_seen else ObjectState.HIDDEN
         place = self._in_first(thing.place_m)
         assert place is not None  # it has one
         return SceneObject(

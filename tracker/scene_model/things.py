@@ -12,9 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Floats
+from peopleboy.tracker.scene_model.connected_pieces import (
+    Bools,
+    Pixels,
+    PixelSpan,
+    pieces_of,
+    pixels_by_label,
+)
 from peopleboy.tracker.scene_model.geometry import Geometry
 from peopleboy.tracker.scene_model.layers import NEVER, Layers
-from peopleboy.tracker.scene_model.pieces import Bools, Pixels, Span, pieces_of, pixels_by_label
 from peopleboy.tracker.scene_model.scene import Labels, Metres, Place
 from peopleboy.tracker.scene_model.scene_config import ThingsConfig
 from peopleboy.tracker.track import Box
@@ -106,7 +112,7 @@ class ThingPieces:
         self._changed: Metres = np.full(shape, NEVER, np.float32)
 
     def update(
-        self, mask: Bools, depth_m: Metres, span: Span, moment: ThingMoment, next_id: Iterator[int]
+        self, mask: Bools, depth_m: Metres, span: PixelSpan, moment: ThingMoment, next_id: Iterator[int]
     ) -> tuple[list[Thing], list[Thing]]:
         """Take in a mask (H, W), depths [m] and times; give the things that settled and those that left."""
         config = self._config
@@ -135,7 +141,7 @@ class ThingPieces:
         parts: Mapping[int, Sequence[Pixels]],
         mask: Bools,
         depth_m: Metres,
-        span: Span,
+        span: PixelSpan,
         moment: ThingMoment,
     ) -> tuple[list[Thing], list[Thing]]:
         settled = []
@@ -162,7 +168,7 @@ class ThingPieces:
         open_ones = [one for one in self.things.values() if not one.is_settled]
         return max(open_ones, key=lambda one: one.id, default=None)
 
-    def _owner_of(self, pixels: Pixels, span: Span) -> int | None:
+    def _owner_of(self, pixels: Pixels, span: PixelSpan) -> int | None:
         """Find the thing that a piece was part of until now; what came after it settled is none of it."""
         owner = self.owner.ravel()[pixels]
         owners = np.bincount(owner)
@@ -190,7 +196,7 @@ class ThingPieces:
         self,
         pixels: Pixels,
         depth_m: Metres,
-        span: Span,
+        span: PixelSpan,
         moment: ThingMoment,
         parts: Mapping[int, Sequence[Pixels]],
     ) -> int | None:
@@ -223,7 +229,7 @@ class ThingPieces:
         number: int,
         pixels: Pixels,
         depth_m: Metres,
-        span: Span,
+        span: PixelSpan,
         moment: ThingMoment,
         known: Thing | None,
     ) -> Thing:
@@ -284,23 +290,23 @@ class ThingPieces:
         return left
 
 
-def standing(layers: Layers, config: ThingsConfig) -> tuple[Bools, Metres, Span]:
+def standing(layers: Layers, config: ThingsConfig) -> tuple[Bools, Metres, PixelSpan]:
     """Find what stands before the background: where, at which depth [m], and since when."""
     front, since = layers.front_m, layers.front_since_s
     mask = layers.is_covered & (layers.background_m - front > config.off_m)
     return (
         mask,
         front,
-        Span(np.minimum(layers.back_seen_s, since), since, layers.front_seen_s, config.slack_s),
+        PixelSpan(np.minimum(layers.back_seen_s, since), since, layers.front_seen_s, config.slack_s),
     )
 
 
-def opened(layers: Layers, config: ThingsConfig) -> tuple[Bools, Metres, Span]:
+def opened(layers: Layers, config: ThingsConfig) -> tuple[Bools, Metres, PixelSpan]:
     """Find what stood where something farther is seen since: where, at which depth [m], and until when."""
     past, gone = layers.past_m, layers.past_gone_s
     mask = (past > 0.0) & (layers.background_m - past > config.off_m)
     first = np.minimum(layers.past_seen_s, gone)
-    return mask, past, Span(first, gone, layers.past_seen_s, config.slack_s)
+    return mask, past, PixelSpan(first, gone, layers.past_seen_s, config.slack_s)
 
 
 def pieces_like(

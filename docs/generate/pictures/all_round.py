@@ -29,7 +29,7 @@ from peopleboy.studies.training.panorama_sequences import panorama_calibration, 
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
 from peopleboy.tracker.panoramic.foreground.foreground import Foreground
 from peopleboy.tracker.panoramic.people.figure_patch import ACROSS, BOTTOM_M, HALF_WIDTH_M, LAYERS, TOP_M, UP
-from peopleboy.tracker.panoramic.people.panorama_patches import Scene
+from peopleboy.tracker.panoramic.people.panorama_patches import PanoramaScene
 from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
 from peopleboy.tracker.panoramic.people.place_model import load_places
@@ -61,7 +61,7 @@ class Moment:
     """
 
     explanation: PeopleExplanation
-    scene: Scene
+    scene: PanoramaScene
     tracks: tuple[Track, ...]
     true_m: NDArray[np.float64]
 
@@ -114,7 +114,7 @@ def _moment() -> Moment:
         tracks = tracker.update(frame)
         foreground = eyes.update(image, time_s, moved, camera)
     assert tracker.explanation is not None
-    scene = Scene.of(image, foreground, eyes.novelty, camera)
+    scene = PanoramaScene.of(image, foreground, eyes.novelty, camera)
     return Moment(tracker.explanation, scene, tracks, film.place_m[k])
 
 

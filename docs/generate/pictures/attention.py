@@ -22,8 +22,8 @@ from peopleboy.tracker.attention.attend import Focus
 from peopleboy.tracker.attention.people.attentive_config import AttentiveConfig
 from peopleboy.tracker.attention.people.attentive_explanation import Attended
 from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
+from peopleboy.tracker.attention.people.person_views import PersonView, box_in
 from peopleboy.tracker.attention.people.recogniser import ByColour, ColourLook
-from peopleboy.tracker.attention.people.views import View, box_in
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.track import Box, Status, Track
 from peopleboy.tracker.trackers import make_tracker
@@ -93,7 +93,7 @@ def _looks(tracks: tuple[Track, ...], frame: Frame) -> list[tuple[int, ColourLoo
     found = []
     for track in tracks:
         box = box_in(COLOUR, track, frame)
-        look = None if box is None else ColourLook.of(View(COLOUR, frame.rgb(COLOUR), box))
+        look = None if box is None else ColourLook.of(PersonView(COLOUR, frame.rgb(COLOUR), box))
         if look is not None and track.status is Status.TRACKED and THERMAL in track.boxes:
             found.append((track.id, look))
     return found

@@ -11,12 +11,12 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import DepthConfig, ThermalConfig
 from peopleboy.sim.cameras.depth import show_depth
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.sim.world import World
+from peopleboy.sim.world_config import WorldConfig
 
 PEOPLE = {"anna": (3.9, -0.8), "carl": (5.6, 0.6), "dora": (8.2, -0.35)}
 ROWS = slice(120, 400)

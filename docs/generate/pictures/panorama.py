@@ -11,12 +11,12 @@ from PIL import Image
 from peopleboy.scenarios.drawing.overlay import draw_truth, enlarge, people_parts
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.sim.cameras.camera_config import PanoramaConfig, ThermalConfig
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
-from peopleboy.studies.reproductions.experiments.panorama import ROOMS, draw_ranges, walk_units
+from peopleboy.sim.world_config import WorldConfig
+from peopleboy.studies.reproductions.experiments.panoramic_room import ROOMS, draw_ranges, walk_units
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.runner import RESULTS
 from peopleboy.studies.reproductions.units import Measurement, open_store, run_units

@@ -17,7 +17,6 @@ from peopleboy.sim.cameras.camera_config import ColourConfig, ThermalConfig
 from peopleboy.sim.cameras.imaging.electronics import Gain, compress, encode_8bit, sharpen, show_scene
 from peopleboy.sim.cameras.imaging.noise import Drift
 from peopleboy.sim.cameras.thermal import band_radiance, detect, make_detector, surface_image
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.people.body.anthropometry import Sex
 from peopleboy.sim.people.body.clothes import BOTTOMS, SKIN_C, TOPS, Clothes
@@ -28,6 +27,7 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Detail
 from peopleboy.sim.world import World
+from peopleboy.sim.world_config import WorldConfig
 
 SCALE = {"cmap": "inferno", "vmin": 18.0, "vmax": 38.0}
 ROOM_C = 21.0

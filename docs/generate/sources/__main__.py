@@ -18,7 +18,7 @@ from docs.generate.sources.source_pages import PAGE, whole_page
 from docs.generate.sources.source_run import FOLDER, SourceRun
 from peopleboy.scenarios.running.engine.store import Store
 from peopleboy.studies.reproductions.catalogue import choose, of_paper
-from peopleboy.studies.reproductions.experiment import Outcome
+from peopleboy.studies.reproductions.experiment import ExperimentOutcome
 from peopleboy.studies.reproductions.page import head_of
 from peopleboy.studies.reproductions.plan import full_plan
 from peopleboy.studies.reproductions.plots import draw
@@ -62,7 +62,7 @@ def _newest_code(results: Path) -> str:
     return code
 
 
-def _with_file(outcome: Outcome) -> Outcome:
+def _with_file(outcome: ExperimentOutcome) -> ExperimentOutcome:
     """Put its picture, or its plot, into a file of its own."""
     number = outcome.experiment.id
     address = outcome.picture or draw(outcome.experiment, outcome.samples)

@@ -13,7 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.studies.reproductions.catalogue import EXPERIMENTS
-from peopleboy.studies.reproductions.experiment import Effort, Jackknife, Line, Outcome, Samples, Values
+from peopleboy.studies.reproductions.experiment import (
+    Effort,
+    ExperimentOutcome,
+    Jackknife,
+    Line,
+    Samples,
+    Values,
+)
 from peopleboy.studies.reproductions.page import PageHead
 
 FOLDER: Final = Path(__file__).parents[2] / "sources"
@@ -33,7 +40,7 @@ class SourceRun:
     """
 
     head: PageHead
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[ExperimentOutcome, ...]
 
     @classmethod
     def read(cls, folder: Path = FOLDER) -> SourceRun:
@@ -43,7 +50,7 @@ class SourceRun:
             PageHead(**data["head"]), tuple(_outcome(number, one) for number, one in data["parts"].items())
         )
 
-    def without(self, others: Sequence[Outcome]) -> SourceRun:
+    def without(self, others: Sequence[ExperimentOutcome]) -> SourceRun:
         """Leave out the tables and figures that others are of, and what is said of them."""
         theirs = {one.experiment.id for one in others}
         facts = {name: fact for name, fact in self.head.facts.items() if name not in theirs}
@@ -74,7 +81,7 @@ class SourceRun:
         (folder / RUN).write_text(f'{{"head": {head},\n "parts": {{\n{text}\n}}}}\n', encoding="utf-8")
 
 
-def _plain(outcome: Outcome) -> dict[str, Any]:
+def _plain(outcome: ExperimentOutcome) -> dict[str, Any]:
     return {
         "picture": outcome.picture,
         "left_out": outcome.left_out,
@@ -90,12 +97,12 @@ def _plain(outcome: Outcome) -> dict[str, Any]:
     }
 
 
-def _outcome(number: str, plain: Mapping[str, Any]) -> Outcome:
+def _outcome(number: str, plain: Mapping[str, Any]) -> ExperimentOutcome:
     samples: Samples = {
         Line(group, method): {name: _values(several) for name, several in values.items()}
         for group, method, values in plain["samples"]
     }
-    return Outcome(
+    return ExperimentOutcome(
         EXPERIMENTS[number],
         samples,
         plain["picture"],

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.people.appearance.textures import Mesh, Paint, Sheet, Soft, blob
+from peopleboy.sim.people.appearance.textures import FabricSheet, Mesh, Paint, Soft, blob
 from peopleboy.sim.people.appearance.traits import Traits
 from peopleboy.sim.people.body.clothes import Garment
 
@@ -51,7 +51,7 @@ class Worn:
     under_c: float
 
 
-def paint_cloth(mesh: Mesh, sheet: Sheet, worn: Worn) -> Paint:
+def paint_cloth(mesh: Mesh, sheet: FabricSheet, worn: Worn) -> Paint:
     """Paint the folds of a garment; its mean temperature stays."""
     paint = Paint(mesh)
     touch = np.tanh(0.8 * sheet.touch + 1.5 * _hang(worn.part, worn.outward, mesh))
@@ -202,7 +202,7 @@ def _add_straps(paint: Paint, worn: Worn, traits: Traits, at: _Surface) -> None:
         paint.lay(at.is_front * _EDGE.within(outwards, -0.022, 0.022), kelvin=kelvin, light=0.3)
 
 
-def paint_shoes(mesh: Mesh, sheet: Sheet, worn: Worn) -> Paint:
+def paint_shoes(mesh: Mesh, sheet: FabricSheet, worn: Worn) -> Paint:
     """Paint a shoe: warm at the ankle, cool at the sole and the toes."""
     paint = Paint(mesh)
     share = np.clip((worn.cloth_c - worn.air_c) / 6.0, -0.3, 1.3)

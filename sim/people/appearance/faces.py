@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.people.appearance.textures import Mesh, Paint, Sheet, Soft, blob, streaks
+from peopleboy.sim.people.appearance.textures import FabricSheet, Mesh, Paint, Soft, blob, streaks
 from peopleboy.sim.people.appearance.traits import Traits
 from peopleboy.sim.people.body.anthropometry import CHIN_HEIGHT, EYE_HEIGHT
 from peopleboy.sim.people.body.skeleton import ATLAS_HEIGHT
@@ -124,7 +124,7 @@ def paint_hair(
     return paint
 
 
-def paint_skin(mesh: Mesh, sheet: Sheet, part: str, tip_k: float) -> Paint:
+def paint_skin(mesh: Mesh, sheet: FabricSheet, part: str, tip_k: float) -> Paint:
     """Paint bare skin: blotched, cooler towards the tips by so much [K] in all, and over joints."""
     paint = Paint(mesh)
     paint.kelvin += 0.35 * sheet.touch + tip_k * (mesh.down - 0.5)

@@ -56,7 +56,7 @@ def make_mesh(low_m: float, high_m: float, round_m: float, texel_m: float) -> Me
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sheet:
+class FabricSheet:
     """Crumpled cloth on a grid: row 0 is lowest, columns close up.
 
     Attributes:
@@ -70,7 +70,7 @@ class Sheet:
     relief: Grid
 
 
-def crumple(mesh: Mesh, fold_m: float, rng: np.random.Generator) -> Sheet:
+def crumple(mesh: Mesh, fold_m: float, rng: np.random.Generator) -> FabricSheet:
     """Draw the cloth of a grid, its folds so far apart [m], slanting across the part as they do on limbs."""
     shape = mesh.zeros.shape
     noise = [rng.standard_normal(shape) for _ in range(4)]
@@ -79,7 +79,7 @@ def crumple(mesh: Mesh, fold_m: float, rng: np.random.Generator) -> Sheet:
     folds = _unit(slanted[0] + slanted[1])
     rare = _band(noise[3], mesh.texel_m, 3.0 * fold_m, 3.0 * fold_m, 0.0)
     crease = np.exp(-((folds / 0.22) ** 2)) / (1.0 + np.exp(-4.0 * rare))
-    return Sheet(np.tanh(1.2 * touch), crease, np.clip(_unit(np.gradient(folds, axis=0)), -2.5, 2.5))
+    return FabricSheet(np.tanh(1.2 * touch), crease, np.clip(_unit(np.gradient(folds, axis=0)), -2.5, 2.5))
 
 
 def streaks(mesh: Mesh, across_m: float, along_m: float, rng: np.random.Generator) -> Grid:

@@ -20,7 +20,7 @@ from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.studies.reproductions.evaluations.playback import play
 from peopleboy.tracker.attention.attend import Focus, PersonModel, learn, middle_of, search
 from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
-from peopleboy.tracker.attention.image_sums import Sight
+from peopleboy.tracker.attention.image_sums import ImageSums
 from peopleboy.tracker.attention.part_model import check_box
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import COLOUR, THERMAL
@@ -145,16 +145,16 @@ def _search(
     learned: dict[int, PersonModel],
     counts: dict[str, list[int]],
 ) -> None:
-    sight: Sight | None = None
+    sight: ImageSums | None = None
     for person in people:
         known = learned.get(person.id)
         if known is not None and person.visible_fraction >= PRESENT:
-            sight = sight or Sight.of(moment.image, config)
+            sight = sight or ImageSums.of(moment.image, config)
             found = counts.setdefault(str(person.id), [0, 0, 0])
             found[verdict(search(sight, known, config), person, moment.truth)] += 1
         elif known is None and can_be_learned(person, moment.image.shape):
             assert person.box is not None
-            sight = sight or Sight.of(moment.image, config)
+            sight = sight or ImageSums.of(moment.image, config)
             learned[person.id] = learn(sight, person.box, config)
 
 

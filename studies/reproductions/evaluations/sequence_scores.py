@@ -21,7 +21,7 @@ from peopleboy.scenarios.running.frame_cache import Film, film, frames_of
 from peopleboy.scenarios.scores.suite_table import count
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import COUNTED_FARTHEST_M, COUNTED_NEAREST_M
-from peopleboy.studies.reproductions.tracker_settings import Setting
+from peopleboy.studies.reproductions.tracker_settings import TrackerSetting
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.evaluation.area_metrics import (
     PaperMetrics,
@@ -78,7 +78,7 @@ def count_sequence(run: SuiteRun, cache: Path) -> Result:
     return asdict(count(shot.people(), shot.frames, rate_hz))
 
 
-def score_sequence(run: SuiteRun, cache: Path, setting: Setting, repeat: int) -> Result:
+def score_sequence(run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: int) -> Result:
     """Track a sequence with the repeat's random stream, and score all ways to deal with uncounted people."""
     shot = film(run.scenario, run.seed, cache)
     found, is_in_range = track_sequence(shot, setting.make(stream(repeat, "reproduce.tracker")))
@@ -124,7 +124,7 @@ def _is_in_range(track: Track, frame: Frame) -> bool:
     return COUNTED_NEAREST_M <= distance_m <= COUNTED_FARTHEST_M
 
 
-def measure_delay(run: SuiteRun, cache: Path, setting: Setting, repeat: int) -> Result:
+def measure_delay(run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: int) -> Result:
     """Start a tracker many times in one sequence, each time while a person is in plain view.
 
     Returns:
@@ -163,7 +163,7 @@ def plain_starts(truth: TrueBoxes) -> Iterator[int]:
             following = start + EVERY
 
 
-def score_causes(run: SuiteRun, cache: Path, setting: Setting, repeat: int) -> Result:
+def score_causes(run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: int) -> Result:
     """Track a sequence as `score_sequence` does, and score it with each cause of errors set aside."""
     shot = film(run.scenario, run.seed, cache)
     found, _ = track_sequence(shot, setting.make(stream(repeat, "reproduce.tracker")))

@@ -16,7 +16,7 @@ from peopleboy.studies.reproductions.evaluations import sequence_scores as score
 from peopleboy.studies.reproductions.experiment import Jackknife, Line, Samples, Values
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.statistics import PAPER, THESIS
-from peopleboy.studies.reproductions.tracker_settings import Changes, Setting, Value
+from peopleboy.studies.reproductions.tracker_settings import Changes, TrackerSetting, Value
 from peopleboy.studies.reproductions.units import Measurement, Unit
 from peopleboy.tracker.evaluation.mot_metrics import Sums
 
@@ -63,7 +63,7 @@ class TrackerTrial:
     """
 
     line: Line
-    setting: Setting
+    setting: TrackerSetting
     suites: tuple[str, ...]
     rule: str
 
@@ -104,7 +104,9 @@ def trials(
             tracker = base if isinstance(base, Mapping) else {"base": base}
             seen = tuple(tracker.get("suites") or own.get("suites") or suites)
             for more, rule in (rules or {"": "ignore"}).items():
-                yield TrackerTrial(Line(group, name + more), Setting(tracker["base"], changes), seen, rule)
+                yield TrackerTrial(
+                    Line(group, name + more), TrackerSetting(tracker["base"], changes), seen, rule
+                )
 
 
 def _changes(values: Mapping[str, Any]) -> Changes:
@@ -227,7 +229,9 @@ def sequence_units(trial: TrackerTrial, plan: Plan, repeat: int, work: str = "tr
     return [sequence_unit(run, plan.cache, trial.setting, repeat, work) for run in plan.runs(trial.suites)]
 
 
-def sequence_unit(run: SuiteRun, cache: Path, setting: Setting, repeat: int, work: str = "track") -> Unit:
+def sequence_unit(
+    run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: int, work: str = "track"
+) -> Unit:
     """Run a tracker on one sequence, for one kind of `WORK`."""
     key = f"{work} {_run_key(run)} | {setting.key} | {repeat}"
     return Unit(key, WORK[work], (run, cache, setting, repeat))

@@ -33,8 +33,8 @@ from peopleboy.studies.reproductions.evaluations.scene_scores import (
 from peopleboy.studies.reproductions.pictures.canvas import canvas, frame_box, label, show_image
 from peopleboy.tracker.attention.attend import PersonModel, attention_map, learn, search
 from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
-from peopleboy.tracker.attention.image_sums import Sight
-from peopleboy.tracker.attention.part_model import HEAD, TORSO, Part
+from peopleboy.tracker.attention.image_sums import ImageSums
+from peopleboy.tracker.attention.part_model import HEAD, TORSO, ModelPart
 from peopleboy.tracker.track import Box
 
 Floats = NDArray[np.float64]
@@ -221,9 +221,9 @@ class LearnedFilm:
         assert self.person.box is not None  # it can be learned
         return self.person.box
 
-    def learned(self, config: AttentionConfig) -> tuple[Sight, PersonModel]:
+    def learned(self, config: AttentionConfig) -> tuple[ImageSums, PersonModel]:
         """Learn the person, and give what was seen, too."""
-        sight = Sight.of(self.moment.image, config)
+        sight = ImageSums.of(self.moment.image, config)
         return sight, learn(sight, self.box, config)
 
 
@@ -279,7 +279,7 @@ def draw_focus_paths() -> Figure:
         sight, look = film.learned(_ALONE)
         _show_maps([above], [search(sight, look, _ALONE).scores], [f"score, {film.person.name}"])
         _show_colour(below, film.later[-1], "way of the focus")
-        places = [search(Sight.of(one.image, _ALONE), look, _ALONE).place for one in film.later]
+        places = [search(ImageSums.of(one.image, _ALONE), look, _ALONE).place for one in film.later]
         below.plot(*np.array(places).T, "-", color=_FOUND, linewidth=1.0)
         below.plot(*places[-1], "+", color=_LEARNED, markersize=9, markeredgewidth=1.8)
     return page
@@ -292,7 +292,7 @@ def draw_examples() -> Figure:
     shown = film.later[1:11:2]
     page = canvas(7.0)
     for (image, *column), moment in zip(page.subplots(5, len(shown)).T, shown, strict=True):
-        focus = search(Sight.of(moment.image, config), look, config)
+        focus = search(ImageSums.of(moment.image, config), look, config)
         head, torso = focus.parts
         maps = (head.features, torso.features, torso.patterns, focus.scores)
         _show_maps(column, maps, ("face", "torso", "patterns", "person"))
@@ -301,7 +301,7 @@ def draw_examples() -> Figure:
     return page
 
 
-def _part_box(part: Part, box: Box) -> Box:
+def _part_box(part: ModelPart, box: Box) -> Box:
     left, top, width, height = box
     wide = part.width * height
     return left + (width - wide) / 2.0, top + part.top * height, wide, part.height * height

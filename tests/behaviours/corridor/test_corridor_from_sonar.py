@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from peopleboy.behaviours.corridor.corridor_from_sonar import corridor_from_sonar, mounts
 from peopleboy.behaviours.corridor.corridor_geometry import Corridor, Unknown, blend, drive_on
-from peopleboy.behaviours.dead_reckoning import Motion
+from peopleboy.behaviours.dead_reckoning import RobotMotion
 from tests.helpers.images.drawn_corridors import percept_of, sonar_in_corridor
 from tests.helpers.percepts.toy_world import SONAR_ANGLE, SONAR_X, SONAR_Y
 
@@ -72,7 +72,7 @@ def test_where_nothing_is_heard_no_corridor_is_told_and_why(reading):
 
 def test_dead_reckoning_follows_the_arc_and_blending_goes_a_share_of_the_way():
     start = Corridor(offset_m=0.1, heading_rad=0.0, width_m=3.0)
-    turned = drive_on(start, Motion(1.0, 0.2, 1.0))
+    turned = drive_on(start, RobotMotion(1.0, 0.2, 1.0))
     assert turned.offset_m == pytest.approx(0.1 + (1.0 - math.cos(0.2)) / 0.2, abs=1e-3)  # a circle's
     assert turned.heading_rad == 0.2
     assert blend(start, dataclasses.replace(start, offset_m=0.5), 0.25).offset_m == pytest.approx(0.2)

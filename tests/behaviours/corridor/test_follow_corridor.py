@@ -5,7 +5,7 @@ import pytest
 
 from peopleboy.behaviours.corridor.corridor_from_sonar import EndConfig, open_room, wall_ahead
 from peopleboy.behaviours.corridor.corridor_geometry import Corridor, LaneConfig, best_lane
-from peopleboy.behaviours.corridor.follow_corridor import CorridorConfig, FollowCorridor
+from peopleboy.behaviours.corridor.follow_corridor import FollowCorridor, FollowCorridorConfig
 from peopleboy.behaviours.registry import make_behaviour
 from tests.helpers.images.drawn_corridors import CAMERA, drawn_corridor, percept_of, sonar_in_corridor
 from tests.helpers.percepts.toy_world import SONAR_ANGLE, Toy, drive, wall
@@ -131,7 +131,7 @@ def test_the_robot_turns_into_the_side_that_is_open():
 
 
 def test_in_the_dark_the_sonars_take_over_and_the_reason_says_so():
-    behaviour = FollowCorridor(CorridorConfig(sense="image", camera=CAMERA))
+    behaviour = FollowCorridor(FollowCorridorConfig(sense="image", camera=CAMERA))
     ranges = sonar_in_corridor(0.4, 0.0, 3.0)
     behaviour.command(percept_of(ranges, 1.0, images={"colour": drawn_corridor(0.2, 0.0, 3.0)}))
     assert behaviour.mode == "corridor"

@@ -5,12 +5,12 @@ import dataclasses
 import numpy as np
 
 from peopleboy.behaviours.behaviour import STOP
-from peopleboy.behaviours.following.avoidance import RoomConfig, is_somebody_near, is_way_out
+from peopleboy.behaviours.following.avoidance import ClearanceConfig, is_somebody_near, is_way_out
 from peopleboy.behaviours.following.follow_person import FollowConfig, FollowState, follow
 from tests.helpers.percepts.percepts import free, percept, person
 from tests.helpers.percepts.toy_world import STEP_S
 
-CONFIG, ROOM = FollowConfig(), RoomConfig()
+CONFIG, ROOM = FollowConfig(), ClearanceConfig()
 
 
 def play(state, from_s, seconds, *people, **changes):

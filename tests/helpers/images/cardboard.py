@@ -23,7 +23,7 @@ from peopleboy.tracker.panoramic.people.figure_patch import (
     UP,
     FigureMap,
 )
-from peopleboy.tracker.panoramic.people.panorama_patches import Scene
+from peopleboy.tracker.panoramic.people.panorama_patches import PanoramaScene
 from peopleboy.tracker.panoramic.people.place_model import Sightings
 from tests.helpers.images.as_taken import as_taken
 
@@ -70,11 +70,11 @@ def panorama(people: Sequence[Cardboard] = (), light: float = 1.0) -> NDArray[np
     return as_taken(np.rint(image * light).astype(np.uint8))
 
 
-def scene_of(people: Sequence[Cardboard], columns: int = 0) -> Scene:
+def scene_of(people: Sequence[Cardboard], columns: int = 0) -> PanoramaScene:
     """A scene in which nobody has been found yet, turned by so many columns."""
     image = as_taken(np.roll(panorama(people), columns, axis=1))
     shown = is_cardboard(image)
-    return Scene.of(image, shown, shown, CAMERA)
+    return PanoramaScene.of(image, shown, shown, CAMERA)
 
 
 def is_cardboard(image: NDArray[np.uint8]) -> NDArray[np.float32]:

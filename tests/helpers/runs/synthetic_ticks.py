@@ -13,12 +13,12 @@ from peopleboy.behaviours.behaviour import Command
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.loop.run_events import LogLine
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.truth.truth import Owners, PersonTruth, Truth
+from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanation, Ellipse
 from peopleboy.tracker.contour.particles import Particles
 from peopleboy.tracker.contour.variants import CONTOUR

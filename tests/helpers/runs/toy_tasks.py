@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.store import Result, Store
 from peopleboy.scenarios.running.engine.task import Task, Tell, Workers
+from peopleboy.scenarios.running.engine.work_through import work_through
 
 _KEPT: list[bytes] = []
 

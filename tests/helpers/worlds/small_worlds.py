@@ -4,7 +4,6 @@ import math
 from functools import cache
 
 from peopleboy.sim.cameras.camera_config import ColourConfig, ThermalConfig
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.place import Fixture, Place
@@ -12,6 +11,7 @@ from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig, SonarConfig
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import Part, Shape, ShapeKind
+from peopleboy.sim.world_config import WorldConfig
 
 SMALL = Pinhole(width=160, height=120)
 EXACT_SONAR = SonarConfig(noise_m=0.0, drop_out=0.0)

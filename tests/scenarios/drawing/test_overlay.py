@@ -22,7 +22,7 @@ from peopleboy.scenarios.drawing.overlay import (
 )
 from peopleboy.scenarios.drawing.palette import TRUTH, track_colour
 from peopleboy.tracker.contour.measurement.section_evidence import outline
-from peopleboy.tracker.fusion.explanations import BothExplanations
+from peopleboy.tracker.fusion.fused_explanations import BothExplanations
 from peopleboy.tracker.track import Status
 from tests.helpers.runs import synthetic_ticks as made
 

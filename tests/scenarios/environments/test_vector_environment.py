@@ -12,7 +12,7 @@ from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.step_results import join_infos
 from peopleboy.scenarios.environments.vector_environment import PeopleBoyVectorEnv
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.sim.batch.cameras import WorkerPool
+from peopleboy.sim.batch.batch_cameras import WorkerPool
 from peopleboy.sim.batch.world_batch import WorldBatch
 from peopleboy.sim.world import World
 from tests.helpers.some_of import some_of

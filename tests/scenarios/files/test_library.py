@@ -15,8 +15,8 @@ from peopleboy.scenarios.files.robot import RobotSpec
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.scenario_file import json_schema, to_data
 from peopleboy.settings import settings_of
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.walking.walker import timetable
+from peopleboy.sim.world_config import WorldConfig
 from tests.helpers.calls.refused import refused
 from tests.helpers.some_of import some_of
 

@@ -15,10 +15,10 @@ from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.track_footage import pictures_a_second, track_footage
 from peopleboy.tracker.evaluation.table import NEED_EVERYBODY
 from peopleboy.tracker.footage.box_kinds import TORSO_PER_HEIGHT, WHOLE_PER_HEIGHT, BoxKind
+from peopleboy.tracker.footage.footage_truth import find_truth, load_truth
 from peopleboy.tracker.footage.grey import AutomaticGrey, Radiometry, grey_maker, parse_scale
+from peopleboy.tracker.footage.image_sequences import open_footage
 from peopleboy.tracker.footage.picture_names import natural_order
-from peopleboy.tracker.footage.pictures import open_footage
-from peopleboy.tracker.footage.truth_files import find_truth, load_truth
 from tests.helpers.calls.footage_calls import call, refusal
 from tests.helpers.calls.refused import assert_names, refused
 from tests.helpers.images.footage_files import SIZE, box, walker, write_counts, write_folder, write_video

@@ -28,9 +28,9 @@ from peopleboy.scenarios.recording.sketches import (
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.tracker.attention.people.attentive_explanation import Attended, AttentiveExplanation
-from peopleboy.tracker.attention.people.views import View
+from peopleboy.tracker.attention.people.person_views import PersonView
 from peopleboy.tracker.frame import COLOUR
-from peopleboy.tracker.fusion.explanations import BothExplanations
+from peopleboy.tracker.fusion.fused_explanations import BothExplanations
 from peopleboy.tracker.panoramic.paper.depth_cues import measure
 from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
 from peopleboy.tracker.track import FloorPlace
@@ -168,7 +168,7 @@ def test_of_other_explanations_no_sketch_is_drawn() -> None:
 def test_of_attention_the_focus_and_the_score_of_every_place_are_drawn() -> None:
     image = np.full((240, 320, 3), (120, 125, 130), np.uint8)
     image[60:210, 100:160] = (200, 40, 40)
-    attended = Attended.learned(2, View(COLOUR, image, (100.0, 60.0, 60.0, 150.0)))
+    attended = Attended.learned(2, PersonView(COLOUR, image, (100.0, 60.0, 60.0, 150.0)))
     sketch = draw_explained_sketches(AttentiveExplanation(None, {}, attended), [], {})[COLOUR]
     assert sketch.background is not None
     assert sketch.background.shape == (240, 320)

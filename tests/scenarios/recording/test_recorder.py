@@ -21,9 +21,9 @@ from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.recording.recording_file import pack
 from peopleboy.scenarios.recording.rows import PIXEL_STEP
 from peopleboy.sim.cameras.kinds import colour_from_thermal
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
+from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.contour.measurement.section_evidence import section_lines
 from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.trackers import make_tracker

@@ -1,5 +1,5 @@
 from peopleboy.scenarios.run_folder.run_tables import COLUMNS, TRACKS, explained, read_explanation, track_rows
-from peopleboy.tracker.fusion.explanations import BothExplanations
+from peopleboy.tracker.fusion.fused_explanations import BothExplanations
 from tests.helpers.runs import synthetic_ticks as made
 
 

@@ -16,10 +16,10 @@ from peopleboy.sim.cameras.camera_config import COLOUR_BASELINE_M, CameraConfig,
 from peopleboy.sim.cameras.imaging.noise import gaussian, skip_gaussian
 from peopleboy.sim.cameras.kinds import KINDS, CameraKind, affine_between, image_folders
 from peopleboy.sim.cameras.sensors import CameraView
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose, transform
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
+from peopleboy.sim.world_config import WorldConfig
 from tests.helpers.worlds.small_worlds import SMALL, config, person, robot
 
 

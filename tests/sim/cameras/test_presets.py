@@ -22,12 +22,12 @@ from peopleboy.sim.cameras.depth import (
 from peopleboy.sim.cameras.imaging.surfaces import make_material_table
 from peopleboy.sim.cameras.kinds import image_names
 from peopleboy.sim.cameras.presets import DEPTH_PRESETS
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.world import World
+from peopleboy.sim.world_config import WorldConfig
 
 
 def flat(depth_m: float, shape: tuple[int, int]) -> View:

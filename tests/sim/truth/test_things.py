@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.people.person import PersonConfig, Waypoint
 from peopleboy.sim.places.furniture.build_thing import build_thing
 from peopleboy.sim.places.furniture.thing_config import ThingConfig
@@ -17,6 +16,7 @@ from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.backgrounds import Backgrounds
 from peopleboy.sim.truth.events import STANDS_S, ThingLog
 from peopleboy.sim.world import World
+from peopleboy.sim.world_config import WorldConfig
 from tests.helpers.calls.refused import refused
 
 AT = (3.5, 0.8)

@@ -12,7 +12,7 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.studies.reproductions.catalogue import EXPERIMENTS, PAPERS, choose, paper_of, read_source
 from peopleboy.studies.reproductions.experiments.tracking import TrackerTrial, sequence_units
 from peopleboy.studies.reproductions.plan import full_plan
-from peopleboy.studies.reproductions.tracker_settings import BASES, Setting, changed
+from peopleboy.studies.reproductions.tracker_settings import BASES, TrackerSetting, changed
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import refused
 from tests.helpers.made_up_results import declaration, trials_of
@@ -111,14 +111,14 @@ def test_every_setting_of_every_experiment_makes_a_tracker() -> None:
 
 
 def test_a_change_reaches_its_place_and_nothing_else() -> None:
-    config = Setting("contour", (("person.count", 300),)).config()
+    config = TrackerSetting("contour", (("person.count", 300),)).config()
     assert config.person.count == 300
     assert changed(config, "person.count", BASES["contour"].person.count) == BASES["contour"]
 
 
 def test_a_setting_that_does_not_exist_is_refused() -> None:
     with refused("'counts'", "count, "):
-        Setting("thesis-thermal", (("person.counts", 300),)).config()
+        TrackerSetting("thesis-thermal", (("person.counts", 300),)).config()
 
 
 @pytest.mark.parametrize("trial", READINGS, ids=lambda trial: trial.line.group)

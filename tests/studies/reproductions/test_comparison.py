@@ -5,7 +5,7 @@ import pytest
 
 from peopleboy.studies.reproductions.catalogue import EXPERIMENTS
 from peopleboy.studies.reproductions.comparison import ClaimStatus, Standing, compare, judge
-from peopleboy.studies.reproductions.experiment import Claim, Experiment, Line, Outcome
+from peopleboy.studies.reproductions.experiment import Claim, Experiment, ExperimentOutcome, Line
 from peopleboy.studies.reproductions.page import below_source, section
 from tests.helpers.made_up_results import DRIVES, MadeUp, made_up
 from tests.helpers.some_of import some_of
@@ -84,7 +84,7 @@ def test_what_the_default_does_not_reach_is_listed_once_for_sure_or_not() -> Non
         for group, more in (("1000", 0.0), ("2000", 10.0))
         for who, figure in ((who, figure + more) for who, figure in figures.items())
     }
-    part = section(Outcome(EXPERIMENTS["figure-5.5a"], samples))
+    part = section(ExperimentOutcome(EXPERIMENTS["figure-5.5a"], samples))
     found = [
         (number, one.group, one.method, one.standing.value) for number, one in below_source([part, part])
     ]
@@ -100,7 +100,7 @@ def test_what_the_default_does_not_reach_is_listed_once_for_sure_or_not() -> Non
     "number", some_of([one for one in EXPERIMENTS if one.startswith("situation-figure")], 4)
 )
 def test_figures_of_drives_are_drawn(number: str) -> None:
-    found = Outcome.of(EXPERIMENTS[number], DRIVES, MadeUp())
+    found = ExperimentOutcome.of(EXPERIMENTS[number], DRIVES, MadeUp())
     assert str(found.picture).startswith("data:image/png;base64,")
 
 

@@ -13,7 +13,7 @@ from docs.generate.sources.source_run import SourceRun
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.studies.reproductions.catalogue import EXPERIMENTS, choose
 from peopleboy.studies.reproductions.evaluations.sequence_scores import RECORDS
-from peopleboy.studies.reproductions.experiment import Jackknife, Line, Outcome
+from peopleboy.studies.reproductions.experiment import ExperimentOutcome, Jackknife, Line
 from peopleboy.studies.reproductions.experiments.tracking import count_unit, sequence_units
 from peopleboy.studies.reproductions.page import PageHead, page_text, section, write_page
 from peopleboy.studies.reproductions.plan import full_plan
@@ -60,7 +60,9 @@ def read(page: Path) -> tuple[str, Addresses]:
 
 @pytest.mark.thorough
 def test_the_page_holds_everything_and_fetches_nothing(tmp_path: Path) -> None:
-    results = [section(Outcome(one, made_up(one), PICTURE.get(one.id))) for one in EXPERIMENTS.values()]
+    results = [
+        section(ExperimentOutcome(one, made_up(one), PICTURE.get(one.id))) for one in EXPERIMENTS.values()
+    ]
     about = PageHead(command="peopleboy reproduce", is_quick=True, amount="Little.", facts={"Python": "3"})
     write_page(tmp_path / "index.html", results, about)
     text, addresses = read(tmp_path / "index.html")
@@ -76,7 +78,7 @@ def test_the_page_holds_everything_and_fetches_nothing(tmp_path: Path) -> None:
 
 def test_a_page_of_four_sections_reads_as_it_did(tmp_path: Path) -> None:
     chosen = choose(["figure-4.8", "figure-4.9b", "panoramic-position", "panoramic-figure-1"])
-    results = [section(Outcome(one, made_up(one), PICTURE.get(one.id))) for one in chosen]
+    results = [section(ExperimentOutcome(one, made_up(one), PICTURE.get(one.id))) for one in chosen]
     about = PageHead(command="peopleboy reproduce", is_quick=True, amount="Little.", facts={"Python": "3"})
     write_page(tmp_path / "page.html", results, about)
     assert_reads_as(tmp_path / "page.html", Path(__file__).with_name("page_of_four_sections.txt"))
@@ -84,7 +86,7 @@ def test_a_page_of_four_sections_reads_as_it_did(tmp_path: Path) -> None:
 
 def test_sections_are_printed_with_both_figures_and_both_tests(capsys: pytest.CaptureFixture[str]) -> None:
     (position,) = choose(["panoramic-position"])
-    print_sections([section(Outcome(position, made_up(position)))])
+    print_sections([section(ExperimentOutcome(position, made_up(position)))])
     told = capsys.readouterr().out
     for words in (
         "0.154 ± 0.094",
@@ -129,7 +131,7 @@ def test_a_sweep_of_one_repeat_keeps_what_each_film_does_through_the_shipped_run
     found = samples[Line("100", "default")]["CR"]
     assert isinstance(found, Jackknife)
     np.testing.assert_allclose(found.by_sequence, 90.0 - np.arange(10))
-    outcome = Outcome(SWEEP, samples)
+    outcome = ExperimentOutcome(SWEEP, samples)
     assert (outcome.repeats, outcome.sequences) == (1, 10)
     head = PageHead(command="peopleboy reproduce", is_quick=False, amount="All.", facts={})
     SourceRun(head, (outcome,)).write(tmp_path)

@@ -43,7 +43,7 @@ from peopleboy.studies.reproductions.experiments.tracking import (
     sequence_unit,
 )
 from peopleboy.studies.reproductions.plan import Plan
-from peopleboy.studies.reproductions.tracker_settings import Setting
+from peopleboy.studies.reproductions.tracker_settings import TrackerSetting
 from peopleboy.studies.reproductions.units import Measurement, Unfinished
 from peopleboy.tracker.evaluation.area_metrics import PaperMetrics
 from peopleboy.tracker.evaluation.evaluate import evaluate
@@ -65,7 +65,7 @@ def measured(measure: Callable[[Measurement], Samples], plan: Plan) -> tuple[Sam
 
 def test_a_unit_gives_the_same_result_again_and_its_sums_come_back(tmp_path: Path) -> None:
     play = SuiteRun(load_scenario("crossing_pair").lasting(1.0), 0)
-    unit = sequence_unit(play, tmp_path, Setting("contour"), 1)
+    unit = sequence_unit(play, tmp_path, TrackerSetting("contour"), 1)
     one = unit.run()
     assert one == unit.run()
     restored_paper = restored(PaperMetrics, one["ignore"]["paper"])
@@ -176,7 +176,7 @@ class Late:
 
 
 @dataclass(frozen=True, slots=True)
-class LateSetting(Setting):
+class LateSetting(TrackerSetting):
     """Makes trackers that know the truth, from the third frame on."""
 
     films: Path = Path()
@@ -200,7 +200,7 @@ def test_frames_are_counted_from_the_start_to_the_first_that_is_claimed(films: P
 
 @pytest.mark.slow
 def test_a_blind_tracker_finds_nobody(films: Path) -> None:
-    blind = Setting("contour", (("life.birth_frames", 99), ("search.clear_frames", 99)))
+    blind = TrackerSetting("contour", (("life.birth_frames", 99), ("search.clear_frames", 99)))
     result = measure_delay(STANDING, films, blind, 0)
     assert result["starts"] >= 3
     assert result["needed"] == []
@@ -212,7 +212,7 @@ def test_means_are_over_all_starts() -> None:
     done = {count_unit(STANDING, plan.cache).key: Result()}
     for base, needed in (("contour", [3, 3, 3]), ("contour-thermal", [])):
         for repeat in range(2):
-            unit = sequence_unit(STANDING, plan.cache, Setting(base), repeat, "delay")
+            unit = sequence_unit(STANDING, plan.cache, TrackerSetting(base), repeat, "delay")
             done[unit.key] = {"starts": 3, "needed": needed}
     samples = delay(Measurement(plan, done), groups={"dataset1": {"suites": ["dataset1"]}}, trackers=trackers)
     values = samples[Line("dataset1", "late")]
@@ -273,7 +273,10 @@ def test_who_comes_anew_has_yet_to_be_found() -> None:
 
 @pytest.mark.slow
 def test_usual_and_strict_figures_are_those_of_the_other_parts(tmp_path: Path) -> None:
-    setting, plan = Setting("contour"), Plan(cache=tmp_path, suites={"dataset1": (PASSING,)}, repeats=1)
+    setting, plan = (
+        TrackerSetting("contour"),
+        Plan(cache=tmp_path, suites={"dataset1": (PASSING,)}, repeats=1),
+    )
     declared = {"trackers": {"default": "contour"}, "groups": {"one person": {"suites": ["dataset1"]}}}
     samples, done = measured(partial(causes, **declared), plan)
     found = done[sequence_unit(PASSING, tmp_path, setting, 0, "causes").key]

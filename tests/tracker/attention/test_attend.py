@@ -5,7 +5,7 @@ import pytest
 
 from peopleboy.tracker.attention.attend import learn, middle_of, relearn, search
 from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
-from peopleboy.tracker.attention.image_sums import Sight
+from peopleboy.tracker.attention.image_sums import ImageSums
 from peopleboy.tracker.attention.part_model import TORSO
 from tests.helpers.calls.refused import refused
 
@@ -40,15 +40,15 @@ def is_on(place, left, top, height):
 
 @pytest.mark.parametrize("config", WAYS)
 def test_the_focus_is_on_who_was_learned_wherever_that_one_is(config):
-    model = learn(Sight.of(FIRST, config), BOX, config)
-    focus = search(Sight.of(LATER, config), model, config)
+    model = learn(ImageSums.of(FIRST, config), BOX, config)
+    focus = search(ImageSums.of(LATER, config), model, config)
     assert is_on(focus.place, 220, 70, 120)
     assert 0.0 <= focus.second <= focus.score <= 1.0
 
 
 def test_who_is_nearer_now_is_found_at_another_size():
-    model = learn(Sight.of(FIRST, DEFAULT), BOX, DEFAULT)
-    focus = search(Sight.of(scene((140, 50, 150, RED), seed=2), DEFAULT), model, DEFAULT)
+    model = learn(ImageSums.of(FIRST, DEFAULT), BOX, DEFAULT)
+    focus = search(ImageSums.of(scene((140, 50, 150, RED), seed=2), DEFAULT), model, DEFAULT)
     assert is_on(focus.place, 140, 50, 150)
 
 
@@ -56,8 +56,10 @@ def test_the_default_score_is_absolute_and_the_printed_one_is_not():
     nobody = scene((200, 60, 120, GREEN), seed=3)
     scores = {}
     for config in (DEFAULT, PRINTED):
-        model = learn(Sight.of(FIRST, config), BOX, config)
-        scores[config] = [search(Sight.of(image, config), model, config).score for image in (LATER, nobody)]
+        model = learn(ImageSums.of(FIRST, config), BOX, config)
+        scores[config] = [
+            search(ImageSums.of(image, config), model, config).score for image in (LATER, nobody)
+        ]
     there, away = scores[DEFAULT]
     assert away < 0.5 * there
     there, away = scores[PRINTED]
@@ -65,17 +67,17 @@ def test_the_default_score_is_absolute_and_the_printed_one_is_not():
 
 
 def test_what_excites_and_what_inhibits_add_up_to_all_and_means_do_not_depend_on_the_size_of_the_box():
-    flat = Sight.of(np.full((*SIZE, 3), 100, np.uint8), MEANS)
+    flat = ImageSums.of(np.full((*SIZE, 3), 100, np.uint8), MEANS)
     torso = dict(learn(flat, BOX, MEANS).parts)[TORSO]
     assert np.allclose(torso.excites + torso.inhibits, 1.0)
     bright = 8
     assert torso.excites[bright] == pytest.approx(0.5)
-    sums = dict(learn(Sight.of(flat.image, PRINTED), BOX, PRINTED).parts)[TORSO]
+    sums = dict(learn(ImageSums.of(flat.image, PRINTED), BOX, PRINTED).parts)[TORSO]
     assert sums.excites[bright] < 0.02
 
 
 def test_pixels_behind_the_person_are_no_part_of_what_is_learned():
-    sight = Sight.of(FIRST, DEFAULT)
+    sight = ImageSums.of(FIRST, DEFAULT)
     aside, near = (50.0, 60.0, 36.0, 120.0), np.ones(SIZE, np.bool_)
     near[:, :66] = False
     whole, part = (dict(learn(sight, aside, DEFAULT, mask).parts)[TORSO] for mask in (None, near))
@@ -84,7 +86,7 @@ def test_pixels_behind_the_person_are_no_part_of_what_is_learned():
 
 def test_little_is_learned_anew_and_only_of_a_sure_and_single_place():
     config = AttentionConfig(least=0.2, ahead=0.01)
-    first, later = Sight.of(FIRST, config), Sight.of(LATER, config)
+    first, later = ImageSums.of(FIRST, config), ImageSums.of(LATER, config)
     model = learn(first, BOX, config)
     focus = search(later, model, config)
     new = learn(later, focus.box, config).parts[1][1].mean
@@ -98,7 +100,7 @@ def test_little_is_learned_anew_and_only_of_a_sure_and_single_place():
 )
 def test_a_box_that_is_not_in_the_image_is_refused_in_one_line(box):
     with refused("head and torso of box", "must be inside the image, 320 x 240"):
-        learn(Sight.of(FIRST, DEFAULT), box, DEFAULT)
+        learn(ImageSums.of(FIRST, DEFAULT), box, DEFAULT)
 
 
 def test_the_middle_of_a_person_is_that_of_its_torso():

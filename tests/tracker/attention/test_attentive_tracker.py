@@ -8,8 +8,8 @@ import pytest
 from peopleboy.tracker.attention.attention_config import PRINTED
 from peopleboy.tracker.attention.people.attentive_config import AS_FOUND, AttentiveConfig
 from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
+from peopleboy.tracker.attention.people.person_views import PersonView, box_in
 from peopleboy.tracker.attention.people.recogniser import ByColour, ByFocus, ColourLook
-from peopleboy.tracker.attention.people.views import View, box_in
 from peopleboy.tracker.frame import COLOUR, PANORAMA, THERMAL, Frame, PinholeCalibration
 from peopleboy.tracker.track import FloorPlace, Status, Track
 from peopleboy.tracker.trackers import TRACKERS, knows_again, make_tracker
@@ -123,7 +123,7 @@ def test_the_explanation_names_the_one_who_was_learned_first_and_finds_that_one(
 def test_looks_are_the_same_in_any_light_and_others_in_other_colours():
     def model(colour, light=1.0):
         image = (scene((60, 60, 120, colour)) * light).astype(np.uint8)
-        return ColourLook.of(View(COLOUR, image, (60.0, 60.0, 36.0, 120.0)))
+        return ColourLook.of(PersonView(COLOUR, image, (60.0, 60.0, 36.0, 120.0)))
 
     red, green = model(RED), model(GREEN)
     assert red.likeness(red) == pytest.approx(1.0)

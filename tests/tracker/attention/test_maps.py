@@ -15,7 +15,7 @@ from peopleboy.tracker.attention.feature_maps import (
     basic_maps,
     feature_maps,
 )
-from peopleboy.tracker.attention.image_sums import BINS, Sight, patterns
+from peopleboy.tracker.attention.image_sums import BINS, ImageSums, patterns
 from tests.helpers.calls.refused import refused
 
 RNG = np.random.default_rng(5)
@@ -100,7 +100,7 @@ def test_patterns_are_uniform_or_in_the_last_bin():
 @pytest.fixture(scope="module")
 def sight():
     image = cv2.GaussianBlur(RNG.integers(0, 256, (60, 80, 3), dtype=np.uint8), (0, 0), 2.0)
-    return Sight.of(image, AttentionConfig(surround=True))
+    return ImageSums.of(image, AttentionConfig(surround=True))
 
 
 def test_means_and_spreads_of_boxes_are_those_of_their_cells(sight):
@@ -142,7 +142,7 @@ def test_patterns_of_a_box_are_compared_bin_by_bin(sight):
 )
 def test_what_is_no_colour_image_is_refused(image):
     with refused("attention: image must be (H, W, 3) uint8"):
-        Sight.of(image, AttentionConfig())
+        ImageSums.of(image, AttentionConfig())
 
 
 def test_settings_that_make_no_sense_are_refused():

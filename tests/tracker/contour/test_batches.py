@@ -5,9 +5,9 @@ import pytest
 
 from peopleboy.tracker.contour.appearance.appearance_model import AppearanceView
 from peopleboy.tracker.contour.appearance.colour_view import ColourView
-from peopleboy.tracker.contour.colour_config import FAR_AFFINE, ROBOT_PARALLAX, ColourConfig
+from peopleboy.tracker.contour.colour_config import FAR_AFFINE, ROBOT_PARALLAX, ColourDescriptorConfig
 from peopleboy.tracker.contour.contour_config import AppearanceConfig
-from peopleboy.tracker.contour.measurement.image_kernels import twin_of
+from peopleboy.tracker.contour.measurement.clutter_kernels import twin_of
 from peopleboy.tracker.contour.measurement.likelihood import (
     COVERED,
     ContourModel,
@@ -49,7 +49,7 @@ def test_samples_are_measured_together_as_each_alone(covered: float | None) -> N
 
 
 def test_samples_are_described_together_as_each_alone() -> None:
-    config = ColourConfig(representation="moments1", affine=FAR_AFFINE, parallax=ROBOT_PARALLAX)
+    config = ColourDescriptorConfig(representation="moments1", affine=FAR_AFFINE, parallax=ROBOT_PARALLAX)
     colour = ColourView.build(RNG.integers(0, 256, (*SHAPE, 3), dtype=np.uint8), SHAPE, config)
     appearance, state = AppearanceView.build(IMAGE, colour, AppearanceConfig()), brood()
     alone = [appearance.describe(sample[None])[0] for sample in state]

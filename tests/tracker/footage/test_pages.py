@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from PIL import Image, TiffImagePlugin
 
-from peopleboy.tracker.footage.pictures import open_footage
+from peopleboy.tracker.footage.image_sequences import open_footage
 from tests.helpers.calls.footage_calls import call, refusal
 from tests.helpers.calls.refused import assert_names, refused
 from tests.helpers.images.footage_files import walker

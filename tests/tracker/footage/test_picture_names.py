@@ -3,8 +3,8 @@ from pathlib import Path
 import cv2
 import pytest
 
+from peopleboy.tracker.footage.image_sequences import open_footage
 from peopleboy.tracker.footage.picture_names import split_sequence
-from peopleboy.tracker.footage.pictures import open_footage
 from tests.helpers.calls.footage_calls import call, refusal
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.images.footage_files import walker, write_folder

@@ -14,7 +14,7 @@ from peopleboy.tracker.contour.box_interaction import standing_box
 from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.contour.variants import CONTOUR
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
-from peopleboy.tracker.fusion.explanations import BothExplanations
+from peopleboy.tracker.fusion.fused_explanations import BothExplanations
 from peopleboy.tracker.fusion.handover_tracker import (
     DOUBTFUL_S,
     FARTHEST_M,

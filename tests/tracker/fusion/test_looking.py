@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.frame import DEPTH, THERMAL, Frame
+from peopleboy.tracker.fusion.depth_visibility import depth_visibility, is_warm
 from peopleboy.tracker.fusion.guided_search import search_near
-from peopleboy.tracker.fusion.visibility import depth_visibility, is_warm
 from peopleboy.tracker.rgbd.pre_detection import HumanSize, PreDetection, PreDetector
 from peopleboy.tracker.rgbd.u_depth import UDepthConfig
 from tests.helpers.depth_scene import HEIGHT, WIDTH, Block, depth_of, make_view

@@ -9,7 +9,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.tracker.fusion.fused_person import Person, SensorTrack, initiate_person
+from peopleboy.tracker.fusion.fused_person import FusedPerson, SensorTrack, initiate_person
 from peopleboy.tracker.fusion.fused_tracker import _depth as depth_of
 from peopleboy.tracker.fusion.fused_tracker import _without as without
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
@@ -33,7 +33,7 @@ def reported(x: float, y: float, along_m: float = 0.05, **further: object) -> Se
     return SensorTrack(place_m=np.array([x, y]), error_m2=error, **given)  # type: ignore[arg-type]
 
 
-def person(x: float, y: float, **further: object) -> Person:
+def person(x: float, y: float, **further: object) -> FusedPerson:
     one = reported(x, y, **further)
     return initiate_person(1, one, 0.0).with_depth(one, 0.0, CONFIG)
 

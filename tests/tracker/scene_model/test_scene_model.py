@@ -10,7 +10,7 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import DEPTH, Frame, Odometry
-from peopleboy.tracker.scene_model.scene import Change, Happening, State, VistaScene
+from peopleboy.tracker.scene_model.scene import Change, Happening, ObjectState, VistaScene
 from peopleboy.tracker.scene_model.scene_config import PeopleMaskConfig, SceneConfig
 from peopleboy.tracker.scene_model.scene_model import SceneModel
 from tests.helpers.some_of import some_of
@@ -52,7 +52,7 @@ def test_what_somebody_puts_down_is_told_with_time_place_and_person(has_heat: bo
     assert (one.change, one.from_m, one.person) == (Change.APPEARED, None, 1)
     assert one.time_s == pytest.approx(55 / 15.0, abs=0.5)
     assert one.to_m == pytest.approx((3.5, 0.0, 0.25), abs=0.08)
-    assert [thing.state for thing in scenes[-1].objects] == [State.STANDS]
+    assert [thing.state for thing in scenes[-1].objects] == [ObjectState.STANDS]
 
 
 @pytest.mark.slow

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.attention.attend import Focus, PersonModel, learn, search
 from peopleboy.tracker.attention.attention_config import AttentionConfig
-from peopleboy.tracker.attention.image_sums import Sight
-from peopleboy.tracker.attention.people.views import View
+from peopleboy.tracker.attention.image_sums import ImageSums
+from peopleboy.tracker.attention.people.person_views import PersonView
 from peopleboy.tracker.contour.explanation import ContourExplanation
-from peopleboy.tracker.fusion.explanations import BothExplanations, FusedExplanation
+from peopleboy.tracker.fusion.fused_explanations import BothExplanations, FusedExplanation
 
 TRACKING_ATTENTION: Final = AttentionConfig(scales=(0.64, 0.8, 1.0, 1.25, 1.56))
 
@@ -37,14 +37,14 @@ class Attended:
     image: NDArray[np.uint8]
 
     @classmethod
-    def learned(cls, number: int, view: View) -> Attended:
+    def learned(cls, number: int, view: PersonView) -> Attended:
         """Learn somebody from one image."""
-        model = learn(Sight.of(view.image, TRACKING_ATTENTION), view.box, TRACKING_ATTENTION)
+        model = learn(ImageSums.of(view.image, TRACKING_ATTENTION), view.box, TRACKING_ATTENTION)
         return cls(number, view.camera, model, view.image)
 
     def focus(self) -> Focus:
         """Look for the person in the newest image, wherever tracks are; this takes some ten milliseconds."""
-        return search(Sight.of(self.image, TRACKING_ATTENTION), self.model, TRACKING_ATTENTION)
+        return search(ImageSums.of(self.image, TRACKING_ATTENTION), self.model, TRACKING_ATTENTION)
 
 
 # What the attentive tracker believes beyond its tracks.

@@ -15,8 +15,8 @@ from peopleboy.tracker.attention.people.attentive_explanation import (
     AttentiveExplanation,
     renumbered,
 )
+from peopleboy.tracker.attention.people.person_views import LOOKED_AT, check_colours, views_of
 from peopleboy.tracker.attention.people.recogniser import Appearance, Recogniser, Seen
-from peopleboy.tracker.attention.people.views import LOOKED_AT, check_colours, views_of
 from peopleboy.tracker.frame import COLOUR, Calibration, Frame
 from peopleboy.tracker.track import Status, Track
 

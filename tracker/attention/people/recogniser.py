@@ -13,9 +13,9 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.attention.attend import PersonModel, learn, relearn, search
 from peopleboy.tracker.attention.attention_config import AttentionConfig
 from peopleboy.tracker.attention.feature_maps import CELL_PX
-from peopleboy.tracker.attention.image_sums import Sight
+from peopleboy.tracker.attention.image_sums import ImageSums
 from peopleboy.tracker.attention.part_model import HEAD, TORSO, Cells, cells_of, check_box
-from peopleboy.tracker.attention.people.views import View
+from peopleboy.tracker.attention.people.person_views import PersonView
 
 # What a person's head and torso look like whatever the light: their colours over their common brightness.
 
@@ -40,7 +40,7 @@ class ColourLook:
     shares: Doubles
 
     @classmethod
-    def of(cls, view: View) -> Self | None:
+    def of(cls, view: PersonView) -> Self | None:
         """Look at a person; None where head or torso are not all in the image, or it is too dark."""
         rows, columns = (side // CELL_PX for side in view.image.shape[:2])
         parts = [cells_of(part, view.box) for part in (HEAD, TORSO)]
@@ -99,7 +99,7 @@ Seen = TypeVar("Seen")
 class Recogniser(Protocol[Appearance, Seen]):
     """Whatever tells people by their looks."""
 
-    def see(self, view: View) -> Seen | None:
+    def see(self, view: PersonView) -> Seen | None:
         """Look at somebody in one image; None where there is not enough of the person in it."""
         ...
 
@@ -115,7 +115,7 @@ class Recogniser(Protocol[Appearance, Seen]):
 class ByColour:
     """Tells people by the colours of head and torso, with the light divided out."""
 
-    def see(self, view: View) -> ColourLook | None:
+    def see(self, view: PersonView) -> ColourLook | None:
         """Look at somebody."""
         return ColourLook.of(view)
 
@@ -137,8 +137,8 @@ class Spotted:
         view: where the person is in it.
     """
 
-    sight: Sight
-    view: View
+    sight: ImageSums
+    view: PersonView
 
 
 class ByFocus:
@@ -150,16 +150,16 @@ class ByFocus:
 
     def __init__(self, config: AttentionConfig) -> None:
         self._config = config
-        self._newest: Sight | None = None
+        self._newest: ImageSums | None = None
 
-    def see(self, view: View) -> Spotted | None:
+    def see(self, view: PersonView) -> Spotted | None:
         """Look at somebody; an image is made ready once for all who are in it."""
         try:
             check_box(view.box, view.image.shape)
         except BadInput:
             return None
         if self._newest is None or self._newest.image is not view.image:
-            self._newest = Sight.of(view.image, self._config)
+            self._newest = ImageSums.of(view.image, self._config)
         return Spotted(self._newest, view)
 
     def learned(self, known: PersonModel | None, seen: Spotted, rate: float) -> PersonModel:  # noqa: ARG002

@@ -14,7 +14,7 @@ from peopleboy.tracker.contour.appearance.colour_view import LEAST_SEEN, ColourV
 from peopleboy.tracker.contour.appearance.part_means import write_part_means
 from peopleboy.tracker.contour.appearance.regions import PARTS, alignment, part_rectangle
 from peopleboy.tracker.contour.box_interaction import Regions
-from peopleboy.tracker.contour.colour_config import SAME_VIEW, ColourConfig
+from peopleboy.tracker.contour.colour_config import SAME_VIEW, ColourDescriptorConfig
 from peopleboy.tracker.contour.contour_config import AppearanceConfig
 from peopleboy.tracker.contour.particles import D, Floats, H, W, X, Y
 from peopleboy.tracker.elementary import exponential
@@ -124,7 +124,7 @@ class ColourModel:
         self.recent.setflags(write=False)
 
     @classmethod
-    def begin(cls, features: Floats, config: ColourConfig) -> ColourModel:
+    def begin(cls, features: Floats, config: ColourDescriptorConfig) -> ColourModel:
         """Start with one description (F,)."""
         return cls(np.array(features, dtype=np.float32)[None], config.frames)
 
@@ -154,7 +154,7 @@ def squared_distances(features: Floats, model: ColourModel) -> Floats:
 
 
 def likelihood(
-    features: Floats, model: ColourModel, config: ColourConfig, unseen_spread: float = math.nan
+    features: Floats, model: ColourModel, config: ColourDescriptorConfig, unseen_spread: float = math.nan
 ) -> Floats:
     """Tell how likely people (N,) with these features (N, F) are the person of the model.
 

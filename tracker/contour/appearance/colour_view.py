@@ -20,7 +20,7 @@ from peopleboy.tracker.contour.appearance.regions import (
     part_rectangles,
     pixel_bounds,
 )
-from peopleboy.tracker.contour.colour_config import REPRESENTATIONS, ColourConfig
+from peopleboy.tracker.contour.colour_config import REPRESENTATIONS, ColourDescriptorConfig
 from peopleboy.tracker.contour.particles import Floats, H
 
 # Cumulative colour histograms of regions: the slow way to describe colours, for comparison.
@@ -168,7 +168,7 @@ class ColourView:
 
     @classmethod
     def build(
-        cls, colour: NDArray[np.uint8], thermal_shape: tuple[int, int], config: ColourConfig
+        cls, colour: NDArray[np.uint8], thermal_shape: tuple[int, int], config: ColourDescriptorConfig
     ) -> ColourView:
         """Prepare an RGB image (H, W, 3) that was taken with a thermal image of `thermal_shape`."""
         picture = channels_of(colour, config)
@@ -242,7 +242,7 @@ def _inside(part: Bounds, whole: Bounds) -> Bounds:
     return np.concatenate([start, end], axis=1)
 
 
-def channels_of(colour: NDArray[np.uint8], config: ColourConfig) -> NDArray[np.uint8]:
+def channels_of(colour: NDArray[np.uint8], config: ColourDescriptorConfig) -> NDArray[np.uint8]:
     """Turn an RGB image (H, W, 3) into the channels (H, W, C) uint8 of the configured space.
 
     Hue is an angle, and its mean must not depend on where red begins: for moments, hue and saturation are

@@ -16,7 +16,7 @@ from peopleboy.tracker.contour.appearance.regions import (
     first_pixel_after,
     part_rectangle,
 )
-from peopleboy.tracker.contour.measurement.image_kernels import bodies_of
+from peopleboy.tracker.contour.measurement.clutter_kernels import bodies_of
 from peopleboy.tracker.contour.particles import D, Floats, H, W, X, Y
 
 WHITE: Final = 255.0

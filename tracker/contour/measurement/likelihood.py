@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.contour.contour_config import REFERENCE_HEIGHT_PX, ContourConfig, LikelihoodConfig
+from peopleboy.tracker.contour.measurement.clutter_kernels import differences_in, least_above
 from peopleboy.tracker.contour.measurement.contour import (
     FEET,
     GREYS,
@@ -26,7 +27,6 @@ from peopleboy.tracker.contour.measurement.contour import (
     build_response,
     section_weights,
 )
-from peopleboy.tracker.contour.measurement.image_kernels import differences_in, least_above
 from peopleboy.tracker.contour.measurement.measure_sections import (
     fill_unknown,
     locate_points,

@@ -8,8 +8,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.tracker.contour.measurement.clutter_kernels import bodies_of
 from peopleboy.tracker.contour.measurement.contour import FEET, GREYS, SECTIONS, SHOULDER_LEFT
-from peopleboy.tracker.contour.measurement.image_kernels import bodies_of
 from peopleboy.tracker.contour.particles import D, Floats, H, W, X, Y
 from peopleboy.tracker.elementary import exponential
 

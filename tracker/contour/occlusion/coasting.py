@@ -13,7 +13,7 @@ from peopleboy.tracker.contour.box_interaction import Regions, overlap_shares
 from peopleboy.tracker.contour.contour_config import MotionConfig, TrackerConfig, WalkOnConfig
 from peopleboy.tracker.contour.gallery import is_comparable, least_mismatch
 from peopleboy.tracker.contour.measurement.likelihood import body_share, head_share, probability, seen_shares
-from peopleboy.tracker.contour.occlusion.depth_order import Surroundings
+from peopleboy.tracker.contour.occlusion.depth_order import OrderContext
 from peopleboy.tracker.contour.particle_filter import Belief, FrameView
 from peopleboy.tracker.contour.particles import FOOT, VW, VX, VY, D, H, W, X, Y, equally_weighted
 from peopleboy.tracker.contour.tracked_person import (
@@ -48,7 +48,7 @@ SHOWN_S, SHOWN_LEAVING_S, SHOWN_BEHIND_S, SURE_SPREAD = 0.3, 0.5, 0.8, 0.4
 
 
 @dataclass(frozen=True, slots=True)
-class Visibility:
+class CoastingVisibility:
     """What can be seen of a person at its estimate.
 
     Attributes:
@@ -100,7 +100,7 @@ class WalkOn:
         self,
         person: TrackedPerson,
         belief: Belief,
-        surroundings: Surroundings,
+        surroundings: OrderContext,
         view: FrameView,
         rng: np.random.Generator,
     ) -> TrackedPerson:
@@ -141,7 +141,7 @@ class WalkOn:
         return replace(after, shown=moved_on(walking, view))
 
     def _supposed(
-        self, person: TrackedPerson, belief: Belief, surroundings: Surroundings, view: FrameView
+        self, person: TrackedPerson, belief: Belief, surroundings: OrderContext, view: FrameView
     ) -> NDArray[np.float64]:
         """Suppose where a hidden person is (9,): it walks on, as tall as it was, on the floor as before."""
         if surroundings.front:
@@ -202,8 +202,8 @@ class WalkOn:
 
 
 def look_at(
-    person: TrackedPerson, belief: Belief, surroundings: Surroundings, view: FrameView, config: TrackerConfig
-) -> Visibility:
+    person: TrackedPerson, belief: Belief, surroundings: OrderContext, view: FrameView, config: TrackerConfig
+) -> CoastingVisibility:
     """Judge a person by what is in view of it alone."""
     rows = belief.estimate.astype(np.float32)[None]
     head, body = _in_view(belief, surroundings, view)
@@ -217,10 +217,10 @@ def look_at(
     growth = abs(np.log(max(belief.estimate[H], 1.0) / max(person.shown[H], 1.0)))
     is_alike = growth < SIZE_GATE and not away > APPEARANCE_GATE
     is_free = not (overlap_shares(rows, surroundings.rivals, config) > CLAIMED).any()
-    return Visibility(head, body, chance, is_free, is_alike)
+    return CoastingVisibility(head, body, chance, is_free, is_alike)
 
 
-def _in_view(belief: Belief, surroundings: Surroundings, view: FrameView) -> tuple[float, float]:
+def _in_view(belief: Belief, surroundings: OrderContext, view: FrameView) -> tuple[float, float]:
     """Tell which share of a person's head, and of all of it, those in front leave in view."""
     if not surroundings.front:
         return 1.0, 1.0
@@ -228,7 +228,7 @@ def _in_view(belief: Belief, surroundings: Surroundings, view: FrameView) -> tup
     return head_share(shares), body_share(shares)
 
 
-def _is_behind(state: NDArray[np.float64], surroundings: Surroundings, view: FrameView) -> bool:
+def _is_behind(state: NDArray[np.float64], surroundings: OrderContext, view: FrameView) -> bool:
     """Tell whether people in front explain why a person with this state (9,) is not seen."""
     if not surroundings.front:
         return False

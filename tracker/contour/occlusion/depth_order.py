@@ -124,7 +124,7 @@ ORDERS: Mapping[str, Order] = {"foot": lower_foot, "appearance": likelier_front}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Surroundings:
+class OrderContext:
     """The others, as one person's filter sees them.
 
     Attributes:
@@ -163,7 +163,7 @@ def surroundings_of(
     behind: Sequence[ExpectedPerson],
     view: FrameView,
     config: TrackerConfig,
-) -> Surroundings:
+) -> OrderContext:
     """Sort the others into those who hide this person and those whom it is to keep off.
 
     Args:
@@ -186,7 +186,7 @@ def surroundings_of(
     if front:
         states = [person.belief.estimate for person in front]
         image = covered_by(image, states, config.depth.growth)
-    return Surroundings(
+    return OrderContext(
         front=front,
         others=np.array(hiding + rivals, dtype=np.float32).reshape(-1, 4),
         strength=np.array([interaction.occluded_penalty] * len(hiding) + [interaction.penalty] * len(rivals)),

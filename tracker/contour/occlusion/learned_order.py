@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from peopleboy.tracker.contour.contour_config import DepthConfig
+from peopleboy.tracker.contour.contour_config import DepthOrderConfig
 from peopleboy.tracker.contour.occlusion.depth_order import ORDERS, ExpectedPerson, Leads, Order
 from peopleboy.tracker.contour.occlusion.learned_table import TABLES, LearnedTable
 from peopleboy.tracker.contour.occlusion.pair_features import (
@@ -106,7 +106,7 @@ def shipped_order(tracker: str, *, remembers_feet: bool = True) -> LearnedOrder:
     return LearnedOrder.build(LearnedTable.load(TABLES / f"{tracker}.yaml"), remembers_feet=remembers_feet)
 
 
-def make_order(config: DepthConfig) -> Order | None:
+def make_order(config: DepthOrderConfig) -> Order | None:
     """Give the way in which a tracker compares people; None if it does not."""
     if config.order == LEARNED:
         return shipped_order(config.table, remembers_feet=config.remembers_feet)

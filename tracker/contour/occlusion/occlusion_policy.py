@@ -19,7 +19,7 @@ from peopleboy.tracker.contour.contour_config import (
 from peopleboy.tracker.contour.gallery import most_alike_and_nearest
 from peopleboy.tracker.contour.measurement.likelihood import head_share, seen_shares
 from peopleboy.tracker.contour.occlusion.coasting import WalkOn
-from peopleboy.tracker.contour.occlusion.depth_order import Surroundings
+from peopleboy.tracker.contour.occlusion.depth_order import OrderContext
 from peopleboy.tracker.contour.particle_filter import Belief, FrameView
 from peopleboy.tracker.contour.particles import VW
 from peopleboy.tracker.contour.tracked_person import FORGET_S, TrackedPerson, hidden, moved_on, seen
@@ -51,7 +51,7 @@ class StayBehind:
         self,
         person: TrackedPerson,
         belief: Belief,
-        surroundings: Surroundings,
+        surroundings: OrderContext,
         view: FrameView,
         rng: np.random.Generator,  # noqa: ARG002
     ) -> TrackedPerson:
@@ -116,7 +116,7 @@ class OcclusionPolicy(Protocol):
         self,
         person: TrackedPerson,
         belief: Belief,
-        surroundings: Surroundings,
+        surroundings: OrderContext,
         view: FrameView,
         rng: np.random.Generator,
     ) -> TrackedPerson:

@@ -76,7 +76,7 @@ class PanoramicConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Person:
+class _TrackedPerson:
     """Who is tracked.
 
     Attributes:
@@ -123,7 +123,7 @@ class PanoramicPaperTracker:
         self._pose = Pose2()
         self._empty: list[NDArray[np.uint8]] = []
         self._background: Background | None = None
-        self._person: _Person | None = None
+        self._person: _TrackedPerson | None = None
         self._newest_id = 0
         self.explanation: PanoramicExplanation | None = None
 
@@ -200,12 +200,12 @@ class PanoramicPaperTracker:
         else:
             born_s = before.born_s
             estimate = self._filter.update(before.estimate, place, before.age_steps(time_s))
-        self._person = _Person(
+        self._person = _TrackedPerson(
             id=self._newest_id, born_s=born_s, seen_s=time_s, box=figure.box, estimate=estimate
         )
         return distance_m
 
-    def _track(self, person: _Person, time_s: float) -> Track:
+    def _track(self, person: _TrackedPerson, time_s: float) -> Track:
         believed = self._filter.predict(person.estimate, person.age_steps(time_s))
         x, y = self._pose.points_to_local(believed.position_m).tolist()
         (xx, xy), (_, yy) = self._pose.covariance_to_local(believed.covariance_m2).tolist()

@@ -16,7 +16,7 @@ FASTEST_M_S: Final = 2.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Motion:
+class FloorMotion:
     """What is believed of a person's motion at one instant.
 
     Attributes:
@@ -38,21 +38,21 @@ class Motion:
         return self.covariance[:2, :2]
 
     @classmethod
-    def begin(cls, place_m: Floats, error_m2: Floats) -> Motion:
+    def begin(cls, place_m: Floats, error_m2: Floats) -> FloorMotion:
         """Start at a measured place (2,) with an error (2, 2), as somebody who may walk anywhere."""
         covariance = np.zeros((4, 4))
         covariance[:2, :2] = error_m2
         covariance[2, 2] = covariance[3, 3] = FIRST_SPEED_SD_M_S**2
         return cls(np.concatenate([place_m, np.zeros(2)]), covariance)
 
-    def later(self, dt_s: float, restlessness: float) -> Motion:
+    def later(self, dt_s: float, restlessness: float) -> FloorMotion:
         """Predict: velocities wander as white accelerations of this density [m2/s3] make them.
 
         Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 6.2.2.
         """
-        return Motion(*_later(self.state, self.covariance, dt_s, restlessness))
+        return FloorMotion(*_later(self.state, self.covariance, dt_s, restlessness))
 
-    def corrected(self, place_m: Floats, error_m2: Floats) -> Motion:
+    def corrected(self, place_m: Floats, error_m2: Floats) -> FloorMotion:
         """Take in a measured place (2,) [m] with an error of this covariance (2, 2) [m2]."""
         (a, b), (c, d) = (self.place_m2 + error_m2).tolist()
         gain = self.covariance[:, :2] @ (np.array([[d, -b], [-c, a]]) / (a * d - b * c))
@@ -61,13 +61,13 @@ class Motion:
         if speed > FASTEST_M_S:
             state[2:] *= FASTEST_M_S / speed
         covariance = self.covariance - gain @ self.covariance[:2]
-        return Motion(state, (covariance + covariance.T) / 2.0)
+        return FloorMotion(state, (covariance + covariance.T) / 2.0)
 
-    def slowed(self, dt_s: float, tau_s: float) -> Motion:
+    def slowed(self, dt_s: float, tau_s: float) -> FloorMotion:
         """Let the velocity fade, as nobody unseen walks straight on for long."""
         state = self.state.copy()
         state[2:] *= np.exp(-dt_s / tau_s)
-        return Motion(state, self.covariance)
+        return FloorMotion(state, self.covariance)
 
 
 @njit(cache=True, nogil=True)

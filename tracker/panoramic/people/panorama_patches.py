@@ -34,7 +34,7 @@ BODY_M: Final = (0.5, 1.72)
 
 
 @dataclass(slots=True, eq=False)
-class Scene:
+class PanoramaScene:
     """An image, and who has been found in it so far.
 
     Attributes:
@@ -56,7 +56,7 @@ class Scene:
     @classmethod
     def of(
         cls, image: NDArray[np.uint8], foreground: Map, new: Map, calibration: PanoramaCalibration
-    ) -> Scene:
+    ) -> PanoramaScene:
         """Begin with nobody found."""
         covered = np.zeros_like(foreground)
         figures = FigureMap.build(foreground, new, covered, calibration)

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.panoramic.people.figure_patch import Map
-from peopleboy.tracker.panoramic.people.floor_motion import Floats, Motion
-from peopleboy.tracker.panoramic.people.panorama_patches import Scene
+from peopleboy.tracker.panoramic.people.floor_motion import Floats, FloorMotion
+from peopleboy.tracker.panoramic.people.panorama_patches import PanoramaScene
 from peopleboy.tracker.panoramic.people.panoramic_config import SightingConfig
 from peopleboy.tracker.panoramic.people.place_model import PlaceModel
 
@@ -51,7 +51,7 @@ class Onlooker:
     pose: Pose2
     config: SightingConfig
 
-    def expected(self, motion: Motion, scene: Scene) -> Sighting | None:
+    def expected(self, motion: FloorMotion, scene: PanoramaScene) -> Sighting | None:
         """Look where somebody is expected; None if nobody is there."""
         places = motion.place_m[None]
         spread = math.sqrt(float(np.trace(motion.place_m2)) / 2.0)
@@ -64,7 +64,7 @@ class Onlooker:
         is_near = away @ np.linalg.solve(motion.place_m2 + seen.error_m2, away) < self.config.gate
         return seen if is_near else None
 
-    def at(self, scene: Scene, polar: Floats) -> Sighting | None:
+    def at(self, scene: PanoramaScene, polar: Floats) -> Sighting | None:
         """Look at places (N, 2), bearing and distance, and closer at the best; None if nobody is there."""
         first = self._best(scene, polar)
         if first is None:
@@ -77,7 +77,7 @@ class Onlooker:
         x, y = self.pose.points_to_local(place_m).tolist()
         return math.atan2(y, x), max(math.hypot(x, y), NEAREST_M)
 
-    def _best(self, scene: Scene, polar: Floats) -> Sighting | None:
+    def _best(self, scene: PanoramaScene, polar: Floats) -> Sighting | None:
         reported = self.model.look(scene.figures.patches(polar[:, 0], polar[:, 1]), polar[:, 1])
         best = int(np.argmax(reported.evidence))
         along, across = reported.offset_m[best].tolist()

@@ -13,8 +13,8 @@ from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.foreground.foreground import Foreground
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
 from peopleboy.tracker.panoramic.people.band_colours import BandColours
-from peopleboy.tracker.panoramic.people.floor_motion import Motion
-from peopleboy.tracker.panoramic.people.panorama_patches import Scene, person_box, promising_places
+from peopleboy.tracker.panoramic.people.floor_motion import FloorMotion
+from peopleboy.tracker.panoramic.people.panorama_patches import PanoramaScene, person_box, promising_places
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_observation import Onlooker, PeopleExplanation, Sighting
 from peopleboy.tracker.panoramic.people.panoramic_tracks import Life, PanoramicPerson, Register
@@ -46,7 +46,7 @@ class PanoramicTracker:
         self._seen_from: Pose2 | None = None
         self._time_s = -math.inf
         self._persons: tuple[PanoramicPerson, ...] = ()
-        self._scene: Scene | None = None
+        self._scene: PanoramaScene | None = None
 
     @property
     def cameras(self) -> tuple[str, ...]:
@@ -89,7 +89,7 @@ class PanoramicTracker:
         foreground = self._foreground.update(image, frame.time_s, moved, calibration)
         life = Life(self.config, frame.time_s, min(frame.time_s - self._time_s, LONGEST_STEP_S))
         self._seen_from, self._time_s = self._pose, frame.time_s
-        self._scene = scene = Scene.of(image, foreground, self._foreground.novelty, calibration)
+        self._scene = scene = PanoramaScene.of(image, foreground, self._foreground.novelty, calibration)
         looker = Onlooker(self._model, self._pose, self.config.sighting)
         known = self._followed(scene, looker, life)
         known = self._with_newcomers(known, scene, looker, life)
@@ -107,7 +107,7 @@ class PanoramicTracker:
         self._camera = camera
         return camera
 
-    def _followed(self, scene: Scene, looker: Onlooker, life: Life) -> list[PanoramicPerson]:
+    def _followed(self, scene: PanoramaScene, looker: Onlooker, life: Life) -> list[PanoramicPerson]:
         """Look for everybody who is known, the nearest first."""
         config, restlessness = self.config.sighting, self.config.restlessness
         expected = (replace(one, motion=one.motion.later(life.dt_s, restlessness)) for one in self._persons)
@@ -125,7 +125,7 @@ class PanoramicTracker:
         return found
 
     def _with_newcomers(
-        self, known: Sequence[PanoramicPerson], scene: Scene, looker: Onlooker, life: Life
+        self, known: Sequence[PanoramicPerson], scene: PanoramaScene, looker: Onlooker, life: Life
     ) -> list[PanoramicPerson]:
         """Look where nobody is known; who is found is somebody who was out of sight, or new."""
         config, everybody = self.config.life, list(known)
@@ -139,7 +139,7 @@ class PanoramicTracker:
             lost = [one for one in everybody if life.could_be(one, seen.place_m, clothing)]
             if lost:
                 back = min(lost, key=lambda one: _way(one, seen))
-                motion = Motion.begin(seen.place_m, seen.error_m2)
+                motion = FloorMotion.begin(seen.place_m, seen.error_m2)
                 everybody[everybody.index(back)] = life.seen(
                     replace(back, motion=motion), seen, clothing, None
                 )
@@ -209,7 +209,7 @@ def _hider(bearing: float, nearer: Sequence[PanoramicPerson], looker: Onlooker) 
     return min(off, key=lambda number: off[number], default=None)
 
 
-def _taken(seen: Sighting, scene: Scene) -> BandColours:
+def _taken(seen: Sighting, scene: PanoramaScene) -> BandColours:
     """Tell what somebody looks like, and take that one out of the picture."""
     clothing = scene.clothing(seen.bearing_rad, seen.distance_m)
     scene.cover(seen.bearing_rad, seen.distance_m)

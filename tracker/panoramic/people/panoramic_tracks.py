@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from peopleboy.tracker.panoramic.people.band_colours import NO_COLOURS, BandColours
-from peopleboy.tracker.panoramic.people.floor_motion import Floats, Motion
+from peopleboy.tracker.panoramic.people.floor_motion import Floats, FloorMotion
 from peopleboy.tracker.panoramic.people.panoramic_config import IdentityConfig, PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_observation import Sighting
 from peopleboy.tracker.track import Status
@@ -34,7 +34,7 @@ class PanoramicPerson:
     """
 
     id: int
-    motion: Motion
+    motion: FloorMotion
     lasting_m2: Floats
     born_s: float
     seen_s: float
@@ -85,7 +85,7 @@ class Life:
         """Begin with somebody who is seen for the first time."""
         return PanoramicPerson(
             id=0,
-            motion=Motion.begin(seen.place_m, seen.error_m2),
+            motion=FloorMotion.begin(seen.place_m, seen.error_m2),
             lasting_m2=self.config.lasting_share**2 * seen.error_m2,
             born_s=self.time_s,
             seen_s=self.time_s,

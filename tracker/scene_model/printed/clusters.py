@@ -10,8 +10,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import DEPTH, Floats, Frame
+from peopleboy.tracker.scene_model.connected_pieces import Bools
 from peopleboy.tracker.scene_model.geometry import Geometry, grey_of
-from peopleboy.tracker.scene_model.pieces import Bools
 from peopleboy.tracker.scene_model.printed.printed_config import PrintedConfig
 from peopleboy.tracker.scene_model.scene import Metres
 

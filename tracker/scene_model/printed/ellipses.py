@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from peopleboy.tracker.frame import Floats
-from peopleboy.tracker.scene_model.pieces import Bools
+from peopleboy.tracker.scene_model.connected_pieces import Bools
 from peopleboy.tracker.scene_model.printed.clusters import Clusters
 from peopleboy.tracker.scene_model.printed.printed_config import EllipseConfig, PrintedConfig
 
@@ -29,7 +29,7 @@ class MovingEllipse:
     unseen: int = 0
 
 
-class Ellipses:
+class MovingEllipses:
     """Detects and follows everything that moves.
 
     Args:

@@ -9,12 +9,19 @@ import numpy as np
 from numba import njit
 
 from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.scene_model.connected_pieces import Bools, PixelSpan, pieces_of, pixels_by_label
 from peopleboy.tracker.scene_model.geometry import Geometry
-from peopleboy.tracker.scene_model.pieces import Bools, Span, pieces_of, pixels_by_label
 from peopleboy.tracker.scene_model.printed.clusters import Cloud, CloudMaker, Clusters, find_clusters
-from peopleboy.tracker.scene_model.printed.ellipses import Ellipses, MovingEllipse, inside
+from peopleboy.tracker.scene_model.printed.ellipses import MovingEllipse, MovingEllipses, inside
 from peopleboy.tracker.scene_model.printed.printed_config import PrintedBackground, PrintedConfig
-from peopleboy.tracker.scene_model.scene import Happening, Labels, SceneObject, SeenPerson, State, VistaScene
+from peopleboy.tracker.scene_model.scene import (
+    Happening,
+    Labels,
+    ObjectState,
+    SceneObject,
+    ScenePerson,
+    VistaScene,
+)
 
 _FEWEST_POINTS = 3  # of a hull
 
@@ -30,7 +37,7 @@ class PrintedSceneModel:
     def __init__(self, config: PrintedConfig, rng: np.random.Generator) -> None:
         self._config = config
         self._cloud = CloudMaker(config)
-        self._ellipses = Ellipses(config, rng)
+        self._ellipses = MovingEllipses(config, rng)
         self._geometry: Geometry | None = None
 
     def update(self, frame: Frame) -> VistaScene:
@@ -46,7 +53,7 @@ class PrintedSceneModel:
             self._since = np.full(self._geometry.shape, np.inf, np.float32)
         config, cloud = self._config, self._cloud(frame, self._geometry)
         people = np.zeros(self._geometry.shape, np.int32)
-        persons: tuple[SeenPerson, ...] = ()
+        persons: tuple[ScenePerson, ...] = ()
         if config.background in (PrintedBackground.TRACK, PrintedBackground.ADAPT):
             clusters = find_clusters(cloud, self._candidates(cloud), config)
             ellipses = self._ellipses.update(clusters)
@@ -103,7 +110,7 @@ class PrintedSceneModel:
             movable,
             cloud.depth_m,
             config.thing_m,
-            Span(self._since, self._since, self._since, config.thing_s),
+            PixelSpan(self._since, self._since, self._since, config.thing_s),
         )
         for _, pixels in pixels_by_label(labels, count):
             if len(pixels) < config.thing_px:
@@ -124,7 +131,7 @@ class PrintedSceneModel:
                     place_m=(x, y, z),
                     size_m2=float((cloud.depth_m.ravel()[pixels] ** 2).sum()) / geometry.focal_px**2,
                     first_seen_s=float(np.median(self._since.ravel()[pixels])),
-                    state=State.STANDS,
+                    state=ObjectState.STANDS,
                 )
             )
         return things, tuple(objects)
@@ -162,6 +169,6 @@ def _hulls(ellipses: Sequence[MovingEllipse], clusters: Clusters, labels: Labels
     return labels
 
 
-def _person(one: MovingEllipse) -> SeenPerson:
+def _person(one: MovingEllipse) -> ScenePerson:
     x, y = one.state[:2].tolist()
-    return SeenPerson(id=one.id, place_m=(x, y))
+    return ScenePerson(id=one.id, place_m=(x, y))

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.store import Store
 from peopleboy.scenarios.running.engine.task import TasksFailed, Workers, chosen_workers
+from peopleboy.scenarios.running.engine.work_through import work_through
 from tests.helpers.calls.processes import start
 from tests.helpers.calls.refused import refused
 from tests.helpers.runs.toy_tasks import ToyTask, diary, diary_lines, squares, toys, work
@@ -119,7 +119,9 @@ def test_the_bar_tells_done_left_and_failed(tmp_path: Path, monkeypatch: pytest.
         def __exit__(self, *_: object) -> None:
             pass
 
-    monkeypatch.setattr("peopleboy.scenarios.running.engine.engine.progress_bar", lambda _title, _unit: Bar())
+    monkeypatch.setattr(
+        "peopleboy.scenarios.running.engine.work_through.progress_bar", lambda _title, _unit: Bar()
+    )
     tasks = [ToyTask(0, tmp_path, fault="wrong", size=4), ToyTask(1, tmp_path, size=8)]
     with pytest.raises(TasksFailed):
         work_through(tasks, Workers(1), "toys")

@@ -3,9 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.truth.truth import Box
 from peopleboy.sim.world import World
+from peopleboy.sim.world_config import WorldConfig
 from tests.helpers.worlds.small_worlds import config, person
 
 PEOPLE = (

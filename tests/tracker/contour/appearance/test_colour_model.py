@@ -4,9 +4,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from peopleboy.tracker.contour.appearance.appearance_model import ColourModel, likelihood, squared_distances
-from peopleboy.tracker.contour.colour_config import ColourConfig
+from peopleboy.tracker.contour.colour_config import ColourDescriptorConfig
 
-CONFIG = ColourConfig()
+CONFIG = ColourDescriptorConfig()
 NAN = np.float32(np.nan)
 vectors = st.lists(st.floats(-3, 3, width=32), min_size=4, max_size=4).map(lambda v: np.array(v, np.float32))
 
@@ -58,7 +58,7 @@ def test_a_model_that_never_saw_anything_says_so():
 @settings(deadline=None)
 @given(vectors, vectors, st.floats(0, 100))
 def test_the_likelihood_is_equation_6_4(features, mean, sharpness):
-    config = ColourConfig(sharpness=sharpness)
+    config = ColourDescriptorConfig(sharpness=sharpness)
     model = ColourModel.begin(mean, config)
     expected = np.exp(-sharpness * np.sum((features.astype(float) - mean) ** 2))
     assert likelihood(features[None], model, config)[0] == pytest.approx(expected, rel=1e-2, abs=1e-6)

@@ -16,7 +16,7 @@ from peopleboy.tracker.contour.colour_config import (
     ROBOT_PARALLAX,
     SPACES,
     THESIS_AFFINE,
-    ColourConfig,
+    ColourDescriptorConfig,
 )
 from tests.helpers.calls.refused import refused
 
@@ -57,7 +57,7 @@ def test_the_alignment_is_equation_6_1_in_shares_of_the_images(u, v, p1, p3, p4)
     assert (y + 0.5) / 480 == pytest.approx(p4 + 0.05 * share_u + 1.1 * share_v, abs=1e-5)
 
 
-def worst_shift(config: ColourConfig, height_m: float = 1.72) -> float:
+def worst_shift(config: ColourDescriptorConfig, height_m: float = 1.72) -> float:
     """Largest distance [px] from the exact map, over people 3 to 10 m away and the whole image."""
     robot = RobotConfig()
     matrix = alignment(SHAPE, SHAPE, config.affine, config.parallax)
@@ -71,23 +71,23 @@ def worst_shift(config: ColourConfig, height_m: float = 1.72) -> float:
 
 
 def test_the_default_alignment_fits_the_robots_cameras_within_one_percent_of_the_image():
-    assert worst_shift(ColourConfig()) < 3.6
+    assert worst_shift(ColourDescriptorConfig()) < 3.6
 
 
 @pytest.mark.parametrize("height_m", [1.5, 1.72, 1.95])
 def test_with_a_parallax_the_alignment_fits_people_of_any_height_at_every_distance(height_m):
-    config = ColourConfig(affine=FAR_AFFINE, parallax=ROBOT_PARALLAX)
+    config = ColourDescriptorConfig(affine=FAR_AFFINE, parallax=ROBOT_PARALLAX)
     assert worst_shift(config, height_m) < 1.2
 
 
 def test_the_thesis_alignment_belongs_to_other_cameras():
-    assert worst_shift(ColourConfig(affine=THESIS_AFFINE)) > 15
+    assert worst_shift(ColourDescriptorConfig(affine=THESIS_AFFINE)) > 15
 
 
 @pytest.mark.parametrize("size", [1, 2])
 def test_every_part_is_described_by_its_own_colour_at_any_size_of_the_colour_image(size):
     state = person()
-    view = ColourView.build(painted(state, size), SHAPE, ColourConfig(affine=SAME))
+    view = ColourView.build(painted(state, size), SHAPE, ColourDescriptorConfig(affine=SAME))
     described = view.describe(state).reshape(3, 3, 3)
     assert described[:, :, 0] * 255 == pytest.approx(np.array([HEAD, TORSO, LEGS], float), abs=1e-3)
     assert np.all(described[:, :, 1:] == 0)
@@ -97,7 +97,7 @@ def test_every_part_is_described_by_its_own_colour_at_any_size_of_the_colour_ima
 @pytest.mark.parametrize("representation", REPRESENTATIONS)
 def test_every_way_to_describe_tells_the_right_place_from_a_wrong_one(representation, space):
     state = person()
-    config = ColourConfig(affine=SAME, representation=representation, space=space)
+    config = ColourDescriptorConfig(affine=SAME, representation=representation, space=space)
     features = ColourView.build(painted(state), SHAPE, config).describe(
         np.concatenate([state, state, person(x=190)])
     )
@@ -114,7 +114,7 @@ def test_red_on_both_sides_of_hue_zero_is_one_colour():
         view = ColourView.build(
             cv2.cvtColor(hsv, cv2.COLOR_HSV2RGB_FULL),
             SHAPE,
-            ColourConfig(space="hsv", representation="moments1"),
+            ColourDescriptorConfig(space="hsv", representation="moments1"),
         )
         means.append(view.describe(person()))
     assert np.abs(means[0] - means[1]).max() < 0.06
@@ -122,7 +122,7 @@ def test_red_on_both_sides_of_hue_zero_is_one_colour():
 
 def test_who_leaves_the_colour_image_becomes_unseen_part_by_part():
     states = np.concatenate([person(x=160), person(x=300), person(y=195)])
-    view = ColourView.build(np.full((*SHAPE, 3), 99, np.uint8), SHAPE, ColourConfig())
+    view = ColourView.build(np.full((*SHAPE, 3), 99, np.uint8), SHAPE, ColourDescriptorConfig())
     is_unseen = np.isnan(view.describe(states)).reshape(3, 3, 9).all(axis=2)
     assert is_unseen.tolist() == [[False] * 3, [True] * 3, [False, False, True]]
 
@@ -134,7 +134,7 @@ def test_what_another_person_covers_can_be_left_out_or_described_alone():
     hole = rectangles.copy()
     hole[..., 2] = 160
     image[:, :160] = 255
-    view = ColourView.build(image, SHAPE, ColourConfig(affine=SAME))
+    view = ColourView.build(image, SHAPE, ColourDescriptorConfig(affine=SAME))
     visible = view.describe_rectangles(rectangles, state[:, 3], hole).reshape(3, 3, 3)
     covered = view.describe_rectangles(hole, state[:, 3]).reshape(3, 3, 3)
     assert visible[:, :, 0] * 255 == pytest.approx(np.array([HEAD, TORSO, LEGS], float), abs=1e-3)
@@ -143,7 +143,7 @@ def test_what_another_person_covers_can_be_left_out_or_described_alone():
 
 def test_stray_samples_are_described_as_unseen_and_break_nothing():
     states = np.concatenate([person(h=-5), person(w=-5), person(x=1e30), person(y=-1e9, h=1e12)])
-    view = ColourView.build(np.zeros((*SHAPE, 3), np.uint8), SHAPE, ColourConfig())
+    view = ColourView.build(np.zeros((*SHAPE, 3), np.uint8), SHAPE, ColourDescriptorConfig())
     assert view.describe(states).shape == (4, 27)
 
 
@@ -162,4 +162,4 @@ def test_stray_samples_are_described_as_unseen_and_break_nothing():
 )
 def test_settings_that_cannot_be_are_refused(setting, right):
     with refused(*setting, right):
-        ColourConfig(**setting)
+        ColourDescriptorConfig(**setting)

@@ -6,7 +6,7 @@ import pytest
 from peopleboy.tracker.contour.appearance.appearance_model import HIDDEN_PART, AppearanceView, visible
 from peopleboy.tracker.contour.appearance.colour_view import ColourView
 from peopleboy.tracker.contour.appearance.regions import PARTS, part_rectangles
-from peopleboy.tracker.contour.colour_config import FAR_AFFINE, ROBOT_PARALLAX, ColourConfig
+from peopleboy.tracker.contour.colour_config import FAR_AFFINE, ROBOT_PARALLAX, ColourDescriptorConfig
 from peopleboy.tracker.contour.contour_config import AppearanceConfig
 
 SHAPE = (240, 320)
@@ -24,7 +24,7 @@ def samples(count: int = 400) -> np.ndarray:
 def views(representation: str) -> tuple[ColourView, AppearanceView]:
     rng = np.random.default_rng(1)
     thermal, colour = rng.integers(0, 256, SHAPE, np.uint8), rng.integers(0, 256, (480, 640, 3), np.uint8)
-    config = ColourConfig(affine=FAR_AFFINE, parallax=ROBOT_PARALLAX, representation=representation)
+    config = ColourDescriptorConfig(affine=FAR_AFFINE, parallax=ROBOT_PARALLAX, representation=representation)
     view = ColourView.build(colour, SHAPE, config)
     return view, AppearanceView.build(thermal, view, AppearanceConfig())
 
@@ -44,7 +44,7 @@ def test_looks_are_the_first_moments_of_both_images_to_the_last_bit(representati
 
 def test_in_the_dark_there_are_no_colours() -> None:
     state = samples()
-    colour = ColourView.build(np.zeros((*SHAPE, 3), np.uint8), SHAPE, ColourConfig())
+    colour = ColourView.build(np.zeros((*SHAPE, 3), np.uint8), SHAPE, ColourDescriptorConfig())
     appearance = AppearanceView.build(np.full(SHAPE, 99, np.uint8), colour, AppearanceConfig())
     described = appearance.describe(state).reshape(-1, 4)
     assert np.isnan(described[:, :3]).all()

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.contour.contour_config import (
     AppearanceConfig,
-    DepthConfig,
+    DepthOrderConfig,
     FilterConfig,
     HeightConfig,
     LikelihoodConfig,
@@ -134,8 +134,8 @@ def test_samples_from_the_prior_have_the_speeds_they_are_given():
         lambda: MotionConfig(noise_x=-1.0),
         lambda: MotionConfig(place_memory=1.5),
         lambda: AppearanceConfig(grey_spread=(0.1, 0.0, 0.1)),
-        lambda: DepthConfig(order="height"),
-        lambda: DepthConfig(growth=0.0),
+        lambda: DepthOrderConfig(order="height"),
+        lambda: DepthOrderConfig(growth=0.0),
         lambda: HeightConfig(memory_s=0.0),
         lambda: HeightConfig(overlapped_spread=-0.1),
         lambda: StayBehindConfig(head_covered=1.5),

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from peopleboy.tracker.camera_mount import mount_of
 from peopleboy.tracker.contour.appearance.appearance_model import ColourModel
 from peopleboy.tracker.contour.appearance.colour_view import ColourView
-from peopleboy.tracker.contour.colour_config import ColourConfig
+from peopleboy.tracker.contour.colour_config import ColourDescriptorConfig
 from peopleboy.tracker.contour.contour_config import ContourConfig
 from peopleboy.tracker.contour.measurement.likelihood import ContourModel
 from peopleboy.tracker.contour.occlusion.learned_order import shipped_order
@@ -59,7 +59,7 @@ def test_a_cut_lies_inside_of_what_was_cut_and_is_empty_outside_of_the_other(one
 
 
 NEAR, FAR = (150.0, 130.0, 16.0, 42.0), (164.0, 122.0, 10.0, 28.0)
-ALONE = ColourConfig(affine=(0.0, 1.0, 0.0, 0.0, 0.0, 1.0))
+ALONE = ColourDescriptorConfig(affine=(0.0, 1.0, 0.0, 0.0, 0.0, 1.0))
 
 
 def surroundings(*drawn: int) -> FrameView:

@@ -6,7 +6,7 @@ import pytest
 from peopleboy.tracker.contour.box_interaction import regions_of
 from peopleboy.tracker.contour.measurement.likelihood import ContourModel, covered_by
 from peopleboy.tracker.contour.occlusion.coasting import LOST_FRAMES
-from peopleboy.tracker.contour.occlusion.depth_order import Surroundings
+from peopleboy.tracker.contour.occlusion.depth_order import OrderContext
 from peopleboy.tracker.contour.occlusion.occlusion_policy import make_policy
 from peopleboy.tracker.contour.particle_filter import Belief, view_frame
 from peopleboy.tracker.contour.particles import equally_weighted
@@ -42,7 +42,7 @@ def judged(config, behind, *front):
         config,
     )
     states = [one.belief.estimate for one in front]
-    surroundings = Surroundings(
+    surroundings = OrderContext(
         front=front,
         others=regions_of(states, config),
         strength=np.zeros(len(front)),

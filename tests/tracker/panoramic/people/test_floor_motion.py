@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.tracker.panoramic.people.floor_motion import FASTEST_M_S, FIRST_SPEED_SD_M_S, Motion
+from peopleboy.tracker.panoramic.people.floor_motion import FASTEST_M_S, FIRST_SPEED_SD_M_S, FloorMotion
 
 
 def drawn_error(rng):
@@ -34,7 +34,7 @@ def test_of_somebody_who_walks_straight_it_believes_what_least_squares_say(seed)
         np.array([1.0, -2.0]) + time * np.array([0.4, 0.3]) + rng.multivariate_normal(np.zeros(2), error)
         for time, error in zip(times, errors, strict=True)
     ]
-    motion = Motion.begin(places[0], errors[0])
+    motion = FloorMotion.begin(places[0], errors[0])
     for k in range(1, len(times)):
         motion = motion.later(times[k] - times[k - 1], 0.0).corrected(places[k], errors[k])
     state, covariance = batch(places, errors, times)
@@ -44,7 +44,7 @@ def test_of_somebody_who_walks_straight_it_believes_what_least_squares_say(seed)
 
 @given(st.floats(0.0, 1.5), st.floats(0.0, 1.5), st.floats(0.0, 3.0))
 def test_two_steps_are_one_of_their_sum_so_that_the_rate_of_images_does_not_matter(one_s, other_s, density):
-    motion = Motion(np.array([1.0, 2.0, 0.5, -0.3]), np.diag([0.02, 0.03, 0.4, 0.5]))
+    motion = FloorMotion(np.array([1.0, 2.0, 0.5, -0.3]), np.diag([0.02, 0.03, 0.4, 0.5]))
     twice, once = motion.later(one_s, density).later(other_s, density), motion.later(one_s + other_s, density)
     np.testing.assert_allclose(twice.state, once.state, atol=1e-12)
     np.testing.assert_allclose(twice.covariance, once.covariance, atol=1e-12)
@@ -57,7 +57,7 @@ def test_it_keeps_as_well_as_white_accelerations_let_it():
     kicks = rng.normal(0.0, np.sqrt(density * dt), (4000, steps))
     speed = np.cumsum(kicks, axis=1)
     place = speed.sum(axis=1) * dt
-    covariance = Motion(np.zeros(4), np.zeros((4, 4))).later(1.0, density).covariance
+    covariance = FloorMotion(np.zeros(4), np.zeros((4, 4))).later(1.0, density).covariance
     assert covariance[0, 0] == pytest.approx(place.var(), rel=0.06)
     assert covariance[2, 2] == pytest.approx(speed[:, -1].var(), rel=0.06)
     assert covariance[0, 2] == pytest.approx((place * speed[:, -1]).mean(), rel=0.06)
@@ -66,7 +66,7 @@ def test_it_keeps_as_well_as_white_accelerations_let_it():
 @given(st.integers(0, 1000))
 def test_it_never_gets_less_sure_by_looking_nor_faster_than_people_are(seed):
     rng = np.random.default_rng(seed)
-    motion = Motion.begin(rng.uniform(-3, 3, 2), drawn_error(rng))
+    motion = FloorMotion.begin(rng.uniform(-3, 3, 2), drawn_error(rng))
     for _ in range(10):
         ahead = motion.later(0.2, 1.0)
         motion = ahead.corrected(rng.uniform(-4, 4, 2), drawn_error(rng))
@@ -77,7 +77,7 @@ def test_it_never_gets_less_sure_by_looking_nor_faster_than_people_are(seed):
 
 
 def test_who_is_not_seen_comes_to_a_stop_within_a_bounded_way():
-    motion = Motion(np.array([0.0, 0.0, 1.0, 0.0]), np.eye(4))
+    motion = FloorMotion(np.array([0.0, 0.0, 1.0, 0.0]), np.eye(4))
     for _ in range(200):
         motion = motion.later(0.1, 0.0).slowed(0.1, 1.0)
     assert motion.state[2] == pytest.approx(0.0, abs=1e-6)

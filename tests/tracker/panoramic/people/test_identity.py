@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.panoramic.people.band_colours import BANDS, BandColours
-from peopleboy.tracker.panoramic.people.floor_motion import Motion
+from peopleboy.tracker.panoramic.people.floor_motion import FloorMotion
 from peopleboy.tracker.panoramic.people.panoramic_config import IdentityConfig
 from peopleboy.tracker.panoramic.people.panoramic_tracks import Register
 from tests.helpers.images.cardboard import Cardboard
@@ -32,7 +32,7 @@ def person(number=0, place=(0.0, 0.0), clothing=RED, seen_s=0.0, **further):
     return replace(
         TEMPLATE,
         id=number,
-        motion=Motion.begin(np.array(place, float), 0.01 * np.eye(2)),
+        motion=FloorMotion.begin(np.array(place, float), 0.01 * np.eye(2)),
         seen_s=seen_s,
         clothing=clothing,
         **{"born_s": 0.0, "newest": clothing} | further,

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.tracker.panoramic.people.panorama_patches import BODY_M, Scene, person_box
+from peopleboy.tracker.panoramic.people.panorama_patches import BODY_M, PanoramaScene, person_box
 from tests.helpers.images.cardboard import CAMERA, HALL, HEIGHT, WIDTH, Cardboard, mask_of, scene_of
 
 BEARINGS, DISTANCES = st.floats(-math.pi, math.pi), st.floats(1.2, 7.0)
@@ -13,7 +13,7 @@ BEARINGS, DISTANCES = st.floats(-math.pi, math.pi), st.floats(1.2, 7.0)
 
 def full_scene():
     everything = np.ones((HEIGHT, WIDTH), np.float32)
-    return Scene.of(HALL, everything, everything, CAMERA)
+    return PanoramaScene.of(HALL, everything, everything, CAMERA)
 
 
 @given(BEARINGS, DISTANCES)
@@ -48,7 +48,7 @@ def test_cover_takes_only_pixels_of_people_that_are_in_reach(bearing, distance):
     assert np.abs(off).max() <= math.atan2(0.42, distance) + 2 * pixel
     lowest = CAMERA.project(np.array([[distance, 0.0, -0.2]]))[0, 1]
     assert rows.max() <= lowest + 1.0
-    nobody = Scene.of(HALL, np.zeros_like(scene.covered), np.zeros_like(scene.covered), CAMERA)
+    nobody = PanoramaScene.of(HALL, np.zeros_like(scene.covered), np.zeros_like(scene.covered), CAMERA)
     nobody.cover(bearing, distance)
     assert not nobody.covered.any()
 

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.tracker.panoramic.people.floor_motion import Motion
+from peopleboy.tracker.panoramic.people.floor_motion import FloorMotion
 from peopleboy.tracker.panoramic.people.panoramic_config import SightingConfig
 from peopleboy.tracker.panoramic.people.panoramic_observation import Onlooker
 from tests.helpers.images.cardboard import Cardboard, CardboardModel, scene_of
@@ -20,7 +20,7 @@ def onlooker(**config):
 
 
 def motion_at(distance, bearing, deviation=0.2):
-    return Motion.begin(POSE.transform_polar(distance, bearing), deviation**2 * np.eye(2))
+    return FloorMotion.begin(POSE.transform_polar(distance, bearing), deviation**2 * np.eye(2))
 
 
 @settings(max_examples=30)

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
+from peopleboy.tracker.footage.image_sequences import open_footage
 from peopleboy.tracker.footage.picture_names import jumps, pictures_in
-from peopleboy.tracker.footage.pictures import open_footage
 from tests.helpers.calls.footage_calls import call, refusal
 from tests.helpers.calls.refused import assert_names, refused
 from tests.helpers.images.footage_files import walker, write_folder

@@ -15,17 +15,17 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.random_streams import stream
 from peopleboy.studies.reproductions.experiment import Line, Samples
-from peopleboy.studies.reproductions.tracker_settings import Setting
+from peopleboy.studies.reproductions.tracker_settings import TrackerSetting
 from peopleboy.studies.reproductions.units import Measurement, Unit
 from peopleboy.tracker.attention.attend import learn, search
 from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
 from peopleboy.tracker.attention.feature_maps import feature_maps
-from peopleboy.tracker.attention.image_sums import Sight
+from peopleboy.tracker.attention.image_sums import ImageSums
+from peopleboy.tracker.attention.people.person_views import PersonView
 from peopleboy.tracker.attention.people.recogniser import ColourLook
-from peopleboy.tracker.attention.people.views import View
 from peopleboy.tracker.contour.appearance.appearance_model import ColourModel, likelihood
 from peopleboy.tracker.contour.appearance.colour_view import ColourView, PowerSums
-from peopleboy.tracker.contour.colour_config import ColourConfig
+from peopleboy.tracker.contour.colour_config import ColourDescriptorConfig
 from peopleboy.tracker.contour.contour_config import TrackerConfig
 from peopleboy.tracker.contour.measurement.likelihood import ContourModel, fitness, probability
 from peopleboy.tracker.contour.particle_filter import (
@@ -87,7 +87,7 @@ def milliseconds(work: Callable[[], object], steps: int) -> float:
     return median(times) / 1e6
 
 
-def time_steps(setting: Setting, steps: int) -> Milliseconds:
+def time_steps(setting: TrackerSetting, steps: int) -> Milliseconds:
     """Time the steps of one filter with 1000 samples (thesis, table 4.1)."""
     config = replace(setting.config(), colour=None, appearance=None)
     person, rng = replace(config.person, count=COUNT), stream(0, "reproduce.timing")
@@ -116,33 +116,33 @@ def time_steps(setting: Setting, steps: int) -> Milliseconds:
     return {name: milliseconds(work, steps) for name, work in works.items()}
 
 
-def time_counts(setting: Setting, steps: int) -> Milliseconds:
+def time_counts(setting: TrackerSetting, steps: int) -> Milliseconds:
     """Time one step of a filter with fewer samples than usual, and with as many (thesis, section 4.4)."""
     config = replace(setting.config(), colour=None, appearance=None)
     return {str(count): _time_colour(config, None, steps, count) for count in (300, COUNT)}
 
 
-def time_attention(setting: Setting, steps: int) -> Milliseconds:
+def time_attention(setting: TrackerSetting, steps: int) -> Milliseconds:
     """Time what it takes to find a person in an image of 320 x 240 by attention, printed or the default."""
     config = PRINTED if setting.base == "printed" else AttentionConfig()
     noise = stream(0, "reproduce.timing").integers(0, 256, (*SHAPE, 3), dtype=np.uint8)
     image = np.asarray(cv2.GaussianBlur(noise, (0, 0), 6.0), np.uint8)
     box = (130.0, 60.0, 40.0, 130.0)
-    sight, alone = Sight.of(image, config), AttentionConfig(maps=False)
-    look, colours = learn(sight, box, config), learn(Sight.of(image, alone), box, alone)
-    view = View(COLOUR, image, box)
+    sight, alone = ImageSums.of(image, config), AttentionConfig(maps=False)
+    look, colours = learn(sight, box, config), learn(ImageSums.of(image, alone), box, alone)
+    view = PersonView(COLOUR, image, box)
     works: dict[str, Callable[[], object]] = {
         "maps": lambda: feature_maps(image, config),
-        "maps, patterns and their sums": lambda: Sight.of(image, config),
+        "maps, patterns and their sums": lambda: ImageSums.of(image, config),
         "learning": lambda: learn(sight, box, config),
         "search": lambda: search(sight, look, config),
-        "ratio of colours alone": lambda: search(Sight.of(image, alone), colours, alone),
+        "ratio of colours alone": lambda: search(ImageSums.of(image, alone), colours, alone),
         "somebody's colours": lambda: ColourLook.of(view),
     }
     return {name: milliseconds(work, steps) for name, work in works.items()}
 
 
-def time_people(setting: Setting, steps: int) -> Milliseconds:
+def time_people(setting: TrackerSetting, steps: int) -> Milliseconds:
     """Time whole frames with none to four people, per filter of 1000 samples (thesis, table 5.1)."""
     return {
         "detector only" if people == 0 else str(people): _time_crowd(setting, people, steps)
@@ -150,7 +150,7 @@ def time_people(setting: Setting, steps: int) -> Milliseconds:
     }
 
 
-def _time_crowd(setting: Setting, people: int, steps: int) -> float:
+def _time_crowd(setting: TrackerSetting, people: int, steps: int) -> float:
     """Time frames in which every person has a filter, over the number of filters [ms]; NaN of none."""
     tracker = setting.make(stream(0, "reproduce.timing"))
     image, times = frame_of(people), []
@@ -171,7 +171,7 @@ _PICTURES: Mapping[str, tuple[int, int]] = {
 }
 
 
-def time_integrals(setting: Setting, steps: int) -> Milliseconds:
+def time_integrals(setting: TrackerSetting, steps: int) -> Milliseconds:
     """Time the integral images of 320 by 240 pixels, whatever the tracker (thesis, table 6.1)."""
     del setting
     picture = np.ascontiguousarray(np.stack([drawn_people(2)] * 3, axis=-1))
@@ -182,17 +182,17 @@ def time_integrals(setting: Setting, steps: int) -> Milliseconds:
     }
 
 
-_COLOURS: Mapping[str, ColourConfig | None] = {
+_COLOURS: Mapping[str, ColourDescriptorConfig | None] = {
     "gradient": None,
-    "greyscale": ColourConfig(representation="moments1", space="grey"),
-    "first moment": ColourConfig(representation="moments1"),
-    "first two moments": ColourConfig(representation="moments2"),
-    "first three moments": ColourConfig(representation="moments3"),
-    "histogram (20 bins)": ColourConfig(representation="histogram"),
+    "greyscale": ColourDescriptorConfig(representation="moments1", space="grey"),
+    "first moment": ColourDescriptorConfig(representation="moments1"),
+    "first two moments": ColourDescriptorConfig(representation="moments2"),
+    "first three moments": ColourDescriptorConfig(representation="moments3"),
+    "histogram (20 bins)": ColourDescriptorConfig(representation="histogram"),
 }
 
 
-def time_colours(setting: Setting, steps: int) -> Milliseconds:
+def time_colours(setting: TrackerSetting, steps: int) -> Milliseconds:
     """Time one step of a filter with 1000 samples and its colours described in several ways (table 6.2)."""
     config = setting.config()
     return {
@@ -202,7 +202,9 @@ def time_colours(setting: Setting, steps: int) -> Milliseconds:
     }
 
 
-def _time_colour(config: TrackerConfig, colour: ColourConfig | None, steps: int, count: int = COUNT) -> float:
+def _time_colour(
+    config: TrackerConfig, colour: ColourDescriptorConfig | None, steps: int, count: int = COUNT
+) -> float:
     config = replace(config, colour=None, appearance=None)
     person, rng = replace(config.person, count=count), stream(0, "reproduce.timing")
     frame = frame_of(1)
@@ -222,7 +224,7 @@ def _time_colour(config: TrackerConfig, colour: ColourConfig | None, steps: int,
     return milliseconds(work, steps)
 
 
-TIMES: Final[Mapping[str, Callable[[Setting, int], Milliseconds]]] = {
+TIMES: Final[Mapping[str, Callable[[TrackerSetting, int], Milliseconds]]] = {
     "steps": time_steps,
     "counts": time_counts,
     "people": time_people,
@@ -235,7 +237,7 @@ TIMES: Final[Mapping[str, Callable[[Setting, int], Milliseconds]]] = {
 
 def time_named(times: str, base: str, steps: int) -> Milliseconds:
     """Time the steps of a tracker, each so many times."""
-    return TIMES[times](Setting(base), steps)
+    return TIMES[times](TrackerSetting(base), steps)
 
 
 def timing(using: Measurement, *, times: str, trackers: Mapping[str, str]) -> Samples:

@@ -15,7 +15,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.mot_files import WIDTHS, read_rows, truth_of
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
-from peopleboy.tracker.footage.pictures import beside
+from peopleboy.tracker.footage.image_sequences import beside
 
 # Implausible truth gives a note rather than an error: it may still be right.
 

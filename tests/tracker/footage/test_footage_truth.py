@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from peopleboy.scenarios.commands.evaluate import evaluate
 from peopleboy.tracker.evaluation.mot_files import read_truth
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
-from peopleboy.tracker.footage.truth_files import doubts, load_truth
+from peopleboy.tracker.footage.footage_truth import doubts, load_truth
 from tests.helpers.calls.footage_calls import call, refusal
 from tests.helpers.calls.refused import assert_names, refused
 from tests.helpers.images.footage_files import box, walker, write_folder

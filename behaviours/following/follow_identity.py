@@ -10,7 +10,7 @@ from peopleboy.behaviours.percept import SeenPerson
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ReidentificationConfig:
+class FollowIdentityConfig:
     """When a track under a new number is taken for the followed person.
 
     Attributes:
@@ -35,7 +35,7 @@ def recognise(
     target: Target | None,
     others: frozenset[int],
     gap_s: float,
-    config: ReidentificationConfig,
+    config: FollowIdentityConfig,
     view: TargetConfig,
     *,
     knows_again: bool = False,
@@ -76,7 +76,7 @@ def company(people: tuple[SeenPerson, ...], target: int, others: frozenset[int])
 
 
 def _fits(
-    person: SeenPerson, target: Target, gap_s: float, config: ReidentificationConfig, view: TargetConfig
+    person: SeenPerson, target: Target, gap_s: float, config: FollowIdentityConfig, view: TargetConfig
 ) -> bool:
     """Tell whether somebody is where the target should be by now, and about as tall."""
     size = abs(math.log(person.height / target.height))

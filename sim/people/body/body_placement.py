@@ -19,7 +19,7 @@ from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, PARENT_INDEX, 
 Array = NDArray[np.float64]
 
 
-class Frame(NamedTuple):
+class BodyFrame(NamedTuple):
     """How one person's parts hang together.
 
     Attributes:

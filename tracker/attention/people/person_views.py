@@ -24,7 +24,7 @@ _NEAREST_M: Final = 0.3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class View:
+class PersonView:
     """A person in the image of one camera.
 
     Attributes:
@@ -38,7 +38,7 @@ class View:
     box: Box
 
 
-def views_of(track: Track, frame: Frame) -> Iterator[View]:
+def views_of(track: Track, frame: Frame) -> Iterator[PersonView]:
     """Give a tracked person in each colour image that there is.
 
     Raises:
@@ -48,7 +48,7 @@ def views_of(track: Track, frame: Frame) -> Iterator[View]:
         if camera in frame.images:
             box = box_in(camera, track, frame)
             if box is not None:
-                yield View(camera, frame.rgb(camera), box)
+                yield PersonView(camera, frame.rgb(camera), box)
 
 
 def check_colours(frame: Frame) -> None:

@@ -16,7 +16,7 @@ Pixels = NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Span:
+class PixelSpan:
     """When each pixel changed: (H, W) after `first_s` and before `last_s` [s].
 
     `seen_s` is when what is there, or was, was seen last, and `slack_s` how far changes of neighbours that
@@ -29,7 +29,9 @@ class Span:
     slack_s: float
 
 
-def pieces_of(mask: Bools, depth_m: Metres, gap_m: float, span: Span | None = None) -> tuple[Labels, int]:
+def pieces_of(
+    mask: Bools, depth_m: Metres, gap_m: float, span: PixelSpan | None = None
+) -> tuple[Labels, int]:
     """Number the connected pieces of a mask (H, W).
 
     Neighbours, of which a pixel has eight, belong together if their depths differ by less than `gap_m`, and

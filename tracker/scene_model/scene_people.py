@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import Floats, Frame
+from peopleboy.tracker.scene_model.connected_pieces import Bools, Pixels, pieces_of, pixels_by_label
 from peopleboy.tracker.scene_model.geometry import COLD, UNSEEN, WARM, Geometry
 from peopleboy.tracker.scene_model.layers import Layers
-from peopleboy.tracker.scene_model.pieces import Bools, Pixels, pieces_of, pixels_by_label
 from peopleboy.tracker.scene_model.readings import Readings
-from peopleboy.tracker.scene_model.scene import Labels, Metres, SeenPerson
+from peopleboy.tracker.scene_model.scene import Labels, Metres, ScenePerson
 from peopleboy.tracker.scene_model.scene_config import PeopleMaskConfig
 
 _CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
@@ -90,7 +90,7 @@ class PeopleSeen:
 
     labels: Labels
     ignored: Bools
-    persons: tuple[SeenPerson, ...]
+    persons: tuple[ScenePerson, ...]
 
 
 class People:
@@ -223,7 +223,7 @@ class People:
             if one.id:
                 labels.flat[pixels] = one.id
                 x, y = one.place_m.tolist()
-                persons.append(SeenPerson(id=one.id, place_m=(x, y)))
+                persons.append(ScenePerson(id=one.id, place_m=(x, y)))
         self._known = tuple(known)
         return PeopleSeen(labels, cv2.dilate(ignored, _AROUND) > 0, tuple(persons))
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.batch.joined_worlds import JoinedWorlds
 from peopleboy.sim.geometry.poses import quaternions
-from peopleboy.sim.people.body.placing import carry, put_on_floor
+from peopleboy.sim.people.body.body_placement import carry, put_on_floor
 from peopleboy.sim.people.body.stance import STANCE, Builds, Stances, hold, move_limbs
 from peopleboy.sim.people.person import Person, pace_m_s
 from peopleboy.sim.people.walking.script import WALK, Records, Scripts, join_records, join_scripts
