@@ -17,7 +17,7 @@ import click
 import numpy as np
 
 from benchmarks import call
-from benchmarks.clips import CHOSEN_BY, Clip, open_clips
+from benchmarks.clips import CHOSEN_BY, RealClip, open_clips
 from benchmarks.peers.detectors import Blobs
 from benchmarks.sequences import Recording, print_head, print_row, record
 from peopleboy.scenarios.footage.options import TrackOptions
@@ -61,7 +61,7 @@ LEAST: Final = DetectionTrackerConfig().existence.weakest
 _SURE: Final = 3.0  # log odds of a warm blob
 
 
-class Stage(Enum):
+class DetectorStage(Enum):
     """By what people are found: a threshold, or the detector as far as it looks."""
 
     THRESHOLD = auto()
@@ -73,7 +73,7 @@ class Stage(Enum):
 class DetectorOfStage(PeopleDetector):
     """A detector that looks no further than to a stage."""
 
-    def __init__(self, stage: Stage) -> None:
+    def __init__(self, stage: DetectorStage) -> None:
         """Take the shipped trees and networks."""
         super().__init__(least_score=LEAST)
         self._stage = stage
@@ -85,9 +85,9 @@ class DetectorOfStage(PeopleDetector):
 
         Trees by themselves look everywhere, whoever is expected.
         """
-        if self._stage is Stage.BOX_REFINEMENT:
+        if self._stage is DetectorStage.BOX_REFINEMENT:
             return super().detect(grey, change, mount, expected, everywhere=everywhere)
-        if self._stage is Stage.TREES:
+        if self._stage is DetectorStage.TREES:
             return detect_with_trees(shipped_people_trees(), grey, change, mount, SMALLEST_PX, LEAST)
         first = self.detect_first(grey, change, mount, expected) if everywhere else expected
         return rescore(shipped_rescoring(), grey, change, first, mount, LEAST)
@@ -102,9 +102,9 @@ class WarmFinder:
         return Detections.from_trees(boxes, np.full(len(boxes), _SURE))
 
 
-def thermal_finder(stage: Stage) -> Finder:
+def thermal_finder(stage: DetectorStage) -> Finder:
     """Make one that looks no further than to a stage."""
-    return WarmFinder() if stage is Stage.THRESHOLD else ThermalFinder(DetectorOfStage(stage))
+    return WarmFinder() if stage is DetectorStage.THRESHOLD else ThermalFinder(DetectorOfStage(stage))
 
 
 _ALL: Final = DetectionTrackerConfig()
@@ -121,7 +121,7 @@ class Variant:
     """
 
     config: DetectionTrackerConfig = _ALL
-    stage: Stage | None = None
+    stage: DetectorStage | None = None
     is_calibrated: bool = True
 
     def tracked(self, recording: Recording) -> list[tuple[Track, ...]]:
@@ -155,10 +155,10 @@ VARIANTS: Final[Mapping[str, Variant]] = {
     "the detector looks at everybody in each image": Variant(_EVERYBODY),
     "and every third image is searched everywhere": Variant(_OFTEN),
     "every image is searched everywhere": Variant(_EVERYWHERE),
-    "proposed by the thermal image alone": Variant(stage=Stage.BOX_REFINEMENT),
-    "and without the closer look": Variant(stage=Stage.RESCORING),
-    "and without the second look, by trees alone, everywhere": Variant(_EVERYWHERE, Stage.TREES),
-    "by what is warmer than a grey and upright, everywhere": Variant(_EVERYWHERE, Stage.THRESHOLD),
+    "proposed by the thermal image alone": Variant(stage=DetectorStage.BOX_REFINEMENT),
+    "and without the closer look": Variant(stage=DetectorStage.RESCORING),
+    "and without the second look, by trees alone, everywhere": Variant(_EVERYWHERE, DetectorStage.TREES),
+    "by what is warmer than a grey and upright, everywhere": Variant(_EVERYWHERE, DetectorStage.THRESHOLD),
     "nested boxes are as good": Variant(
         replace(
             _ALL,
@@ -176,7 +176,7 @@ VARIANTS: Final[Mapping[str, Variant]] = {
 }
 
 
-def clip_recording(clip: Clip) -> Recording:
+def clip_recording(clip: RealClip) -> Recording:
     """Read a real clip.
 
     Raises:

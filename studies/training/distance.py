@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.store import Store, code_digest
 from peopleboy.scenarios.running.engine.task import Tell, Workers
+from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.scenarios.running.frame_cache import film_key
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.truth.scenes import ImageFreeTruth
+from peopleboy.sim.world_config import WorldConfig
 from peopleboy.studies.training.specification import Specification, option
 from peopleboy.tracker.frame import PANORAMA, Frame
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of

@@ -15,9 +15,9 @@ from sklearn.base import BaseEstimator, ClassifierMixin
 from sklearn.ensemble import AdaBoostClassifier
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.store import Store, code_digest
 from peopleboy.scenarios.running.engine.task import Workers
+from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.studies.training import occlusion_pairs
 from peopleboy.studies.training.occlusion_pairs import (
     SCENARIOS,

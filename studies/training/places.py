@@ -37,7 +37,7 @@ from peopleboy.tracker.panoramic.foreground.foreground import FILE as FOREGROUND
 from peopleboy.tracker.panoramic.foreground.foreground import Foreground
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
 from peopleboy.tracker.panoramic.people.figure_patch import PATCH, Map
-from peopleboy.tracker.panoramic.people.panorama_patches import Scene, promising_places
+from peopleboy.tracker.panoramic.people.panorama_patches import PanoramaScene, promising_places
 from peopleboy.tracker.panoramic.people.place_model import FILE, PlaceModel, with_distance
 
 Floats = NDArray[np.float64]
@@ -119,7 +119,7 @@ def sample_places(sequence: PanoramaSequence, calibration: PanoramaCalibration, 
         mask = foreground.update(image, float(sequence.time_s[k]), sequence.odometry(k), calibration)
         if k % every == seed % every and sequence.time_s[k] >= _WARM_UP_S:
             people = _people(sequence, k)
-            scene = Scene.of(image, mask, foreground.novelty, calibration)
+            scene = PanoramaScene.of(image, mask, foreground.novelty, calibration)
             parts.extend(_sample_image(scene, people, rng))
     return PlaceSamples.join(parts)
 
@@ -136,7 +136,7 @@ def _people(sequence: PanoramaSequence, k: int) -> list[_Standing]:
 
 
 def _sample_image(
-    scene: Scene, people: Sequence[_Standing], rng: np.random.Generator
+    scene: PanoramaScene, people: Sequence[_Standing], rng: np.random.Generator
 ) -> Iterator[PlaceSamples]:
     """Search an image as the tracker does: nearest first, covering those that are found, then newcomers."""
     yield _sample(scene, promising_places(scene.figures, 3), people)
@@ -153,7 +153,7 @@ def _sample_image(
     yield _sample(scene, promising_places(scene.figures, 3), people)
 
 
-def _sample(scene: Scene, polar: Floats, people: Sequence[_Standing]) -> PlaceSamples:
+def _sample(scene: PanoramaScene, polar: Floats, people: Sequence[_Standing]) -> PlaceSamples:
     """Label places (N, 2), bearing and distance; what is neither clearly a person nor none is left out."""
     places = polar[:, 1:] * np.stack([np.cos(polar[:, 0]), np.sin(polar[:, 0])], axis=1)
     offset, is_sure = np.full((len(polar), 2), np.nan), np.ones(len(polar), np.bool_)
@@ -169,7 +169,7 @@ def _sample(scene: Scene, polar: Floats, people: Sequence[_Standing]) -> PlaceSa
     return PlaceSamples(patches.astype(np.float16), polar[is_sure, 1], offset[is_sure])
 
 
-def _is_visible(one: _Standing, scene: Scene) -> bool:
+def _is_visible(one: _Standing, scene: PanoramaScene) -> bool:
     is_in_reach = NEAREST_M < one.distance_m < FARTHEST_M and one.pixels >= LEAST_PX
     return is_in_reach and scene.hidden_share(one.bearing_rad, one.distance_m) < BLIND_SHARE
 

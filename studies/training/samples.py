@@ -10,8 +10,8 @@ from typing import Any, ClassVar, Self, TypeVar
 import numpy as np
 
 from peopleboy.scenarios.run_folder.atomic_output import atomic, writing_to
-from peopleboy.scenarios.running.engine.engine import work_through
 from peopleboy.scenarios.running.engine.task import Tell, Workers
+from peopleboy.scenarios.running.engine.work_through import work_through
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from benchmarks.detection_ablation import LEAST, VARIANTS, DetectorOfStage, Stage, thermal_finder
+from benchmarks.detection_ablation import LEAST, VARIANTS, DetectorOfStage, DetectorStage, thermal_finder
 from benchmarks.sequences import Recording, record
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.tracker.detector.detections import NO_DETECTIONS
@@ -24,7 +24,7 @@ def recording() -> Recording:
 
 @pytest.mark.slow
 def test_all_looks_together_are_those_of_the_detector(recording: Recording) -> None:
-    whole, all_stages = PeopleDetector(least_score=LEAST), DetectorOfStage(Stage.BOX_REFINEMENT)
+    whole, all_stages = PeopleDetector(least_score=LEAST), DetectorOfStage(DetectorStage.BOX_REFINEMENT)
     for frame in recording.frames:
         grey = frame.grey(THERMAL)
         expected = whole.update(grey, frame.time_s)
@@ -40,7 +40,7 @@ def test_as_it_is_it_is_the_tracker(recording: Recording) -> None:
 
 
 def test_a_threshold_finds_people_by_the_greys_it_was_made_for_alone(recording: Recording) -> None:
-    find = thermal_finder(Stage.THRESHOLD)
+    find = thermal_finder(DetectorStage.THRESHOLD)
     frame = recording.frames[-1]
     warmer = np.clip(frame.grey(THERMAL).astype(int) + 60, 0, 255).astype(np.uint8)
     assert len(find(frame, NO_DETECTIONS, everywhere=True).box) >= 1

@@ -22,10 +22,10 @@ from peopleboy.studies.reproductions.evaluations.sliding_windows import (
     PARTS,
 )
 from peopleboy.studies.reproductions.experiment import Experiment, Line, Samples
-from peopleboy.studies.reproductions.experiments.panorama import CUES
+from peopleboy.studies.reproductions.experiments.panoramic_room import CUES
 from peopleboy.studies.reproductions.experiments.situation import TRACKERS
 from peopleboy.studies.reproductions.experiments.tracking import METRICS, RULES, TrackerTrial, trials
-from peopleboy.studies.reproductions.experiments.windows import MODELS
+from peopleboy.studies.reproductions.experiments.window_experiments import MODELS
 from peopleboy.studies.reproductions.image_errors import ImageErrors
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.units import Measurement

@@ -15,7 +15,7 @@ from peopleboy.studies.reproductions.experiment import Line, Samples
 from peopleboy.studies.reproductions.occlusion_splits import learn_split
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.statistics import SHARE
-from peopleboy.studies.reproductions.tracker_settings import Setting
+from peopleboy.studies.reproductions.tracker_settings import TrackerSetting
 from peopleboy.studies.reproductions.units import Measurement, Unit
 from peopleboy.studies.training.occlusion_pairs import (
     LEAST,
@@ -40,7 +40,7 @@ SCENES: Final = (
 )
 """Where examples come from: those of the shipped tables, harder ones, and the runs of data sets 3 and 4."""
 TESTS: Final = ("held out", "unseen scenarios")
-TRACKERS: Final = {"literal": Setting("thesis-occlusion"), "default": Setting("contour")}
+TRACKERS: Final = {"literal": TrackerSetting("thesis-occlusion"), "default": TrackerSetting("contour")}
 """Who measures the examples; the thesis does not test on other scenes than those it learned from."""
 
 
@@ -114,7 +114,7 @@ def _learned(
     return {tracker: len(found) for tracker, found in examples.items()}, using.grouped(units)
 
 
-def _pair_units(plan: Plan, setting: Setting) -> list[Unit]:
+def _pair_units(plan: Plan, setting: TrackerSetting) -> list[Unit]:
     """List the runs in which a tracker measures people who overlap."""
     return [
         Unit(f"pairs {name}-{seed} | {setting.key}", measure_pairs, (name, seed, setting))
@@ -134,7 +134,7 @@ def learn_unit(
     return Unit(key, learn_pairs, (tuple(way.features), way.most, plan.rounds, split, examples))
 
 
-def measure_pairs(scenario: str, seed: int, setting: Setting) -> Result:
+def measure_pairs(scenario: str, seed: int, setting: TrackerSetting) -> Result:
     """Run a tracker through a scenario, and keep what it measured of people who overlap."""
     return {"pairs": plain_pairs(collect_pairs(scenario, seed, setting.config()))}
 

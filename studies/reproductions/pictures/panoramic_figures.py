@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
-from peopleboy.sim.config import WorldConfig
 from peopleboy.sim.geometry.panorama import Mirror
+from peopleboy.sim.world_config import WorldConfig
 from peopleboy.studies.reproductions.distance_trials import SplitTrial, filtered, told_in_turn
 from peopleboy.studies.reproductions.evaluations.webcam_positions import (
     HEADING,

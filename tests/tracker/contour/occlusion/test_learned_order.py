@@ -6,7 +6,7 @@ from hypothesis.extra.numpy import arrays
 
 from peopleboy.bad_input import BadInput
 from peopleboy.studies.training.occlusion import boost
-from peopleboy.tracker.contour.contour_config import DepthConfig
+from peopleboy.tracker.contour.contour_config import DepthOrderConfig
 from peopleboy.tracker.contour.occlusion.learned_order import LearnedOrder, make_order, shipped_order
 from peopleboy.tracker.contour.occlusion.learned_table import TABLES, LearnedTable, WeakClassifier
 from peopleboy.tracker.contour.occlusion.pair_features import FEATURES
@@ -129,7 +129,7 @@ def test_the_shipped_tables_say_that_the_larger_and_lower_of_two_is_in_front(tra
 
 
 def test_a_tracker_orders_by_the_table_that_its_settings_name():
-    order = make_order(DepthConfig(order="learned", table="contour", remembers_feet=True))
+    order = make_order(DepthOrderConfig(order="learned", table="contour", remembers_feet=True))
     assert order is shipped_order("contour", remembers_feet=True)
     with refused("nobody.yaml"):
-        make_order(DepthConfig(order="learned", table="nobody"))
+        make_order(DepthOrderConfig(order="learned", table="nobody"))

@@ -6,8 +6,7 @@ import pytest
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.networks.mask_network import BLOCK
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
-from peopleboy.tracker.panoramic.foreground.floor_rows import floor_rows
-from peopleboy.tracker.panoramic.foreground.memory import (
+from peopleboy.tracker.panoramic.foreground.background_memory import (
     AGE,
     DOUBT,
     compare,
@@ -15,6 +14,7 @@ from peopleboy.tracker.panoramic.foreground.memory import (
     learn,
     move_along,
 )
+from peopleboy.tracker.panoramic.foreground.floor_rows import floor_rows
 from tests.helpers.images.as_taken import as_taken
 
 CAMERA = PanoramaCalibration(
