@@ -25,9 +25,8 @@ from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.scenarios.run_folder.image_files import image_file, write_png
 from peopleboy.scenarios.run_folder.truth_files import gt_lines
-from peopleboy.scenarios.sim_to_real.compare import compare_footage
-from peopleboy.scenarios.sim_to_real.page import auc_words, write_comparison
-from peopleboy.scenarios.sim_to_real.tell_apart import Told
+from peopleboy.scenarios.sim_to_real.compare import Separability, compare_images
+from peopleboy.scenarios.sim_to_real.page import describe_auc, write_comparison
 from peopleboy.sim.world import World
 
 OUT = Path("runs/realism")
@@ -102,9 +101,9 @@ def main(chosen: Sequence[Path], others: Sequence[Path]) -> None:
         film(scenarios, folder)
         row = []
         for clips, what in ((chosen, "chosen"), (others, "others")):
-            found = compare_footage([folder], clips)
+            found = compare_images([folder], clips)
             write_comparison(found, OUT / f"{folder.name}_{what}.html")
-            row += [auc_words(found.told), _words(found.told_people)]
+            row += [describe_auc(found.told), _words(found.told_people)]
         table.add_row(name, *row)
     Console(width=160).print(table)
 
@@ -147,8 +146,8 @@ def _changed(name: str, changes: Sequence[Change]) -> Scenario:
     return parse_scenario(data, source=name, folder=LIBRARY)
 
 
-def _words(told: Told | None) -> str:
-    return "" if told is None else auc_words(told)
+def _words(told: Separability | None) -> str:
+    return "" if told is None else describe_auc(told)
 
 
 if __name__ == "__main__":

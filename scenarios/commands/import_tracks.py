@@ -43,15 +43,14 @@ def import_tracks(
     RUN may be a folder of runs, such as a sweep's. TRACKS is one of files then, SCENARIO-SEED.txt for each
     of them, as benchmarks ask for; those files may lie in a folder data in it.
     """
-    from peopleboy.scenarios.import_tracks.adopt import Adoption
-    from peopleboy.scenarios.import_tracks.adopt import adopt as take
-    from peopleboy.scenarios.import_tracks.sequences import sequences
+    from peopleboy.scenarios.finished_runs.import_tracks import TrackImport, imports_by_sequence
+    from peopleboy.scenarios.finished_runs.import_tracks import import_tracks as take
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.scenarios.scores.run_scores import headline
     from peopleboy.scenarios.scores.show_scores import print_scores
     from peopleboy.tracker.footage.box_kinds import BoxKind
 
-    what = Adoption(
+    what = TrackImport(
         run=run,
         tracks=tracks,
         name=name,
@@ -61,7 +60,7 @@ def import_tracks(
         record=not no_rrd,
         overwrite=overwrite,
     )
-    each = sequences(what) if tracks.is_dir() else [what]
+    each = imports_by_sequence(what) if tracks.is_dir() else [what]
     for adoption in each:
         with progress_bar(adoption.out.name, unit="frames") as show:
             scores = take(adoption, show)

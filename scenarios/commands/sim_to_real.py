@@ -38,7 +38,7 @@ def sim_to_real(rendered: Sequence[Path], real: Sequence[Path], out: Path, as_js
     scenes at least. Needs scikit-learn.
     """
     from peopleboy.scenarios.report.page_file import check_place
-    from peopleboy.scenarios.sim_to_real.compare import compare_footage as compare
+    from peopleboy.scenarios.sim_to_real.compare import compare_images as compare
     from peopleboy.scenarios.sim_to_real.page import HEADS, headline, table_rows, write_comparison
 
     check_place(out)

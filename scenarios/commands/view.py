@@ -52,19 +52,19 @@ def scene_model(folder: Path, out: Path | None, no_heat: bool, no_rrd: bool) -> 
     frame; static_map.ply, what stands, as points; background.png, its depth in the last view; and scene.rrd,
     which `view` shows over the run's recording.
     """
+    from peopleboy.scenarios.finished_runs.run_scene_model import FOLDER, SceneModelOptions, run_scene_model
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.scenarios.run_folder.atomic_output import check_named, writing_to
     from peopleboy.scenarios.run_folder.finished_run import open_run
-    from peopleboy.scenarios.scene_model_runs.watch_run import FOLDER, WatchOptions, watch_run
 
     run = open_run(folder)
     place = folder / FOLDER if out is None else out
     check_named(place)
     if place.exists() and not (place / "scene.jsonl").is_file():
         raise BadInput(f"{place}: is no folder of this command and will not be replaced; give another --out")
-    options = WatchOptions(has_heat=not no_heat, record=not no_rrd)
+    options = SceneModelOptions(has_heat=not no_heat, record=not no_rrd)
     with writing_to(place), progress_bar(folder.name, unit="frames") as show:
-        lines = watch_run(run, place, options, show)
+        lines = run_scene_model(run, place, options, show)
     for line in lines or ["Nothing was moved."]:
         click.echo(line)
     click.echo(place)

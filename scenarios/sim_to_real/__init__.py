@@ -1,1 +1,1 @@
-"""How near rendered thermal pictures come to real ones: figures, a page, and a classifier as the judge."""
+"""Compare rendered thermal images with real ones: statistics, a page, and a classifier."""

@@ -7,13 +7,147 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Final
 
+import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.sim_to_real.clips import Clip, ClipFrame, Grey, find_clips
-from peopleboy.scenarios.sim_to_real.measures import Looks, measure_looks
-from peopleboy.scenarios.sim_to_real.patches import anywhere, of_background, of_people
-from peopleboy.scenarios.sim_to_real.tell_apart import Told, tell_apart
+from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
+from peopleboy.scenarios.sim_to_real.clips import (
+    SIDE,
+    Clip,
+    ClipFrame,
+    Grey,
+    background_patches,
+    find_clips,
+    person_patches,
+    random_patches,
+)
+from peopleboy.scenarios.sim_to_real.measures import ImageStatistics, gradient, measure_images
+
+# A two-sample test as one number: how well a small classifier separates rendered patches from real ones.
+
+Floats = NDArray[np.float64]
+
+FEWEST: Final = 24
+"""Patches that a side must have."""
+
+_FOLDS: Final = 5
+_REPEATS: Final = 4
+_STRENGTH: Final = 0.01  # C of the logistic regression: 332 features, some hundreds of patches
+_GRADIENTS: Final = np.array([0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, np.inf])
+
+
+@dataclass(frozen=True, slots=True)
+class Separability:
+    """How well patches are told apart.
+
+    Attributes:
+        auc: area under the ROC curve, 0.5 where nothing tells them apart, 1 where everything does: mean over
+            folds, and the 95 % interval of that mean by the bootstrap over folds.
+        folds: of each fold.
+        scenes: how many rendered and real scenes there are.
+        patches: how many rendered and real patches.
+    """
+
+    auc: Interval
+    folds: tuple[float, ...]
+    scenes: tuple[int, int]
+    patches: tuple[int, int]
+
+
+def features(patch: Grey) -> Floats:
+    """Describe a patch (32, 32) by gradients alone: HOG (324,) and shares of eight steps of magnitude.
+
+    Source: N. Dalal and B. Triggs, Histograms of oriented gradients for human detection, CVPR 2005: cells of
+    8 x 8 pixels, blocks of 2 x 2 cells, 9 orientations.
+    """
+    hog = np.asarray(_HOG.compute(patch), np.float64).ravel()
+    steps = np.histogram(gradient(patch), _GRADIENTS)[0] / patch.size
+    return np.concatenate([hog, np.sqrt(steps)])
+
+
+def classify_patches(
+    rendered: Sequence[Sequence[Grey]], real: Sequence[Sequence[Grey]], seed: int, of_what: str
+) -> Separability:
+    """Teach a logistic regression, and judge it by scenes that it has not seen.
+
+    The scenes of both sides are dealt into folds, as many as the side with fewer scenes has, at most five,
+    four times over. No scene is in training and in test at once.
+
+    Args:
+        rendered: patches of each rendered scene.
+        real: patches of each real scene.
+        seed: of the deals.
+        of_what: what the patches are, for errors.
+
+    Raises:
+        BadInput: scikit-learn is missing, or there are too few scenes or patches.
+    """
+    try:
+        from sklearn.linear_model import LogisticRegression
+        from sklearn.metrics import roc_auc_score
+        from sklearn.pipeline import make_pipeline
+        from sklearn.preprocessing import StandardScaler
+    except ImportError as error:
+        raise BadInput("sim-to-real needs scikit-learn: pip install scikit-learn") from error
+    sides = [[_table(scene) for scene in side if len(scene)] for side in (rendered, real)]
+    for name, side in zip(("rendered", "real"), sides, strict=True):
+        _check_enough(name, side, of_what)
+    rng = np.random.default_rng([seed, 1998])
+    count = min(_FOLDS, *(len(side) for side in sides))
+    aucs = []
+    for _ in range(_REPEATS):
+        dealt = [_deal(len(side), count, rng) for side in sides]
+        for fold in range(count):
+            train, test = [_gather(sides, dealt, fold, kept) for kept in (False, True)]
+            model: Any = make_pipeline(
+                StandardScaler(), LogisticRegression(C=_STRENGTH, class_weight="balanced", max_iter=2000)
+            )
+            model.fit(*train)
+            aucs.append(float(roc_auc_score(test[1], model.decision_function(test[0]))))
+    return Separability(
+        auc=bootstrap(aucs, rng),
+        folds=tuple(aucs),
+        scenes=(len(sides[0]), len(sides[1])),
+        patches=(sum(map(len, sides[0])), sum(map(len, sides[1]))),
+    )
+
+
+def _check_enough(name: str, side: Sequence[Floats], of_what: str) -> None:
+    if len(side) < 2:
+        raise BadInput(
+            f"{of_what}: {len(side)} {name} scene has any; at least 2 are needed, "
+            "to learn from one and judge by another"
+        )
+    patches = sum(map(len, side))
+    if patches < FEWEST:
+        raise BadInput(f"{of_what}: only {patches} {name} patches; at least {FEWEST} are needed")
+
+
+def _table(scene: Sequence[Grey]) -> Floats:
+    return np.array([features(patch) for patch in scene])
+
+
+def _deal(scenes: int, folds: int, rng: np.random.Generator) -> NDArray[np.int64]:
+    """Give every scene a fold, so that each fold has one at least."""
+    return np.asarray(rng.permutation(np.arange(scenes) % folds))
+
+
+def _gather(
+    sides: Sequence[Sequence[Floats]], dealt: Sequence[NDArray[np.int64]], fold: int, is_test: bool
+) -> tuple[Floats, NDArray[np.int64]]:
+    """Put features (N, F) of a fold, or of all others, together, and whether each is real (N,)."""
+    chosen = [
+        np.concatenate([rows for rows, own in zip(side, folds, strict=True) if (own == fold) == is_test])
+        for side, folds in zip(sides, dealt, strict=True)
+    ]
+    labels = np.repeat([0, 1], [len(rows) for rows in chosen])
+    return np.concatenate(chosen), labels
+
+
+_HOG = cv2.HOGDescriptor((SIDE, SIDE), (16, 16), (8, 8), (8, 8), 9)
+
 
 PICTURES: Final = 40
 """Of each scene, spread evenly."""
@@ -24,13 +158,13 @@ SHOWN: Final = 24
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SceneLooks:
+class SceneStatistics:
     """One scene: its name, how many pictures were looked at, and what they are like."""
 
     name: str
     pictures: int
     people: int
-    looks: Looks
+    looks: ImageStatistics
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,8 +178,8 @@ class Side:
         people: patches (32, 32) of people to be shown.
     """
 
-    looks: Looks
-    scenes: tuple[SceneLooks, ...]
+    looks: ImageStatistics
+    scenes: tuple[SceneStatistics, ...]
     background: tuple[Grey, ...]
     people: tuple[Grey, ...]
 
@@ -64,8 +198,8 @@ class Comparison:
 
     rendered: Side
     real: Side
-    told: Told
-    told_people: Told | None
+    told: Separability
+    told_people: Separability | None
     lacking: str
 
     def to_json(self) -> dict[str, Any]:
@@ -90,7 +224,7 @@ class _Cut:
     people: list[Grey]
 
 
-def compare_footage(rendered: Sequence[Path], real: Sequence[Path], seed: int = 0) -> Comparison:
+def compare_images(rendered: Sequence[Path], real: Sequence[Path], seed: int = 0) -> Comparison:
     """Compare the clips in these folders; the same seed chooses the same patches.
 
     Args:
@@ -102,12 +236,12 @@ def compare_footage(rendered: Sequence[Path], real: Sequence[Path], seed: int = 
         BadInput: a folder without pictures or truth, pictures that cannot be used, too few scenes or patches.
     """
     sides = [_cut(find_clips(folders), seed) for folders in (rendered, real)]
-    told = tell_apart(
+    told = classify_patches(
         [scene.anywhere for scene in sides[0]], [scene.anywhere for scene in sides[1]], seed, "patches"
     )
     told_people, lacking = None, ""
     try:
-        told_people = tell_apart(
+        told_people = classify_patches(
             [scene.people for scene in sides[0]], [scene.people for scene in sides[1]], seed, "people"
         )
     except BadInput as error:
@@ -127,13 +261,13 @@ def _cut_scene(clips: Sequence[Clip], rng: np.random.Generator) -> _Cut:
     each = max(PICTURES // len(clips), 2)
     moments = [moment for clip in clips for moment in clip.moments(each)]
     share = -(-_PATCHES // max(len(moments), 1))
-    people = [patch for moment in moments for patch in of_people(moment)]
+    people = [patch for moment in moments for patch in person_patches(moment)]
     kept = rng.permutation(len(people))[:_PATCHES]
     return _Cut(
         name=clips[0].name if len(clips) == 1 else Path(clips[0].scene).name,
         moments=moments,
-        anywhere=[patch for moment in moments for patch in anywhere(moment, share, rng)],
-        background=[patch for moment in moments for patch in of_background(moment, 1, rng)],
+        anywhere=[patch for moment in moments for patch in random_patches(moment, share, rng)],
+        background=[patch for moment in moments for patch in background_patches(moment, 1, rng)],
         people=[people[index] for index in sorted(kept)],
     )
 
@@ -141,9 +275,11 @@ def _cut_scene(clips: Sequence[Clip], rng: np.random.Generator) -> _Cut:
 def _side(scenes: Sequence[_Cut], seed: int) -> Side:
     rng = np.random.default_rng([seed, 64])
     return Side(
-        looks=measure_looks([moment for scene in scenes for moment in scene.moments], rng),
+        looks=measure_images([moment for scene in scenes for moment in scene.moments], rng),
         scenes=tuple(
-            SceneLooks(scene.name, len(scene.moments), len(scene.people), measure_looks(scene.moments, rng))
+            SceneStatistics(
+                scene.name, len(scene.moments), len(scene.people), measure_images(scene.moments, rng)
+            )
             for scene in scenes
         ),
         background=_in_turn([scene.background for scene in scenes], rng),
@@ -167,7 +303,7 @@ def _figures(side: Side) -> dict[str, Any]:
     }
 
 
-def figures_of(looks: Looks) -> dict[str, float | None]:
+def figures_of(looks: ImageStatistics) -> dict[str, float | None]:
     """The figures of some pictures that are one number each; None where there is none."""
     has_people = bool(len(looks.contrast))
     return {

@@ -1,4 +1,4 @@
-"""What pictures are like, in numbers: grey, gradients, noise, and how people stand out."""
+"""Statistics of thermal images: grey, gradients, noise, and the contrast of people."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.sim_to_real.clips import ClipFrame, Grey
-from peopleboy.scenarios.sim_to_real.patches import background_corners, covered, shrunk
+from peopleboy.scenarios.sim_to_real.clips import ClipFrame, Grey, background_corners, covered, shrunk
 
 Floats = NDArray[np.float64]
 
@@ -23,8 +22,8 @@ _LEFT: Final = 0.7895  # root mean square of that share of a normal distribution
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Looks:
-    """Figures of some pictures.
+class ImageStatistics:
+    """Statistics of some images.
 
     Attributes:
         grey: (64,) share of pixels by grey.
@@ -49,13 +48,13 @@ class Looks:
     clipped: float
 
 
-def measure_looks(moments: list[ClipFrame], rng: np.random.Generator) -> Looks:
+def measure_images(moments: list[ClipFrame], rng: np.random.Generator) -> ImageStatistics:
     """Measure pictures; each counts the same."""
     contrasts = [pair for moment in moments for pair in contrasts_of(moment)]
     table = np.array(contrasts, np.float64).reshape(-1, 2)
     steady = [moment for moment in moments if moment.later is not None]
     spectra = [_spectra(moment, rng) for moment in steady]
-    return Looks(
+    return ImageStatistics(
         grey=_mean([_shares(moment.grey, GREY_EDGES) for moment in moments]),
         gradient=_mean([_shares(gradient(shrunk(moment.grey)), GRADIENT_EDGES) for moment in moments]),
         spectrum=_mean([still for still, _ in spectra]),

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.scene_model_runs.run_frames import IMAGES
-from peopleboy.scenarios.scene_model_runs.true_events import TrueEvent, WhoIsWho, matching
+from peopleboy.scenarios.finished_runs.run_frames import IMAGES
+from peopleboy.scenarios.finished_runs.true_events import PersonNames, TrueEvent, matching
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.backgrounds import Backgrounds
 from peopleboy.sim.truth.events import ThingLog
@@ -120,7 +120,7 @@ class _Watcher:
         self.timed = Stopwatch()
         self.scene: VistaScene | None = None
         self.happenings: list[Happening] = []
-        self.identities = WhoIsWho()
+        self.identities = PersonNames()
         self.pixels = {kind: np.zeros(3, np.int64) for kind in ("people", "things")}
 
     def update(self, frame: Frame, masks: TrueMasks | None, truth: Truth) -> None:
@@ -222,7 +222,7 @@ def background_errors(found_m: Metres, true_m: Metres, lengths: Floats) -> dict[
 
 
 def event_counts(
-    happenings: Sequence[Happening], events: Sequence[TrueEvent], identities: WhoIsWho, first: Pose2
+    happenings: Sequence[Happening], events: Sequence[TrueEvent], identities: PersonNames, first: Pose2
 ) -> dict[str, int]:
     """Count right and false events, true events and those that were found, and the people who caused them.
 

@@ -8,16 +8,21 @@ import cv2
 import numpy as np
 import pytest
 
-from peopleboy.scenarios.sim_to_real.clips import ClipFrame, find_clips
+from peopleboy.scenarios.sim_to_real.clips import (
+    SIDE,
+    ClipFrame,
+    background_patches,
+    find_clips,
+    person_patches,
+)
+from peopleboy.scenarios.sim_to_real.compare import classify_patches, features
 from peopleboy.scenarios.sim_to_real.measures import (
     background_deviation,
     contrasts_of,
-    measure_looks,
+    measure_images,
     noise_of,
     radial_power,
 )
-from peopleboy.scenarios.sim_to_real.patches import SIDE, of_background, of_people
-from peopleboy.scenarios.sim_to_real.tell_apart import features, tell_apart
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names, refused
 
@@ -82,7 +87,7 @@ def test_contrast_and_deviation_are_those_that_were_painted() -> None:
     outside = np.ones(grey.shape, bool)
     outside[45:175, 84:136] = False
     assert background_deviation(moment(grey)) == pytest.approx(grey[outside].std())
-    looks = measure_looks([moment(grey, grey)], RNG)
+    looks = measure_images([moment(grey, grey)], RNG)
     assert looks.clipped == 0.0
     assert looks.grey.sum() == pytest.approx(1.0) == looks.gradient.sum()
 
@@ -90,12 +95,12 @@ def test_contrast_and_deviation_are_those_that_were_painted() -> None:
 def test_patches_of_background_hold_nobody_and_people_are_all_as_high() -> None:
     grey = np.full((200, 240), 50, np.uint8)
     grey[60:160, 90:130] = 200
-    assert {int(patch.max()) for patch in of_background(moment(grey), 8, RNG)} == {50}
-    (person,) = of_people(moment(grey))
+    assert {int(patch.max()) for patch in background_patches(moment(grey), 8, RNG)} == {50}
+    (person,) = person_patches(moment(grey))
     rows = np.flatnonzero((person > 125).any(axis=1))
     assert person.shape == (SIDE, SIDE)
     assert len(rows) == pytest.approx(SIDE / 1.25, abs=1)
-    assert of_people(moment(grey, boxes=np.array([[90.0, 60.0, 10.0, 20.0]]))) == []
+    assert person_patches(moment(grey, boxes=np.array([[90.0, 60.0, 10.0, 20.0]]))) == []
 
 
 def test_gradients_alone_are_looked_at() -> None:
@@ -104,8 +109,8 @@ def test_gradients_alone_are_looked_at() -> None:
 
 
 def test_what_is_alike_is_not_told_apart_and_what_is_not_is() -> None:
-    alike = tell_apart(textures(6, 1.5), textures(4, 1.5), 0, "patches")
-    apart = tell_apart(textures(6, 1.0), textures(4, 2.5), 0, "patches")
+    alike = classify_patches(textures(6, 1.5), textures(4, 1.5), 0, "patches")
+    apart = classify_patches(textures(6, 1.0), textures(4, 2.5), 0, "patches")
     assert 0.35 < alike.auc.mean < 0.65
     assert apart.auc.mean > 0.99
     assert apart.scenes == (6, 4)
@@ -117,7 +122,7 @@ def test_what_is_alike_is_not_told_apart_and_what_is_not_is() -> None:
 def test_what_tells_a_single_scene_is_of_no_use_on_others() -> None:
     """Each scene has a grain of its own; drawn anew for either side, it says nothing about the side."""
     sides = [[scene for sigma in RNG.uniform(0.6, 3.0, 8) for scene in textures(1, sigma)] for _ in range(2)]
-    assert tell_apart(*sides, 0, "patches").auc.mean < 0.8
+    assert classify_patches(*sides, 0, "patches").auc.mean < 0.8
 
 
 @pytest.mark.thorough

@@ -1,4 +1,4 @@
-"""A run's folder for tracks that were made elsewhere: the run's truth and scenario, and these tracks."""
+"""Import tracks that another program made of the images of a run, as a run of their own."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.export.replay import replay
 from peopleboy.scenarios.files.own_files import keep_own_files
 from peopleboy.scenarios.files.robot import ORACLE
-from peopleboy.scenarios.import_tracks.foreign_tracks import UNKNOWN, foreign_tracks
+from peopleboy.scenarios.finished_runs.foreign_tracks import UNKNOWN, foreign_tracks
 from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.run_folder.atomic_output import atomic, check_out, writing_to
-from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_whole_runs, read_run
+from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_whole_runs, read_run, runs_in
 from peopleboy.scenarios.run_folder.folder import RunFolder
 from peopleboy.scenarios.run_folder.image_files import about_gains
 from peopleboy.scenarios.running.run import Watchers
@@ -30,8 +30,8 @@ _KEPT = ("mounted_for_tracker", "behaviour")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Adoption:
-    """Which tracks are adopted, and how.
+class TrackImport:
+    """which tracks to import, and how.
 
     Attributes:
         run: folder of the run whose images they were made of.
@@ -54,13 +54,13 @@ class Adoption:
     overwrite: bool = False
 
 
-def adopt(what: Adoption, report: Callable[[int, int], None]) -> RunScores:
-    """Play a run once more, and leave a folder as if a tracker had told these tracks.
+def import_tracks(what: TrackImport, report: Callable[[int, int], None]) -> RunScores:
+    """Replay a run and write a folder as if a tracker had given these tracks.
 
     The robot drives as it did in the run, so that how well it drove is not scored.
 
     Args:
-        what: to be adopted.
+        what: to be imported.
         report: called after each frame with its number and the number of all.
 
     Raises:
@@ -95,8 +95,8 @@ def adopt(what: Adoption, report: Callable[[int, int], None]) -> RunScores:
     return scores
 
 
-def check_adoption(what: Adoption) -> None:
-    """Refuse what cannot be adopted, without writing anything.
+def check_import(what: TrackImport) -> None:
+    """Refuse what cannot be imported, without writing anything.
 
     Raises:
         BadInput: run, tracks, name or the folder to leave cannot be used.
@@ -105,7 +105,7 @@ def check_adoption(what: Adoption) -> None:
     check_out(what.out, "run", overwrite=what.overwrite)
 
 
-def _look_at(what: Adoption) -> tuple[FinishedRun, Mapping[int, tuple[Track, ...]]]:
+def _look_at(what: TrackImport) -> tuple[FinishedRun, Mapping[int, tuple[Track, ...]]]:
     _check_name(what.name)
     (run,) = open_whole_runs([what.run])
     return run, foreign_tracks(what.tracks, run, what.camera)
@@ -118,7 +118,7 @@ def _check_name(name: str) -> None:
         raise BadInput(f"--name {name!r}: must be letters, digits, and _ . + - after the first")
 
 
-def _about(what: Adoption, run: FinishedRun) -> dict[str, Any]:
+def _about(what: TrackImport, run: FinishedRun) -> dict[str, Any]:
     said = read_run(run.folder)
     return {
         "scenario": run.about.scenario,
@@ -137,3 +137,52 @@ def _about(what: Adoption, run: FinishedRun) -> dict[str, Any]:
             "unknown": list(UNKNOWN),
         },
     }
+
+
+# Results of a whole benchmark: one file of tracks for each of its sequences.
+
+
+def imports_by_sequence(what: TrackImport) -> list[TrackImport]:
+    """Give one import for each sequence of a folder of results, `SEQUENCE.txt` or `data/SEQUENCE.txt`.
+
+    Sequences are called SCENARIO-SEED, as exports of runs call them. Each is to be left in a folder of that
+    name in `what.out`.
+
+    Args:
+        what: `run` is a folder of runs, and `tracks` one of results for all of them.
+
+    Raises:
+        BadInput: a run has no file, or a file no run, or one of them cannot be used.
+    """
+    files = _files(what.tracks)
+    runs = _by_sequence(what.run)
+    for name in sorted(files.keys() ^ runs.keys()):
+        if name in runs:
+            raise BadInput(f"{what.tracks}: has no {name}.txt, the tracks of {runs[name].folder}")
+        raise BadInput(
+            f"{files[name]}: there is no run of that name in {what.run}, which has {', '.join(runs)}"
+        )
+    imports = [
+        replace(what, run=run.folder, tracks=files[name], out=what.out / name) for name, run in runs.items()
+    ]
+    for one in imports:
+        check_import(one)
+    return imports
+
+
+def _files(folder: Path) -> dict[str, Path]:
+    inner = folder / "data"
+    found = {path.stem: path for path in sorted((inner if inner.is_dir() else folder).glob("*.txt"))}
+    if not found:
+        raise BadInput(f"{folder}: has no SEQUENCE.txt, nor has {inner}; give a file or folder of tracks")
+    return found
+
+
+def _by_sequence(folder: Path) -> dict[str, FinishedRun]:
+    found: dict[str, FinishedRun] = {}
+    for run in open_whole_runs(runs_in(folder)):
+        name = f"{run.about.scenario}-{run.about.seed}"
+        if name in found:
+            raise BadInput(f"{run.folder}: same scenario and seed as {found[name].folder}; leave one out")
+        found[name] = run
+    return found

@@ -15,12 +15,10 @@ from click.testing import CliRunner
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.cli import cli
+from peopleboy.scenarios.finished_runs.run_frames import TOLD_S, PersonPositions
+from peopleboy.scenarios.finished_runs.run_scene_model import describe_change, true_events
+from peopleboy.scenarios.finished_runs.true_events import PersonNames, TrueEvent, matching, thing_names
 from peopleboy.scenarios.run_folder.finished_run import open_run
-from peopleboy.scenarios.scene_model_runs.bodies import TOLD_S, Bodies
-from peopleboy.scenarios.scene_model_runs.tell import sentence
-from peopleboy.scenarios.scene_model_runs.thing_names import thing_names
-from peopleboy.scenarios.scene_model_runs.true_events import TrueEvent, WhoIsWho, matching
-from peopleboy.scenarios.scene_model_runs.watch_run import true_events
 from peopleboy.tracker.scene_model.scene import Change, Happening
 
 SCENARIO = """
@@ -124,8 +122,8 @@ def test_a_run_without_a_depth_camera_is_refused(run: Path, tmp_path: Path) -> N
 
 
 def test_sentences_have_names_where_they_are_known() -> None:
-    assert sentence(GONE) == "3.5 s: person 1 took away object 2"
-    assert sentence(GONE, {1: "anna"}.get, "box") == "3.5 s: anna took away box"
+    assert describe_change(GONE) == "3.5 s: person 1 took away object 2"
+    assert describe_change(GONE, {1: "anna"}.get, "box") == "3.5 s: anna took away box"
 
 
 def test_a_happening_is_of_the_event_that_was_there_then() -> None:
@@ -156,20 +154,20 @@ def test_a_true_name_goes_to_what_matches_it_alone_and_only_once() -> None:
 
 
 def test_what_vanishes_where_somebody_stood_was_no_thing() -> None:
-    bodies = Bodies()
+    bodies = PersonPositions()
     bodies.look(2.0, [(2.8, 0.1)])
     bodies.look(3.0, [(2.8, 0.35)])
-    assert bodies.are_at(GONE)
-    assert not bodies.are_at(replace(GONE, time_s=4.5))
+    assert bodies.explain(GONE)
+    assert not bodies.explain(replace(GONE, time_s=4.5))
     bodies.look(3.0 + TOLD_S, [])
-    assert bodies.are_at(GONE)  # which is told late
-    assert not bodies.are_at(replace(GONE, change=Change.APPEARED, from_m=None, to_m=GONE.from_m))
+    assert bodies.explain(GONE)  # which is told late
+    assert not bodies.explain(replace(GONE, change=Change.APPEARED, from_m=None, to_m=GONE.from_m))
     bodies.look(200.0, [])
-    assert not bodies.are_at(GONE)  # forgotten, so that long runs take no more room
+    assert not bodies.explain(GONE)  # forgotten, so that long runs take no more room
 
 
 def test_who_is_who_is_told_by_most_instants() -> None:
-    who = WhoIsWho()
+    who = PersonNames()
     for place in ((1.0, 0.1), (1.0, 0.0), (1.0, 5.0)):
         who.look([(1, (1.0, 0.0))], [("anna", place), ("ben", (1.0, 0.5))])
     assert (who.name(1), who.name(2), who.name(None)) == ("anna", None, None)

@@ -1,1 +1,0 @@
-"""Tracks made elsewhere, put into the folder of a run of their own."""
