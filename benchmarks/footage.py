@@ -30,7 +30,8 @@ from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.track_footage import track_footage
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.engine.work_through import work_through
-from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.running.run import run
+from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 

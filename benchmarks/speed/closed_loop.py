@@ -10,7 +10,8 @@ from statistics import median
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
-from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.running.run import run
+from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker

@@ -16,7 +16,8 @@ from benchmarks.timing import Turns, spent_ms
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import RunTask, play, unfinished
-from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.running.run import run
+from peopleboy.scenarios.running.run_options import RunOptions
 
 SCENARIO, DURATION_S = "crossing_2", 2.0
 

@@ -11,17 +11,17 @@ import click
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.completion import complete_scenario
 from peopleboy.scenarios.commands.options import (
-    BOXES,
+    BEHAVIOUR,
+    TRACKER,
+    GivenOptions,
     Output,
     WholeNumber,
-    behaviour_option,
-    boxes_option,
+    options_of,
     output_options,
-    physics_option,
     tell_note,
-    tracker_option,
     workers_options,
 )
+from peopleboy.scenarios.running.run_options import RunOptions
 
 _SEEN: Final = 0.3
 
@@ -35,56 +35,44 @@ _SEEN: Final = 0.3
     type=WholeNumber(min=1),
     help="In place of a scenario: how many worlds drawn at random, as `render` has them.",
 )
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    default=Path("runs"),
-    show_default=True,
-    help="Where the runs' folders go.",
+@options_of(
+    RunOptions,
+    *("out", "tracker", "boxes", "behaviour", "physics", "overwrite"),
+    out="Folder for the runs' folders.  [default: runs]",
+    tracker=TRACKER,
+    behaviour=BEHAVIOUR,
+    overwrite="Replace earlier runs.",
 )
-@tracker_option
-@boxes_option
-@behaviour_option
-@physics_option
 @workers_options
-@click.option("--overwrite", is_flag=True, help="Replace earlier runs.")
 @output_options
 def sweep(
     scenario: str | None,
     seeds: int | None,
     randomise: int | None,
-    out: Path,
-    tracker: str | None,
-    boxes: str,
-    behaviour: str | None,
-    physics: str | None,
+    given: GivenOptions[RunOptions],
     workers: int | None,
     scheduler: str | None,
-    overwrite: bool,
     output: Output,
 ) -> None:
     """Run a scenario with many seeds, or many random worlds, without recordings, and score them together.
 
-    A killed call goes on where it was. Of random worlds, where many people stand behind things, figures are
-    told of everybody, and again of those of whom more than 30 % is seen.
+    A killed call goes on where it was. For random worlds, where many people stand behind things, scores are
+    given for all people, and for those of whom more than 30 % is visible.
     """
     from peopleboy.scenarios.running.engine.task import chosen_workers
     from peopleboy.scenarios.running.many_runs import sweep as run_seeds
     from peopleboy.scenarios.running.many_runs import sweep_worlds
     from peopleboy.scenarios.scores.by_tracker import figures_of_all, score_by_tracker
     from peopleboy.scenarios.scores.show_scores import print_runs
-    from peopleboy.tracker.footage.box_kinds import BoxKind
 
-    who, kind = chosen_workers(workers, scheduler), BoxKind(boxes)
+    who = chosen_workers(workers, scheduler)
+    options = given.make(seed=0, out=given.out or Path("runs"))
     if (scenario is None) == (randomise is None) or (randomise is not None and seeds is not None):
         raise BadInput("sweep: give a scenario, with --seeds or without, or --randomise N")
     if scenario is None:
-        runs = sweep_worlds(
-            range(randomise or 0), out, tracker, who, behaviour, physics, kind, overwrite=overwrite
-        )
+        runs = sweep_worlds(range(randomise or 0), options, who)
     else:
-        count = range(10 if seeds is None else seeds)
-        runs = run_seeds(scenario, count, out, tracker, who, behaviour, physics, kind, overwrite=overwrite)
+        runs = run_seeds(scenario, range(10 if seeds is None else seeds), options, who)
     groups = score_by_tracker(runs)
     if randomise is None:
         output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups, note=tell_note))
@@ -115,34 +103,22 @@ def sweep(
     help="Name or file; can be given again.",
 )
 @click.option("--seeds", type=WholeNumber(min=1), default=20, show_default=True, help="How many, from 0 on.")
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    default=Path("runs") / "compare",
-    show_default=True,
-    help="Where runs, tables and plots go.",
+@options_of(
+    RunOptions,
+    *("out", "boxes", "physics", "overwrite"),
+    out="Folder for runs, tables and plots.  [default: runs/compare]",
+    boxes="What boxes of trackers of your own enclose: the torso, or the whole person.",
+    overwrite="Replace earlier runs.",
 )
-@click.option(
-    "--boxes",
-    type=BOXES,
-    default="torso",
-    show_default=True,
-    help="What boxes of trackers of your own are drawn round: the torso, or all of a person.",
-)
-@physics_option
 @workers_options
-@click.option("--overwrite", is_flag=True, help="Replace earlier runs.")
 @output_options
 def compare(
     controllers: str,
     scenarios: Sequence[str],
     seeds: int,
-    out: Path,
-    boxes: str,
-    physics: str | None,
+    given: GivenOptions[RunOptions],
     workers: int | None,
     scheduler: str | None,
-    overwrite: bool,
     output: Output,
 ) -> None:
     """Let controllers drive through the same scenes, and print how they did, with confidence intervals.
@@ -157,16 +133,13 @@ def compare(
         show_comparison,
     )
     from peopleboy.scenarios.running.engine.task import chosen_workers
-    from peopleboy.tracker.footage.box_kinds import BoxKind
 
     who = chosen_workers(workers, scheduler)
     chosen = [parse_controller(text) for text in controllers.split(",")]
     names = [load_scenario(scenario).name for scenario in scenarios]
-    found = []
+    out, found = given.out or Path("runs") / "compare", []
     for scenario, name in zip(scenarios, names, strict=True):
-        runs = compare(
-            scenario, chosen, range(seeds), out / name, who, physics, BoxKind(boxes), overwrite=overwrite
-        )
+        runs = compare(scenario, chosen, range(seeds), given.make(seed=0, out=out / name), who)
         found.append(keep_comparison(name, runs, out / name))
         if output.is_wordy:
             show_comparison(name, runs)

@@ -1,52 +1,34 @@
-"""Options and help texts that several commands share."""
+"""Options of commands, from the fields of the dataclasses that the commands pass on.
+
+A field with a description becomes an option of its name: a flag if it is a truth value, a choice if it has
+few values, and else a number, a path or a word, with the limits and the default of the field. `options_of`
+gives a command such options; it takes the values as one `GivenOptions`, from which the dataclass is made.
+"""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, dataclass
+from enum import Enum
 from functools import wraps
-from typing import Any
+from pathlib import Path
+from typing import Any, Final, Generic, TypeVar
 
 import click
 
 from peopleboy.scenarios.commands.completion import BEHAVIOUR_NAMES, TRACKER_NAMES, complete_names
+from peopleboy.settings import Metavar, Setting, settings_of
 
 SEED = "[default: 0, or that of a run's own scenario.yaml]"
+TRACKERS = f"{', '.join(TRACKER_NAMES)}; truth, the true positions; or module:Class, your own"
+TRACKER = f"One of {TRACKERS}.  [default: the scenario's, or detection]"
+BEHAVIOURS = f"{', '.join(BEHAVIOUR_NAMES)}; or module:Class, your own"
+BEHAVIOUR = f"What drives the robot: {BEHAVIOURS}.  [default: the scenario's]"
 
-# The names are spelled out, since the trackers themselves take a second to load, which --help should not.
-TRACKERS = (
-    f"{', '.join(TRACKER_NAMES[:-1])} or {TRACKER_NAMES[-1]}; truth, which is told; or module:Class, your own"
-)
-complete_trackers = complete_names((*TRACKER_NAMES, "truth"))
-tracker_option = click.option(
-    "--tracker",
-    shell_complete=complete_trackers,
-    help=f"One of {TRACKERS}.  [default: the scenario's, or detection]",
-)
-behaviour_option = click.option(
-    "--behaviour",
-    shell_complete=complete_names(BEHAVIOUR_NAMES),
-    help="What drives the robot: stand, follow_person, follow_corridor or patrol; or module:Class, your "
-    "own.  [default: the scenario's]",
-)
-physics_option = click.option(
-    "--physics",
-    type=click.Choice(["bullet", "kinematic"]),
-    help="What moves the robot: PyBullet, or rolling without slip, which needs no PyBullet.  "
-    "[default: the scenario's]",
-)
-
-BOXES = click.Choice(["torso", "whole"])
-boxes_option = click.option(
-    "--boxes",
-    type=BOXES,
-    default="torso",
-    show_default=True,
-    help="What the tracker's boxes are drawn round, and so the truth's by which they are scored: the torso, "
-    "or all of a person, as most detectors do.",
-)
+C = TypeVar("C")
+Command = TypeVar("Command", bound=Callable[..., None])
 
 
 class WholeNumber(click.IntRange):
@@ -80,19 +62,118 @@ def _limits(number: WholeNumber | Number) -> str:
     return f"from {number.min:g} to {'less than ' * number.max_open}{number.max:g}"
 
 
+@dataclass(frozen=True, slots=True)
+class GivenOptions(Generic[C]):
+    """What the user gave on the command line for the fields of a dataclass.
+
+    Attributes:
+        config: the dataclass.
+        values: by field, where the user gave one.
+    """
+
+    config: type[C]
+    values: Mapping[str, Any]
+
+    def __getattr__(self, field: str) -> Any:
+        """Return the value of a field; None if the user gave none."""
+        return self.values.get(field)
+
+    def make(self, **derived: Any) -> C:
+        """Make the dataclass, with defaults for the rest, and with what a command derives."""
+        return self.config(**{**self.values, **derived})
+
+
+def options_of(
+    config: type[C], *fields: str, into: str = "given", is_optional: bool = False, **meanings: str
+) -> Callable[[Command], Command]:
+    """Give a command one option for each of these fields of a dataclass.
+
+    The command takes them as one `GivenOptions`.
+
+    Args:
+        config: the dataclass.
+        fields: which of its fields, in the order of the help.
+        into: name of the command's parameter.
+        is_optional: whether fields without a default may be left out, too.
+        meanings: help in place of a field's own.
+    """
+    known = {setting.field: setting for setting in settings_of(config)}
+    chosen = [known[field] for field in fields]
+
+    def decorate(command: Command) -> Command:
+        @wraps(command)
+        def with_given(*arguments: Any, **values: Any) -> None:
+            taken = {setting.field: _taken(setting, values.pop(setting.field)) for setting in chosen}
+            given = {field: value for field, value in taken.items() if value is not None}
+            command(*arguments, **{into: GivenOptions(config, given)}, **values)
+
+        decorated: Any = with_given
+        for setting in reversed(chosen):
+            meaning = meanings.get(setting.field, setting.meaning)
+            is_required = setting.is_required and not is_optional and "[default:" not in meaning
+            decorated = _option(setting, meaning, is_required=is_required)(decorated)
+        return decorated  # type: ignore[no-any-return]
+
+    return decorate
+
+
+def _option(setting: Setting, meaning: str, *, is_required: bool) -> Callable[[Command], Command]:
+    flag = f"--{setting.key.replace('_', '-')}"
+    if setting.kind is bool:  # one that is on unless asked for has a key that says so, such as no_rrd
+        return click.option(flag, setting.field, is_flag=True, help=meaning)
+    if setting.default is not MISSING and setting.default is not None and "[default:" not in meaning:
+        # Click does not get the default itself, so that a command knows what the user gave.
+        meaning += f"  [default: {setting.default}]"
+    return click.option(
+        flag,
+        setting.field,
+        type=_type(setting),
+        required=is_required,
+        metavar=next((entry.text for entry in setting.metadata if isinstance(entry, Metavar)), None),
+        shell_complete=_COMPLETED.get(setting.field),
+        help=meaning,
+    )
+
+
+def _type(setting: Setting) -> Any:
+    if setting.choices:
+        return click.Choice([str(choice) for choice in setting.choices])
+    low, high = setting.limits.get("ge"), setting.limits.get("le", setting.limits.get("lt"))
+    if setting.kind is int:
+        # The limits are kept as numbers of any kind; those of a whole number are whole.
+        return WholeNumber(None if low is None else int(low), None if high is None else int(high))
+    if setting.kind is float:
+        return Number(low, high, max_open="lt" in setting.limits) if low is not None else float
+    if setting.kind is Path:
+        return click.Path(path_type=Path)
+    # A pair of numbers is two words of the command line.
+    return (float, float) if setting.kind == tuple[float, float] else str
+
+
+def _taken(setting: Setting, value: Any) -> Any:
+    if setting.kind is bool:
+        return not setting.default if value else None
+    is_enum = isinstance(setting.kind, type) and issubclass(setting.kind, Enum)
+    return setting.kind(value) if is_enum and value is not None else value
+
+
+complete_trackers = complete_names((*TRACKER_NAMES, "truth"))
+_COMPLETED: Final = {"tracker": complete_trackers, "behaviour": complete_names(BEHAVIOUR_NAMES)}
+
+BOXES = click.Choice(["torso", "whole"])
 _COUNT = "Processes at the same time; 1 for none but this one.  [default: one a core]"
 _ADDRESS = "Work on the cluster of this Dask scheduler instead."
 
 
 def workers_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Let a command say who does the work; `chosen_workers` takes both."""
+    """Add the options that choose who does the work; `chosen_workers` takes both."""
     scheduler = click.option("--scheduler", metavar="tcp://...", help=_ADDRESS)
     return click.option("--workers", type=WholeNumber(min=1), help=_COUNT)(scheduler(command))
 
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """What of its figures a command prints.
+    """How a command prints its results.
 
     Attributes:
         as_json: figures as one JSON document, and nothing else.
@@ -104,11 +185,11 @@ class Output:
 
     @property
     def is_wordy(self) -> bool:
-        """Whether people are to be told."""
+        """Whether to print text for people."""
         return not (self.as_json or self.is_quiet)
 
     def figures(self, give: Callable[[], object], show: Callable[[], None] = lambda: None) -> None:
-        """Give figures as JSON, or show them to people."""
+        """Print results as JSON, or show them."""
         if self.as_json:
             click.echo(json.dumps(give(), indent=2))
         elif self.is_wordy:
@@ -116,7 +197,7 @@ class Output:
 
 
 def output_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Let a command, which takes an `Output` named output, say how its figures are to be printed."""
+    """Add the options that say how results are printed; the command takes an `Output` named output."""
 
     @wraps(command)
     def with_output(*arguments: Any, as_json: bool, quiet: bool, **options: Any) -> None:
@@ -135,5 +216,5 @@ def output_options(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def tell_note(text: str) -> None:
-    """Print what was taken as something else than it is."""
+    """Print a note on standard error."""
     click.echo(f"peopleboy: note: {text}", err=True)

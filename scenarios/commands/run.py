@@ -12,68 +12,47 @@ import click
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.completion import complete_scenario
 from peopleboy.scenarios.commands.options import (
+    BEHAVIOUR,
     SEED,
+    TRACKER,
+    GivenOptions,
     Output,
-    WholeNumber,
-    behaviour_option,
-    boxes_option,
+    options_of,
     output_options,
-    physics_option,
     tell_note,
-    tracker_option,
     workers_options,
 )
+from peopleboy.scenarios.running.run_options import RunOptions
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.files.scenario import Scenario
     from peopleboy.scenarios.loop.loop import Tick
     from peopleboy.scenarios.running.engine.task import Workers
-    from peopleboy.scenarios.running.run import RunOptions
     from peopleboy.scenarios.scores.run_scores import RunScores
 
 
 @click.command()
 @click.argument("scenario", shell_complete=complete_scenario)
-@click.option("--seed", type=WholeNumber(min=0), help=f"All that is random follows from it.  {SEED}")
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Folder of the run.  [default: runs/SCENARIO-SEED, and -TRACKER, -BEHAVIOUR, -PHYSICS for others]",
-)
-@click.option("--frames", is_flag=True, help="Write every image of every camera as PNG too.")
-@tracker_option
-@boxes_option
-@behaviour_option
-@physics_option
-@click.option("--renderer", default="raycast", show_default=True, help="raycast, or bullet (slow reference).")
-@click.option("--no-rrd", is_flag=True, help="Write no rerun recording.")
-@click.option(
-    "--lossless",
-    is_flag=True,
-    help="Keep the recording's images as they are, in 12 times the space; else they are JPEG of quality 45.",
+@options_of(
+    RunOptions,
+    *("seed", "out", "frames", "tracker", "boxes", "behaviour", "physics"),
+    *("renderer", "record", "lossless", "overwrite"),
+    seed=f"Seed of everything random.  {SEED}",
+    out="Folder of the run.  [default: runs/SCENARIO-SEED, and -TRACKER, -BEHAVIOUR, -PHYSICS for others]",
+    tracker=TRACKER,
+    behaviour=BEHAVIOUR,
 )
 @click.option(
     "--live", is_flag=True, help="Show it in the rerun viewer as it goes, or on a page of this machine."
 )
 @workers_options
-@click.option("--overwrite", is_flag=True, help="Replace an earlier run in the folder.")
 @output_options
 def run(
     scenario: str,
-    seed: int | None,
-    out: Path | None,
-    frames: bool,
-    tracker: str | None,
-    boxes: str,
-    behaviour: str | None,
-    physics: str | None,
-    renderer: str,
-    no_rrd: bool,
-    lossless: bool,
+    given: GivenOptions[RunOptions],
     live: bool,
     workers: int | None,
     scheduler: str | None,
-    overwrite: bool,
     output: Output,
 ) -> None:
     """Run a scenario headless, and leave a folder with truth, tracks, scores and a recording.
@@ -86,58 +65,41 @@ def run(
     from peopleboy.scenarios.files.suite import suite_names
     from peopleboy.scenarios.recording.viewer import live_viewer
     from peopleboy.scenarios.running.engine.task import chosen_workers
-    from peopleboy.scenarios.running.run import RunOptions
-    from peopleboy.tracker.footage.box_kinds import BoxKind
 
     is_suite = scenario in suite_names()
-    if is_suite and seed is not None:
-        raise BadInput(f"--seed {seed}: suite {scenario} has seeds of its own; leave it out")
-    if is_suite and behaviour is not None:
-        raise BadInput(f"--behaviour {behaviour}: suite {scenario} has drives of its own; leave it out")
+    if is_suite and given.seed is not None:
+        raise BadInput(f"--seed {given.seed}: suite {scenario} has seeds of its own; leave it out")
+    if is_suite and given.behaviour is not None:
+        raise BadInput(f"--behaviour {given.behaviour}: suite {scenario} has drives of its own; leave it out")
     loaded = None if is_suite else load_scenario(scenario)
-    number = seed if seed is not None else 0 if loaded is None else loaded.seed
-    name = scenario if loaded is None else f"{loaded.name}-{number}"
-    name += _others(loaded, tracker, behaviour, physics)
-    if loaded is not None and behaviour is not None:
-        loaded = loaded.steered_by(behaviour)
-    if loaded is not None and physics is not None:
-        loaded = loaded.moved_by(physics)
-    options = RunOptions(
-        seed=number,
-        out=out if out is not None else Path("runs") / name,
-        frames=frames,
-        tracker=tracker,
-        boxes=BoxKind(boxes),
-        renderer=renderer,
-        record=not no_rrd,
-        lossless=lossless,
-        overwrite=overwrite,
-    )
-    if live and (loaded is None or no_rrd or not output.is_wordy):
+    seed = given.seed if given.seed is not None else 0 if loaded is None else loaded.seed
+    name = (scenario if loaded is None else f"{loaded.name}-{seed}") + _others(loaded, given)
+    options = given.make(seed=seed, out=given.out or Path("runs") / name)
+    if loaded is not None:
+        loaded = options.applied_to(loaded)
+    if live and (loaded is None or not options.record or not output.is_wordy):
         raise BadInput(
             "--live: shows the recording of one run, and tells where; give one scenario, without --no-rrd, "
             "--json and --quiet"
         )
-    if lossless and (loaded is None or no_rrd):
+    if options.lossless and (loaded is None or not options.record):
         raise BadInput(f"{scenario}: --lossless is for the recording, which a suite and --no-rrd leave out")
     if loaded is None:
-        _run_suite(scenario, options, physics, chosen_workers(workers, scheduler), output)
+        _run_suite(scenario, options, chosen_workers(workers, scheduler), output)
         return
     if workers is not None or scheduler is not None:
         raise BadInput(f"{scenario}: is one run, which has no use for --workers or --scheduler; leave it out")
     with ExitStack() as stack:
         if live:
-            viewer = stack.enter_context(live_viewer(click.echo))
-            options = replace(options, viewer=viewer)
+            options = replace(options, viewer=stack.enter_context(live_viewer(click.echo)))
         _run_one(loaded, options, output)
 
 
-def _others(
-    scenario: Scenario | None, tracker: str | None, behaviour: str | None, physics: str | None
-) -> str:
+def _others(scenario: Scenario | None, given: GivenOptions[RunOptions]) -> str:
     """Name what is not as in the scenario, as a folder's name ends."""
     usual = () if scenario is None else (scenario.tracker, scenario.robot.behaviour, scenario.spec.physics)
-    others = [each for each in (tracker, behaviour, physics) if each is not None and each not in usual]
+    chosen = (given.tracker, given.behaviour, given.physics)
+    others = [each for each in chosen if each is not None and each not in usual]
     return "".join(f"-{each.replace(':', '.')}" for each in others)
 
 
@@ -185,12 +147,12 @@ def _run_shown(scenario: Scenario, options: RunOptions) -> RunScores:
         return run_scenario(scenario, options, report)
 
 
-def _run_suite(name: str, options: RunOptions, physics: str | None, workers: Workers, output: Output) -> None:
+def _run_suite(name: str, options: RunOptions, workers: Workers, output: Output) -> None:
     from peopleboy.scenarios.running.many_runs import run_suite
     from peopleboy.scenarios.scores.by_tracker import figures_of_all, score_by_tracker
     from peopleboy.scenarios.scores.show_scores import print_runs
 
-    folders = run_suite(name, options, workers, physics)
+    folders = run_suite(name, options, workers)
     groups = score_by_tracker(folders)
     output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups, note=tell_note))
     if output.is_wordy:

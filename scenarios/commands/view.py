@@ -1,4 +1,4 @@
-"""Commands that look into a run: `view` its recording, `scene-model` what happens to things."""
+"""Commands that look into a run: `view` its recording, `scene-model` runs the scene model over its images."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from pathlib import Path
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import WholeNumber
+from peopleboy.scenarios.commands.options import GivenOptions, WholeNumber, options_of
+from peopleboy.scenarios.running.run_options import RunOptions
 
 
 @click.command()
@@ -38,15 +39,10 @@ def view(folder: Path, web: bool, port: int | None) -> None:
 
 @click.command("scene-model")
 @click.argument("folder", metavar="RUN", type=click.Path(path_type=Path))
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Folder to leave.  [default: RUN/scene]",
-)
-@click.option("--no-heat", is_flag=True, help="Tell people by their shape alone, not by the thermal image.")
-@click.option("--no-rrd", is_flag=True, help="Write no recording.")
-def scene_model(folder: Path, out: Path | None, no_heat: bool, no_rrd: bool) -> None:
-    """Tell what was moved in a run, and by whom, as the depth camera of its robot sees it.
+@options_of(RunOptions, "out", "record", out="Folder to leave.  [default: RUN/scene]")
+@click.option("--no-heat", is_flag=True, help="Find people by their shape alone, without the thermal image.")
+def scene_model(folder: Path, no_heat: bool, given: GivenOptions[RunOptions]) -> None:
+    """Find what was moved in a run, and which person moved it, in the depth images of its robot.
 
     The run needs images: run the scenario with --frames, and a camera `depth`. Leaves scene.jsonl, a line a
     frame; static_map.ply, what stands, as points; background.png, its depth in the last view; and scene.rrd,
@@ -58,11 +54,11 @@ def scene_model(folder: Path, out: Path | None, no_heat: bool, no_rrd: bool) -> 
     from peopleboy.scenarios.run_folder.finished_run import open_run
 
     run = open_run(folder)
-    place = folder / FOLDER if out is None else out
+    place = given.out or folder / FOLDER
     check_named(place)
     if place.exists() and not (place / "scene.jsonl").is_file():
         raise BadInput(f"{place}: is no folder of this command and will not be replaced; give another --out")
-    options = SceneModelOptions(has_heat=not no_heat, record=not no_rrd)
+    options = SceneModelOptions(has_heat=not no_heat, record=given.record is None)
     with writing_to(place), progress_bar(folder.name, unit="frames") as show:
         lines = run_scene_model(run, place, options, show)
     for line in lines or ["Nothing was moved."]:

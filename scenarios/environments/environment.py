@@ -297,7 +297,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
                 has, or the folder cannot be written to.
         """
         from peopleboy.scenarios.environments.save_episode import save_episode  # here, as it loads a recorder
-        from peopleboy.scenarios.running.run import RunOptions
+        from peopleboy.scenarios.running.run_options import RunOptions
 
         config = self._running(even_over=True).config
         usual = self._scenario.world(self._seed)

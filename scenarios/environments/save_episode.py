@@ -7,7 +7,8 @@ from dataclasses import replace
 
 from peopleboy.behaviours.behaviour import STOP, Command
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.running.run import run
+from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.scenarios.scores.run_scores import RunScores
 
 

@@ -18,7 +18,8 @@ from peopleboy.scenarios.export.splits import SPLITS, split_file
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.run_folder.finished_run import cameras_of
 from peopleboy.scenarios.run_folder.image_files import image_file
-from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.running.run import run
+from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.sim.cameras.kinds import image_folders
 
 _ROUNDING = 1e-9

@@ -28,7 +28,7 @@ from peopleboy.scenarios.run_folder.atomic_output import check_named, writing_to
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import RunTask, play, unfinished
-from peopleboy.scenarios.running.run import RunOptions
+from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.sim.physics.physics_engine import check_physics
 
 

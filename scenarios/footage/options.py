@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.footage.rgbd_camera import RgbdCamera
+from peopleboy.settings import Metavar
 from peopleboy.tracker.boxes import Box, corners
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.footage.grey import LEAST_SIDE_PX, Radiometry
@@ -24,19 +26,27 @@ RGBD_TRACKER: Final = "rgbd"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RgbdOptions:
-    """What there is beside colour pictures of an RGB-D camera.
+    """What there is beside colour pictures of an RGB-D camera."""
 
-    Attributes:
-        depth: folder of depth pictures, of the same pixels as the colour ones.
-        m_per_count: metres that a count stands for.
-        camera: where it stood, and how wide it sees.
-        odometry: file of how it moved; None for a camera that stands.
-    """
-
-    depth: Path
-    m_per_count: float
+    depth: Annotated[
+        Path,
+        Field(
+            description="Folder of 16-bit depth pictures; FOLDER then holds the colours of the same pixels."
+        ),
+    ]
+    m_per_count: Annotated[
+        float,
+        Field(alias="depth_scale", description="Metres a count stands for; 0.001: millimetres."),
+        Metavar("M"),
+    ]
     camera: RgbdCamera = field(default_factory=RgbdCamera)
-    odometry: Path | None = None
+    odometry: Annotated[
+        Path | None,
+        Field(
+            description="CSV file of how it moved: advance_m, aside_m, turn_deg for each picture.  "
+            "[default: it stands]"
+        ),
+    ] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,34 +55,40 @@ class TrackOptions:
 
     Attributes:
         footage: folder of pictures, or a video: thermal ones, or with `rgbd` a folder of colour ones.
-        out: folder to leave.
-        colour: folder or video that shows the same view in colour; None for none.
         radiometry: what is known of thermal pixels.
         rgbd: depth of the same view; None for thermal footage.
-        rate_hz: pictures a second; None for the footage's own, or `DEFAULT_RATE_HZ`.
-        tracker: name of the tracker.
-        truth: a truth file; None to look for one beside the pictures.
-        boxes: what our trackers' boxes are drawn round; None for what those of the truth are, or all of a
-            person.
         start: box of a person in the first picture, or "truth" for that of the truth; None to find people.
-        seed: 0 or more; everything random follows from it.
-        film: whether to write overlay.mp4.
-        overwrite: whether an earlier run in the folder may be replaced.
     """
 
     footage: Path
-    out: Path
-    colour: Path | None = None
+    out: Annotated[Path, Field(description="Folder to leave.")]
+    colour: Annotated[Path | None, Field(description="The same view in colour, as many pictures.")] = None
     radiometry: Radiometry = field(default_factory=Radiometry)
     rgbd: RgbdOptions | None = None
-    rate_hz: float | None = None
-    tracker: str = DEFAULT_TRACKER
-    truth: Path | None = None
-    boxes: BoxKind | None = None
+    rate_hz: Annotated[
+        float | None,
+        Field(
+            ge=0.1,
+            le=1000.0,
+            description="Pictures a second.  [default: the video's own, or seqinfo.ini's; 15 otherwise]",
+        ),
+    ] = None
+    tracker: Annotated[str, Field(description="Name of the tracker.")] = DEFAULT_TRACKER
+    truth: Annotated[
+        Path | None,
+        Field(description="VOT, OTB or MOTChallenge truth.  [default: what lies beside the pictures]"),
+    ] = None
+    boxes: Annotated[
+        BoxKind | None,
+        Field(
+            description="What our trackers' boxes enclose: the torso, or the whole person.  [default: as the "
+            "truth's; whole without truth]"
+        ),
+    ] = None
     start: Box | str | None = None
-    seed: int = 0
-    film: bool = False
-    overwrite: bool = False
+    seed: Annotated[int, Field(ge=0, description="Seed of everything random.")] = 0
+    film: Annotated[bool, Field(description="Write overlay.mp4 too; needs the package av.")] = False
+    overwrite: Annotated[bool, Field(description="Replace an earlier run in the folder.")] = False
 
     @property
     def read(self) -> tuple[Path, ...]:

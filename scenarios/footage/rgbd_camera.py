@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final
+from typing import Annotated, Final
+
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Pinhole
@@ -20,21 +22,18 @@ LEVEL_DEG: Final = 10.0
 class RgbdCamera:
     """A camera without distortion, whose principal point is the middle of the image.
 
-    Attributes:
-        height_m: above the floor.
-        pitch_deg: tilt, positive looks down.
-        focal_px: focal length; None for that of the angle.
-        vertical_fov_deg: between the upper and the lower edge of the image; None for what the focal length
-            tells, or for `VERTICAL_FOV_DEG`.
-
     Raises:
         BadInput: both are given, or a number of no camera.
     """
 
-    height_m: float = 1.2
-    pitch_deg: float = 0.0
-    focal_px: float | None = None
-    vertical_fov_deg: float | None = None
+    height_m: Annotated[
+        float, Field(alias="camera_height_m", description="Height of the depth camera above the floor.")
+    ] = 1.2
+    pitch_deg: Annotated[float, Field(description="Tilt of the depth camera; positive looks down.")] = 0.0
+    focal_px: Annotated[float | None, Field(description="Focal length of its pictures; or the next.")] = None
+    vertical_fov_deg: Annotated[
+        float | None, Field(description="From top to bottom of its pictures.  [default: 43]")
+    ] = None
 
     def __post_init__(self) -> None:
         """Refuse what is no camera."""

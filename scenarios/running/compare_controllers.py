@@ -6,7 +6,7 @@ import json
 import math
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +23,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.tracker_by_name import tracker_cameras
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import RunTask, play, unfinished
-from peopleboy.scenarios.running.run import RunOptions
+from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
 from peopleboy.scenarios.scores.comfort_metrics import COMFORT_WORDS
 from peopleboy.tracker.footage.box_kinds import BoxKind
@@ -64,12 +64,8 @@ def compare(
     scenario: str,
     controllers: Sequence[Controller],
     seeds: Iterable[int],
-    out: Path,
+    options: RunOptions,
     workers: Workers,
-    physics: str | None = None,
-    boxes: BoxKind = BoxKind.TORSO,
-    *,
-    overwrite: bool,
 ) -> dict[Controller, list[Figures]]:
     """Run a scenario with every controller and seed, and collect how the robot drove.
 
@@ -79,11 +75,9 @@ def compare(
         scenario: name or path.
         controllers: who drives.
         seeds: the same for all of them.
-        out: where the runs' folders go, each CONTROLLER-SEED.
+        options: as for one run; `out` is the folder of all runs, each in CONTROLLER-SEED, and `boxes` is for
+            trackers of your own, as those of ours enclose torsos.
         workers: who does the runs.
-        physics: what moves the robot; None for what the scenario says.
-        boxes: what boxes of trackers of your own are drawn round; those of ours are round torsos.
-        overwrite: whether earlier runs are replaced.
 
     Returns:
         For each controller the figures of each seed, NaN for what is undefined.
@@ -95,23 +89,11 @@ def compare(
     """
     if len(set(controllers)) < len(controllers):
         raise BadInput(f"--controllers {','.join(map(str, controllers))}: each may be there once only")
-    if boxes is not BoxKind.TORSO and not any(is_own(controller.eyes) for controller in controllers):
-        raise BadInput(f"--boxes {boxes}: no controller sees by a tracker of your own; leave it out")
+    if options.boxes is not BoxKind.TORSO and not any(is_own(controller.eyes) for controller in controllers):
+        raise BadInput(f"--boxes {options.boxes}: no controller sees by a tracker of your own; leave it out")
     loaded = load_scenario(scenario)
-    if physics is not None:
-        loaded = loaded.moved_by(physics)
     tasks = {
-        (controller, seed): RunTask(
-            loaded.steered_by(controller.behaviour),
-            RunOptions(
-                seed=seed,
-                out=out / f"{controller}-{seed}".replace(":", "."),
-                tracker=controller.eyes,
-                boxes=boxes if is_own(controller.eyes) else BoxKind.TORSO,
-                record=False,
-                overwrite=overwrite,
-            ),
-        )
+        (controller, seed): RunTask(loaded, _options(options, controller, seed))
         for seed in seeds
         for controller in controllers
     }
@@ -120,6 +102,18 @@ def compare(
         controller: [figures_of(task.options.out) for (who, _), task in tasks.items() if who == controller]
         for controller in controllers
     }
+
+
+def _options(options: RunOptions, controller: Controller, seed: int) -> RunOptions:
+    return replace(
+        options,
+        seed=seed,
+        out=options.out / f"{controller}-{seed}".replace(":", "."),
+        behaviour=controller.behaviour,
+        tracker=controller.eyes,
+        boxes=options.boxes if is_own(controller.eyes) else BoxKind.TORSO,
+        record=False,
+    )
 
 
 def intervals(runs: Sequence[Figures], rng: np.random.Generator) -> dict[str, Interval]:

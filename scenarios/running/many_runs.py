@@ -18,8 +18,8 @@ from peopleboy.scenarios.run_folder.atomic_output import check_out
 from peopleboy.scenarios.running.engine.task import Task, Tell, Workers
 from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.scenarios.running.frame_cache import Film, film
-from peopleboy.scenarios.running.run import RunOptions, is_finished, run, tracker_name
-from peopleboy.tracker.footage.box_kinds import BoxKind
+from peopleboy.scenarios.running.run import is_finished, run, tracker_name
+from peopleboy.scenarios.running.run_options import RunOptions
 
 _RATE_HZ = 15
 _ARRIVAL_S = 30.0  # [s] for a run of another machine to be seen in a folder that both share
@@ -106,7 +106,7 @@ def _see(folder: Path) -> None:
         time.sleep(0.2)
 
 
-def run_suite(name: str, options: RunOptions, workers: Workers, physics: str | None = None) -> list[Path]:
+def run_suite(name: str, options: RunOptions, workers: Workers) -> list[Path]:
     """Run a suite, with a bar on standard error; a suite that was killed goes on where it was.
 
     Complete runs stay; those that were cut off are done again.
@@ -115,7 +115,6 @@ def run_suite(name: str, options: RunOptions, workers: Workers, physics: str | N
         name: of the suite.
         options: as for one run; `out` is the folder of the whole suite, and the suite has seeds of its own.
         workers: who does it.
-        physics: what moves the robots; None for what the scenarios say.
 
     Returns:
         The runs' folders, in the suite's order.
@@ -124,19 +123,22 @@ def run_suite(name: str, options: RunOptions, workers: Workers, physics: str | N
         BadInput: there is no such suite, or a complete run in its place is another one.
         TasksFailed: some runs failed.
     """
+    runs = runs_of(load_suite(name))
+    return _run_all([(one.scenario, one.seed, one.name) for one in runs], options, workers, name)
+
+
+def _run_all(
+    runs: Iterable[tuple[Scenario, int, str]], options: RunOptions, workers: Workers, title: str
+) -> list[Path]:
+    """Run scenarios, each with a seed and in a folder of a name, without recordings; return the folders."""
     tasks = [
         RunTask(
-            _moved(one.scenario, physics),
-            replace(options, seed=one.seed, out=options.out / one.name, record=False),
+            options.applied_to(scenario), replace(options, seed=seed, out=options.out / name, record=False)
         )
-        for one in runs_of(load_suite(name))
+        for scenario, seed, name in runs
     ]
-    play(unfinished(tasks), workers, name)
+    play(unfinished(tasks), workers, title)
     return [task.options.out for task in tasks]
-
-
-def _moved(scenario: Scenario, physics: str | None) -> Scenario:
-    return scenario if physics is None else scenario.moved_by(physics)
 
 
 def films_of(name: str, folder: Path) -> Iterator[Film]:
@@ -145,19 +147,14 @@ def films_of(name: str, folder: Path) -> Iterator[Film]:
         yield film(one.scenario, one.seed, folder)
 
 
-def sweep(
-    scenario: str,
-    seeds: Iterable[int],
-    out: Path,
-    tracker: str | None,
-    workers: Workers,
-    behaviour: str | None = None,
-    physics: str | None = None,
-    boxes: BoxKind = BoxKind.TORSO,
-    *,
-    overwrite: bool,
-) -> list[Path]:
+def sweep(scenario: str, seeds: Iterable[int], options: RunOptions, workers: Workers) -> list[Path]:
     """Run a scenario once per seed, without recordings; a sweep that was killed goes on where it was.
+
+    Args:
+        scenario: name or path.
+        seeds: one for each run.
+        options: as for one run; `out` is the folder of the whole sweep, and `seed` is not used.
+        workers: who does it.
 
     Returns:
         The folders out/SCENARIO-SEED, in the order of the seeds.
@@ -166,58 +163,17 @@ def sweep(
         BadInput: as for a single run, or a complete run in its place is another one.
         TasksFailed: some runs failed.
     """
-    loaded = _changed(load_scenario(scenario), behaviour, physics)
-    options = [
-        RunOptions(
-            seed=seed,
-            out=out / f"{loaded.name}-{seed}",
-            tracker=tracker,
-            boxes=boxes,
-            record=False,
-            overwrite=overwrite,
-        )
-        for seed in seeds
-    ]
-    play(unfinished([RunTask(loaded, option) for option in options]), workers, loaded.name)
-    return [option.out for option in options]
+    loaded = load_scenario(scenario)
+    runs = ((loaded, seed, f"{loaded.name}-{seed}") for seed in seeds)
+    return _run_all(runs, options, workers, loaded.name)
 
 
-def sweep_worlds(
-    seeds: Iterable[int],
-    out: Path,
-    tracker: str | None,
-    workers: Workers,
-    behaviour: str | None = None,
-    physics: str | None = None,
-    boxes: BoxKind = BoxKind.TORSO,
-    *,
-    overwrite: bool,
-) -> list[Path]:
-    """Run worlds drawn at random, one by each seed, otherwise as `sweep`.
+def sweep_worlds(seeds: Iterable[int], options: RunOptions, workers: Workers) -> list[Path]:
+    """Run worlds drawn at random, one for each seed, otherwise as `sweep`.
 
     Returns:
         The folders out/world_SEED, in the order of the seeds.
-
-    Raises:
-        BadInput: as for a single run, or a complete run in its place is another one.
-        TasksFailed: some runs failed.
     """
-    tasks = []
-    for seed in seeds:
-        world = _changed(random_scenario(seed), behaviour, physics)
-        options = RunOptions(
-            seed=seed,
-            out=out / world.name,
-            tracker=tracker,
-            boxes=boxes,
-            record=False,
-            overwrite=overwrite,
-        )
-        tasks.append(RunTask(world, options))
-    play(unfinished(tasks), workers, "random worlds")
-    return [task.options.out for task in tasks]
-
-
-def _changed(scenario: Scenario, behaviour: str | None, physics: str | None) -> Scenario:
-    steered = scenario if behaviour is None else scenario.steered_by(behaviour)
-    return steered if physics is None else steered.moved_by(physics)
+    worlds = ((random_scenario(seed), seed) for seed in seeds)
+    runs = ((world, seed, world.name) for world, seed in worlds)
+    return _run_all(runs, options, workers, "random worlds")

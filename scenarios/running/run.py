@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
 from pathlib import Path
 
 import yaml
@@ -24,6 +23,7 @@ from peopleboy.scenarios.run_folder.atomic_output import left_by_sigterm
 from peopleboy.scenarios.run_folder.finished_run import open_run, read_run
 from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versions
 from peopleboy.scenarios.run_folder.image_files import about_gains
+from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.scenarios.scores.comfort_metrics import ComfortLog
 from peopleboy.scenarios.scores.corridor_metrics import CorridorLog
 from peopleboy.scenarios.scores.following_score import FollowingLog, following_task, tracks_on_target
@@ -88,35 +88,6 @@ class Watchers:
 FOLLOWERS = ("follow_person", "patrol")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RunOptions:
-    """How to run a scenario.
-
-    Attributes:
-        seed: 0 or more; everything random follows from it.
-        out: the run's folder.
-        frames: whether to write every image.
-        tracker: name of the tracker, "truth", or "module:Class"; None for the scenario's.
-        boxes: what the tracker's boxes are drawn round, and so those of the truth that they are held against.
-        renderer: "raycast" or "bullet".
-        record: whether to write recording.rrd.
-        lossless: whether its images are kept without loss.
-        viewer: address of a viewer to show the recording at once; None for none.
-        overwrite: whether an earlier run in that folder may be replaced.
-    """
-
-    seed: int
-    out: Path
-    frames: bool = False
-    tracker: str | None = None
-    boxes: BoxKind = BoxKind.TORSO
-    renderer: str = "raycast"
-    record: bool = True
-    lossless: bool = False
-    viewer: str | None = None
-    overwrite: bool = False
-
-
 def tracker_name(scenario: Scenario, options: RunOptions) -> str:
     """Name the tracker of a run: the one asked for, or else the scenario's."""
     return scenario.tracker if options.tracker is None else options.tracker
@@ -144,6 +115,7 @@ def run(
     """
     if options.seed < 0:
         raise BadInput(f"--seed {options.seed}: must be 0 or more")
+    scenario = options.applied_to(scenario)
     world: World  # the oracle looks at it only once it is built
     name, given = tracker_name(scenario, options), scenario.robot.cameras
     tracker = make_named_tracker(name, options.seed, lambda: world.truth())
@@ -230,6 +202,7 @@ def is_finished(scenario: Scenario, options: RunOptions) -> bool:
     """
     if options.overwrite or not _is_complete(options.out):
         return False
+    scenario = options.applied_to(scenario)
     run = open_run(options.out)
     tracker = tracker_name(scenario, options)
     if run.about.tracker != tracker:

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from peopleboy.scenarios.files.load import load_scenario
     from peopleboy.scenarios.loop.loop import closed_loop
     from peopleboy.scenarios.running.frame_cache import film, frames_of
-    from peopleboy.scenarios.running.run import RunOptions, run
+    from peopleboy.scenarios.running.run import run
+    from peopleboy.scenarios.running.run_options import RunOptions
     from peopleboy.sim.world import World
     from peopleboy.tracker.evaluation.evaluate import evaluate
     from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
@@ -36,7 +37,7 @@ _HOMES: Final = {
     "Frame": "tracker.frame",
     "PeopleBoyEnv": "scenarios.environments.environment",
     "Percept": "behaviours.percept",
-    "RunOptions": "scenarios.running.run",
+    "RunOptions": "scenarios.running.run_options",
     "Status": "tracker.track",
     "Track": "tracker.track",
     "TrackBoxes": "tracker.evaluation.sequence",

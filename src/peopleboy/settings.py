@@ -95,6 +95,13 @@ class ByName:
     known: Mapping[str, Any]
 
 
+@dataclass(frozen=True, slots=True)
+class Metavar:
+    """What stands for the value of an option in a command's help."""
+
+    text: str
+
+
 IN_DEGREES: Final = _InDegrees()
 """Metadata of a field that ends in `_rad`: its key ends in `_deg`, and its limits are in degrees."""
 

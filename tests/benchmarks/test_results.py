@@ -18,7 +18,8 @@ from benchmarks.results import (
 )
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.running.run import run
+from peopleboy.scenarios.running.run_options import RunOptions
 
 SCENE = """
 name: tiny

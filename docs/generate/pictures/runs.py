@@ -11,7 +11,8 @@ from PIL import Image
 from docs.generate.pictures.moments import CROSSING
 from peopleboy.scenarios.drawing.draw_plan import draw_plan
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.running.run import run
+from peopleboy.scenarios.running.run_options import RunOptions
 
 WIDTH_PX = 1100
 TUTORIAL = Path(__file__).parents[2] / "tutorial" / "own-scenario.md"

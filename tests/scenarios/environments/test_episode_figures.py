@@ -15,7 +15,8 @@ from peopleboy.behaviours.behaviour import Command
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.written_controller import WrittenController
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.running.run import run
+from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.sim.robot.robot_config import DriveConfig
 from peopleboy.sim.truth.scenes import ImageFreeTruth
 

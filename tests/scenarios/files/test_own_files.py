@@ -14,7 +14,8 @@ from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.running.frame_cache import film_key
-from peopleboy.scenarios.running.run import RunOptions, is_finished, run
+from peopleboy.scenarios.running.run import is_finished, run
+from peopleboy.scenarios.running.run_options import RunOptions
 from tests.helpers.calls.refused import refused
 
 CAMERA = {"width_px": 80, "height_px": 60}

@@ -7,7 +7,8 @@ import pytest
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.scenarios.files.scenario_file import FaultSpec
 from peopleboy.scenarios.loop.faults import active
-from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.running.run import run
+from peopleboy.scenarios.running.run_options import RunOptions
 from tests.helpers.calls.refused import refused
 
 FROM_S = 5.0

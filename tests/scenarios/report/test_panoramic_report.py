@@ -11,7 +11,8 @@ from peopleboy.scenarios.report.charts.stills import Origin, show_frames
 from peopleboy.scenarios.report.findings.causes import find_cause
 from peopleboy.scenarios.report.findings.run_findings import RunFindings, analyse_run, headline
 from peopleboy.scenarios.run_folder.finished_run import open_run
-from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.running.run import run
+from peopleboy.scenarios.running.run_options import RunOptions
 
 SCENE = """
 name: round

@@ -30,7 +30,8 @@ from peopleboy.scenarios.report.findings.run_findings import RunFindings, analys
 from peopleboy.scenarios.report.page_tables import drive_figures, plain_figures
 from peopleboy.scenarios.report.report_page import write_report
 from peopleboy.scenarios.run_folder.finished_run import open_run
-from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.running.run import run
+from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.tracker.evaluation.occlusion_scores import TOTAL_ENDS, find_occlusions
 from peopleboy.tracker.evaluation.sequence import TrackBoxes
 from tests.helpers.runs import toy_runs as toy

@@ -17,6 +17,7 @@ from peopleboy.scenarios.running.compare_controllers import (
     show_comparison,
 )
 from peopleboy.scenarios.running.engine.task import Workers
+from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.scenarios.scores.bootstrap import bootstrap
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from tests.helpers.calls.refused import refused
@@ -56,14 +57,19 @@ def test_a_controller_is_a_behaviour_and_the_eyes_it_sees_by():
 def test_a_controller_named_twice_is_refused(tmp_path):
     with refused("--controllers stand,stand"):
         compare(
-            "single_follow", [parse_controller("stand")] * 2, range(1), tmp_path, Workers(), overwrite=False
+            "single_follow",
+            [parse_controller("stand")] * 2,
+            range(1),
+            RunOptions(seed=0, out=tmp_path),
+            Workers(),
         )
 
 
 def test_whole_people_are_boxed_by_trackers_of_ones_own_alone(tmp_path):
     chosen = [parse_controller("stand@truth")]
     with refused("--boxes whole", "leave it out"):
-        compare("single_follow", chosen, range(1), tmp_path, Workers(), boxes=BoxKind.WHOLE, overwrite=False)
+        options = RunOptions(seed=0, out=tmp_path, boxes=BoxKind.WHOLE)
+        compare("single_follow", chosen, range(1), options, Workers())
 
 
 def test_a_comparison_is_printed_drawn_and_kept(tmp_path, capsys):

@@ -8,7 +8,8 @@ import pytest
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.folder import versions
-from peopleboy.scenarios.running.run import RunOptions, is_finished
+from peopleboy.scenarios.running.run import is_finished
+from peopleboy.scenarios.running.run_options import RunOptions
 from tests.helpers.runs import toy_runs as toy
 
 SCENARIO = load_scenario("crossing_2")

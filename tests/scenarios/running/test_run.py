@@ -11,7 +11,8 @@ import pytest
 import yaml
 
 from peopleboy.scenarios.files.load import LIBRARY, load_scenario, parse_scenario
-from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.running.run import run
+from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_files, evaluate_runs
 from peopleboy.tracker.trackers import TRACKERS
 from tests.helpers.calls.command_line import refusal, run_cli

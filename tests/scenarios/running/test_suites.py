@@ -14,7 +14,7 @@ from peopleboy.scenarios.files.suite import EntrySpec, SuiteSpec, load_suite, ru
 from peopleboy.scenarios.running import many_runs as module
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import run_suite
-from peopleboy.scenarios.running.run import RunOptions
+from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.scenarios.scores.suite_table import THESIS, Content, add_up, count
 from peopleboy.studies.reproductions.runner import count_suite
 from tests.helpers.calls.refused import refused

@@ -18,7 +18,8 @@ from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_walls
 from peopleboy.scenarios.drawing.plan_sheet import Labels
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.running.run import RunOptions, run
+from peopleboy.scenarios.running.run import run
+from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.sim.people.body.skeleton import JOINT_NAMES
 
 SCENES: Final = {
