@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from peopleboy.scenarios.commands.options import GivenOptions, options_of, tell_note
-from peopleboy.scenarios.running.run_options import RunOptions
+from peopleboy.scenarios.commands.options import FieldsCommand, GivenOptions, options_of, tell_note
+
+if TYPE_CHECKING:
+    from peopleboy.scenarios.running.run_options import RunOptions
 
 
-@click.command("import-tracks")
+@click.command("import-tracks", cls=FieldsCommand)
 @click.argument("run", metavar="RUN", type=click.Path(path_type=Path))
 @click.argument("tracks", metavar="TRACKS", type=click.Path(path_type=Path))
 @click.option("--name", required=True, help="What their tracker is called.")
 @click.option("--camera", default="thermal", show_default=True, help="Camera in whose images the boxes are.")
 @options_of(
-    RunOptions,
+    "scenarios.running.run_options:RunOptions",
     *("out", "boxes", "record", "overwrite"),
     out="Folder to leave.  [default: beside RUN, SCENARIO-SEED-NAME, or RUN-NAME for a folder of runs]",
 )

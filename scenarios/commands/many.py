@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -13,6 +13,7 @@ from peopleboy.scenarios.commands.completion import complete_scenario
 from peopleboy.scenarios.commands.options import (
     BEHAVIOUR,
     TRACKER,
+    FieldsCommand,
     GivenOptions,
     Output,
     WholeNumber,
@@ -21,12 +22,14 @@ from peopleboy.scenarios.commands.options import (
     tell_note,
     workers_options,
 )
-from peopleboy.scenarios.running.run_options import RunOptions
 
 _SEEN: Final = 0.3
 
+if TYPE_CHECKING:
+    from peopleboy.scenarios.running.run_options import RunOptions
 
-@click.command()
+
+@click.command(cls=FieldsCommand)
 @click.argument("scenario", required=False, shell_complete=complete_scenario)
 @click.option("--seeds", type=WholeNumber(min=1), help="How many, from 0 on.  [default: 10]")
 @click.option(
@@ -36,7 +39,7 @@ _SEEN: Final = 0.3
     help="In place of a scenario: how many worlds drawn at random, as `render` has them.",
 )
 @options_of(
-    RunOptions,
+    "scenarios.running.run_options:RunOptions",
     *("out", "tracker", "boxes", "behaviour", "physics", "overwrite"),
     out="Folder for the runs' folders.  [default: runs]",
     tracker=TRACKER,
@@ -86,7 +89,7 @@ def sweep(
     output.figures(lambda: figures_of_all(groups) | {"seen": figures_of_all(seen)}, show)
 
 
-@click.command()
+@click.command(cls=FieldsCommand)
 @click.option(
     "--controllers",
     default="follow_person,follow_person@truth",
@@ -104,7 +107,7 @@ def sweep(
 )
 @click.option("--seeds", type=WholeNumber(min=1), default=20, show_default=True, help="How many, from 0 on.")
 @options_of(
-    RunOptions,
+    "scenarios.running.run_options:RunOptions",
     *("out", "boxes", "physics", "overwrite"),
     out="Folder for runs, tables and plots.  [default: runs/compare]",
     boxes="What boxes of trackers of your own enclose: the torso, or the whole person.",

@@ -9,17 +9,20 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, dataclass
 from enum import Enum
 from functools import wraps
+from importlib import import_module
 from pathlib import Path
-from typing import Any, Final, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar, cast
 
 import click
 
 from peopleboy.scenarios.commands.completion import BEHAVIOUR_NAMES, TRACKER_NAMES, complete_names
-from peopleboy.settings import Metavar, Setting, settings_of
+
+if TYPE_CHECKING:
+    from peopleboy.settings import Setting
 
 SEED = "[default: 0, or that of a run's own scenario.yaml]"
 TRACKERS = f"{', '.join(TRACKER_NAMES)}; truth, the true positions; or module:Class, your own"
@@ -83,53 +86,103 @@ class GivenOptions(Generic[C]):
         return self.config(**{**self.values, **derived})
 
 
+@dataclass(frozen=True, slots=True)
+class _FieldOptions:
+    """Options for some fields of a dataclass, which is loaded when they are needed.
+
+    A list of all commands needs no options, and should not wait for what the dataclasses import.
+    """
+
+    target: str
+    fields: tuple[str, ...]
+    is_optional: bool
+    meanings: Mapping[str, str]
+
+    def config(self) -> type[Any]:
+        module, _, name = self.target.partition(":")
+        config: type[Any] = getattr(import_module(f"peopleboy.{module}"), name)
+        return config
+
+    def settings(self) -> list[Setting]:
+        from peopleboy.settings import settings_of
+
+        known = {setting.field: setting for setting in settings_of(self.config())}
+        return [known[field] for field in self.fields]
+
+    def options(self) -> Iterator[click.Option]:
+        for setting in self.settings():
+            meaning = self.meanings.get(setting.field, setting.meaning)
+            is_required = setting.is_required and not self.is_optional and "[default:" not in meaning
+            yield _option(setting, meaning, is_required=is_required)
+
+    def given(self, values: dict[str, Any]) -> GivenOptions[Any]:
+        """Take the values of these fields out of those of a command."""
+        taken = {setting.field: _taken(setting, values.pop(setting.field)) for setting in self.settings()}
+        return GivenOptions(
+            self.config(), {field: value for field, value in taken.items() if value is not None}
+        )
+
+
+class FieldsCommand(click.Command):
+    """A command with `options_of`, which become parameters when they are first asked for."""
+
+    _params: list[Any]
+    _is_expanded: bool
+
+    @property
+    def params(self) -> list[click.Parameter]:
+        """All parameters; always the same list, as click adds to it."""
+        if not self._is_expanded:
+            fields = [each.options() if isinstance(each, _FieldOptions) else [each] for each in self._params]
+            self._params, self._is_expanded = [param for params in fields for param in params], True
+        return self._params
+
+    @params.setter
+    def params(self, params: list[Any]) -> None:
+        self._params, self._is_expanded = params, False
+
+
 def options_of(
-    config: type[C], *fields: str, into: str = "given", is_optional: bool = False, **meanings: str
+    target: str, *fields: str, into: str = "given", is_optional: bool = False, **meanings: str
 ) -> Callable[[Command], Command]:
-    """Give a command one option for each of these fields of a dataclass.
+    """Give a `FieldsCommand` one option for each of these fields of a dataclass.
 
     The command takes them as one `GivenOptions`.
 
     Args:
-        config: the dataclass.
+        target: the dataclass, as "module:Class" below `peopleboy`.
         fields: which of its fields, in the order of the help.
         into: name of the command's parameter.
         is_optional: whether fields without a default may be left out, too.
         meanings: help in place of a field's own.
     """
-    known = {setting.field: setting for setting in settings_of(config)}
-    chosen = [known[field] for field in fields]
+    options = _FieldOptions(target, fields, is_optional, meanings)
 
     def decorate(command: Command) -> Command:
         @wraps(command)
         def with_given(*arguments: Any, **values: Any) -> None:
-            taken = {setting.field: _taken(setting, values.pop(setting.field)) for setting in chosen}
-            given = {field: value for field, value in taken.items() if value is not None}
-            command(*arguments, **{into: GivenOptions(config, given)}, **values)
+            given = options.given(values)
+            command(*arguments, **{into: given}, **values)
 
-        decorated: Any = with_given
-        for setting in reversed(chosen):
-            meaning = meanings.get(setting.field, setting.meaning)
-            is_required = setting.is_required and not is_optional and "[default:" not in meaning
-            decorated = _option(setting, meaning, is_required=is_required)(decorated)
-        return decorated  # type: ignore[no-any-return]
+        # Where click's own decorators keep their options until the command is made.
+        with_given.__dict__.setdefault("__click_params__", []).append(options)
+        return cast(Command, with_given)
 
     return decorate
 
 
-def _option(setting: Setting, meaning: str, *, is_required: bool) -> Callable[[Command], Command]:
+def _option(setting: Setting, meaning: str, *, is_required: bool) -> click.Option:
     flag = f"--{setting.key.replace('_', '-')}"
     if setting.kind is bool:  # one that is on unless asked for has a key that says so, such as no_rrd
-        return click.option(flag, setting.field, is_flag=True, help=meaning)
+        return click.Option([flag, setting.field], is_flag=True, help=meaning)
     if setting.default is not MISSING and setting.default is not None and "[default:" not in meaning:
         # Click does not get the default itself, so that a command knows what the user gave.
         meaning += f"  [default: {setting.default}]"
-    return click.option(
-        flag,
-        setting.field,
+    return click.Option(
+        [flag, setting.field],
         type=_type(setting),
         required=is_required,
-        metavar=next((entry.text for entry in setting.metadata if isinstance(entry, Metavar)), None),
+        metavar=setting.metavar,
         shell_complete=_COMPLETED.get(setting.field),
         help=meaning,
     )

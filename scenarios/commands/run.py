@@ -15,6 +15,7 @@ from peopleboy.scenarios.commands.options import (
     BEHAVIOUR,
     SEED,
     TRACKER,
+    FieldsCommand,
     GivenOptions,
     Output,
     options_of,
@@ -22,19 +23,19 @@ from peopleboy.scenarios.commands.options import (
     tell_note,
     workers_options,
 )
-from peopleboy.scenarios.running.run_options import RunOptions
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.files.scenario import Scenario
     from peopleboy.scenarios.loop.loop import Tick
     from peopleboy.scenarios.running.engine.task import Workers
+    from peopleboy.scenarios.running.run_options import RunOptions
     from peopleboy.scenarios.scores.run_scores import RunScores
 
 
-@click.command()
+@click.command(cls=FieldsCommand)
 @click.argument("scenario", shell_complete=complete_scenario)
 @options_of(
-    RunOptions,
+    "scenarios.running.run_options:RunOptions",
     *("seed", "out", "frames", "tracker", "boxes", "behaviour", "physics"),
     *("renderer", "record", "lossless", "overwrite"),
     seed=f"Seed of everything random.  {SEED}",

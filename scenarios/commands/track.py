@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import GivenOptions, options_of, tell_note
-from peopleboy.scenarios.footage.options import RGBD_TRACKER, RgbdOptions, TrackOptions
-from peopleboy.scenarios.footage.rgbd_camera import RgbdCamera
+from peopleboy.scenarios.commands.options import FieldsCommand, GivenOptions, options_of, tell_note
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 if TYPE_CHECKING:
+    from peopleboy.scenarios.footage.options import RgbdOptions, TrackOptions
+    from peopleboy.scenarios.footage.rgbd_camera import RgbdCamera
     from peopleboy.scenarios.footage.track_footage import Tracked
 
 _TRACKERS = (
@@ -22,9 +22,9 @@ _TRACKERS = (
 )
 
 
-@click.command()
+@click.command(cls=FieldsCommand)
 @click.argument("footage", metavar="FOLDER|TIFF|VIDEO", type=click.Path(path_type=Path))
-@options_of(TrackOptions, "out", "colour", into="files")
+@options_of("scenarios.footage.options:TrackOptions", "out", "colour", into="files")
 @click.option(
     "--temperature-range",
     type=(float, float),
@@ -37,10 +37,19 @@ _TRACKERS = (
     help="16-bit counts to degC: 'centikelvin', or degC = GAIN counts + OFFSET.",
 )
 @click.option("--black-hot", is_flag=True, help="Warm things are dark.")
-@options_of(RgbdOptions, "depth", "m_per_count", "odometry", into="rgbd", is_optional=True)
-@options_of(RgbdCamera, "height_m", "pitch_deg", "focal_px", "vertical_fov_deg", into="camera")
 @options_of(
-    TrackOptions,
+    "scenarios.footage.options:RgbdOptions", "depth", "m_per_count", "odometry", into="rgbd", is_optional=True
+)
+@options_of(
+    "scenarios.footage.rgbd_camera:RgbdCamera",
+    "height_m",
+    "pitch_deg",
+    "focal_px",
+    "vertical_fov_deg",
+    into="camera",
+)
+@options_of(
+    "scenarios.footage.options:TrackOptions",
     *("rate_hz", "tracker", "truth", "boxes", "seed", "film", "overwrite"),
     tracker=f"One of {_TRACKERS}.  [default: detection; rgbd with --depth]",
 )
@@ -66,6 +75,7 @@ def track(
     truth. Without temperatures the grey follows the scene's contrast. With --depth and --depth-scale, people
     are tracked in colour with depth, and tracks.parquet has their places on the floor.
     """
+    from peopleboy.scenarios.footage.options import RGBD_TRACKER
     from peopleboy.scenarios.footage.track_footage import track_footage
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.tracker.footage.grey import Radiometry, parse_scale

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import GivenOptions, WholeNumber, options_of
-from peopleboy.scenarios.running.run_options import RunOptions
+from peopleboy.scenarios.commands.options import FieldsCommand, GivenOptions, WholeNumber, options_of
+
+if TYPE_CHECKING:
+    from peopleboy.scenarios.running.run_options import RunOptions
 
 
 @click.command()
@@ -37,9 +40,11 @@ def view(folder: Path, web: bool, port: int | None) -> None:
         open_viewer(layers)
 
 
-@click.command("scene-model")
+@click.command("scene-model", cls=FieldsCommand)
 @click.argument("folder", metavar="RUN", type=click.Path(path_type=Path))
-@options_of(RunOptions, "out", "record", out="Folder to leave.  [default: RUN/scene]")
+@options_of(
+    "scenarios.running.run_options:RunOptions", "out", "record", out="Folder to leave.  [default: RUN/scene]"
+)
 @click.option("--no-heat", is_flag=True, help="Find people by their shape alone, without the thermal image.")
 def scene_model(folder: Path, no_heat: bool, given: GivenOptions[RunOptions]) -> None:
     """Find what was moved in a run, and which person moved it, in the depth images of its robot.

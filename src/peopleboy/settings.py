@@ -157,6 +157,11 @@ class Setting:
         return round(math.degrees(value), 10) if self.is_in_degrees else value
 
     @property
+    def metavar(self) -> str | None:
+        """What stands for the value in a command's help; None for the usual."""
+        return next((entry.text for entry in self.metadata if isinstance(entry, Metavar)), None)
+
+    @property
     def is_required(self) -> bool:
         """Whether it has no default."""
         return self.default is MISSING
