@@ -136,5 +136,5 @@ def _faults(
     if not (isinstance(reason, str) and reason.isprintable()):
         yield f"reason must be text, on one line, got {reason!r}"
     if not (following is None or (isinstance(following, Integral) and following in tracks)):
-        told = ", ".join(map(str, sorted(tracks))) or "none"
-        yield f"following must be None or the id of a track that there was, {told}, got {following!r}"
+        known = ", ".join(map(str, sorted(tracks))) or "none"
+        yield f"following must be None or the id of a track that there was, {known}, got {following!r}"

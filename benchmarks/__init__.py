@@ -19,6 +19,6 @@ def call(command: click.Command, name: str) -> None:
 
 
 def _end(name: str, error: Exception, code: int) -> None:
-    told = error.format_message() if isinstance(error, click.ClickException) else str(error)
-    click.echo(f"{name}: {told}", err=True)
+    message = error.format_message() if isinstance(error, click.ClickException) else str(error)
+    click.echo(f"{name}: {message}", err=True)
     raise SystemExit(code) from error

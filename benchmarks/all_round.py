@@ -83,12 +83,15 @@ class _Rows:
                 self.tracks.append((frame, track.id, *place.position_m, *place.covariance_m2))
 
     def scores(self, frames: int) -> Scores:
-        true, told = (
+        true, found = (
             np.array(rows).reshape(-1, width) for rows, width in ((self.truth, 6), (self.tracks, 7))
         )
         standing = Places(frame=_whole(true, 0), id=_whole(true, 1), position_m=true[:, 2:4])
         believed = Places(
-            frame=_whole(told, 0), id=_whole(told, 1), position_m=told[:, 2:4], covariance_m2=told[:, 4:]
+            frame=_whole(found, 0),
+            id=_whole(found, 1),
+            position_m=found[:, 2:4],
+            covariance_m2=found[:, 4:],
         )
         return evaluate(
             TrueBoxes(
@@ -102,7 +105,7 @@ class _Rows:
                 frame=believed.frame,
                 id=believed.id,
                 box=floor_squares(believed.position_m),
-                confidence=np.ones(len(told)),
+                confidence=np.ones(len(found)),
             ),
             frames=frames,
             standing=standing,
@@ -219,8 +222,8 @@ class _Watch:
         if track is not None:
             self.newest = track.id
             self.numbers |= {track.id}
-        told = tick.explanation
-        contours = told.thermal.ellipses if isinstance(told, BothExplanations) else {}
+        found = tick.explanation
+        contours = found.thermal.ellipses if isinstance(found, BothExplanations) else {}
         self.seen.append((tick.truth.time_s, person.visible_fraction >= 0.5))
         self.has_box.append(track is not None and THERMAL in track.boxes)
         self.has_contour.append(track is not None and track.id in contours)

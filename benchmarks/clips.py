@@ -67,8 +67,8 @@ def open_clips(home: Path, only: Sequence[str] = (), frames: int | None = None) 
     there = {one.name: one for one in home.iterdir() if find_truth(one) is not None}
     missing = [name for name in only if name not in there]
     if missing or not there:
-        told = ", ".join(sorted(there)) or "none"
-        raise BadInput(f"{home}: no clip {' '.join(missing)} with pictures and {TRUTH}; there are: {told}")
+        found = ", ".join(sorted(there)) or "none"
+        raise BadInput(f"{home}: no clip {' '.join(missing)} with pictures and {TRUTH}; there are: {found}")
     names = sorted(only or there, key=lambda name: (name not in CHOSEN_BY, name))
     return [_open(there[name], frames) for name in names]
 

@@ -162,12 +162,12 @@ def _of_folders(pattern: str) -> dict[str, Any]:
 def _of_runs(folders: Sequence[Path]) -> dict[str, Any]:
     drives = [figures_of(folder) for folder in folders]
     values = {name: np.array([drive[name] for drive in drives]) for name in drives[0]}
-    told = {name: value[np.isfinite(value)] for name, value in values.items()}
+    finite = {name: value[np.isfinite(value)] for name, value in values.items()}
     return {
         "runs": len(folders),
         "scores": to_json(combine([run.scores for run in evaluate_runs(folders)])),
-        "mean": {name: float(value.mean()) if value.size else None for name, value in told.items()},
-        "worst": {name: float(value.max()) if value.size else None for name, value in told.items()},
+        "mean": {name: float(value.mean()) if value.size else None for name, value in finite.items()},
+        "worst": {name: float(value.max()) if value.size else None for name, value in finite.items()},
     }
 
 

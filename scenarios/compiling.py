@@ -14,11 +14,11 @@ class _FirstOne(event.Listener):
 
     def __init__(self, console: Console) -> None:
         self._console = console
-        self._has_told = False
+        self._has_announced = False
 
     def on_start(self, event: event.Event) -> None:
-        if not self._has_told:
-            self._has_told = True
+        if not self._has_announced:
+            self._has_announced = True
             room = event.data["dispatcher"].__module__.removeprefix("peopleboy.")
             self._console.print(
                 f"compiling kernels of {room} and others for this processor: once, for up to a minute"
@@ -29,7 +29,7 @@ class _FirstOne(event.Listener):
 
 
 @contextmanager
-def told_of_compiling(console: Console) -> Iterator[None]:
+def announced_compiling(console: Console) -> Iterator[None]:
     """Tell on a terminal if a kernel is compiled in the block."""
     if console.quiet or not console.is_terminal:
         yield

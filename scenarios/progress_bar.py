@@ -51,7 +51,7 @@ def progress_bar(title: str, unit: str | None = None) -> Iterator[Show]:
         title: stands before the bar.
         unit: what is counted, if the bar is to tell how many a second.
     """
-    from peopleboy.scenarios.compiling import told_of_compiling  # numba takes a while
+    from peopleboy.scenarios.compiling import announced_compiling  # numba takes a while
 
     console = progress_console()
     columns = (
@@ -67,7 +67,7 @@ def progress_bar(title: str, unit: str | None = None) -> Iterator[Show]:
     )
     task = progress.add_task(title, total=None, rate="", note="")
     with ExitStack() as running:
-        running.enter_context(told_of_compiling(console))
+        running.enter_context(announced_compiling(console))
 
         def show(finished: int, total: int, note: str = "") -> None:
             speed = progress.tasks[0].speed if unit else None

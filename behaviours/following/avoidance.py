@@ -90,7 +90,7 @@ class ClearanceConfig:
     farthest_m: float = 3.0
 
 
-def is_somebody_near(around: Points, config: ClearanceConfig, *, was_near: bool) -> bool:
+def is_person_near(around: Points, config: ClearanceConfig, *, was_near: bool) -> bool:
     """Tell whether something is close ahead.
 
     Args:

@@ -11,7 +11,7 @@ from peopleboy.behaviours.following.avoidance import (
     WIDELY,
     AvoidConfig,
     ClearanceConfig,
-    is_somebody_near,
+    is_person_near,
     is_way_out,
     swerve,
 )
@@ -317,9 +317,7 @@ def _wait(state: FollowState, target: Target, why: str, config: FollowConfig) ->
 def _is_too_near(target: Target, gap_s: float, percept: Percept, config: FollowConfig) -> bool:
     """Tell whether the person came too near to be seen: something is close ahead now."""
     was_near = target.height >= config.near_height
-    return gap_s <= config.room.longest_s and is_somebody_near(
-        echoes(percept), config.room, was_near=was_near
-    )
+    return gap_s <= config.room.longest_s and is_person_near(echoes(percept), config.room, was_near=was_near)
 
 
 def _make_room(state: FollowState, target: Target, config: FollowConfig) -> tuple[FollowState, Command]:

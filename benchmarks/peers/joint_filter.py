@@ -66,13 +66,13 @@ class JointFilter:
 
     def _follow(self, view: FrameView) -> dict[int, Belief]:
         """Sample the joint posterior, and drop who is not seen any more."""
-        proposals = [self._proposed(state, view) for state in self._people.values()]
-        chances = [_likelihood(state, view) for state in proposals]
-        rectangles = [regions_of(list(state), THESIS).astype(np.float64) for state in proposals]
+        particles = [self._proposed(state, view) for state in self._people.values()]
+        chances = [_likelihood(state, view) for state in particles]
+        rectangles = [regions_of(list(state), THESIS).astype(np.float64) for state in particles]
         kept = run_chain(chances, rectangles, THESIS.interaction.penalty, self._rng)
         beliefs = {
             number: _belief(state[rows], chance[rows])
-            for number, state, chance, rows in zip(self._people, proposals, chances, kept, strict=True)
+            for number, state, chance, rows in zip(self._people, particles, chances, kept, strict=True)
         }
         return {number: one for number, one in beliefs.items() if is_kept(one, view, THESIS.life)}
 

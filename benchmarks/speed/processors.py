@@ -53,8 +53,8 @@ def _told(shot: Path, tracker: str, environment: dict[str, str]) -> list[list[ob
     done = subprocess.run(
         command, env={**os.environ, **environment}, check=True, stdout=subprocess.PIPE, text=True
     )
-    told: list[list[object]] = json.loads(done.stdout)
-    return told
+    rows: list[list[object]] = json.loads(done.stdout)
+    return rows
 
 
 def _track(frames: Iterable[Frame], name: str) -> list[tuple[int, str]]:
@@ -82,8 +82,8 @@ def main(trackers: str, shot: Path | None) -> None:
         for name in trackers.split(","):
             first, count = first_difference(made.folder, name, Path(folder, "kernels"))
             is_same = is_same and first is None
-            told = "the same" if first is None else f"others from frame {first} on"
-            click.echo(f"{name}: {told}, {count} tracks in all frames")
+            rows = "the same" if first is None else f"others from frame {first} on"
+            click.echo(f"{name}: {rows}, {count} tracks in all frames")
     sys.exit(0 if is_same else 1)
 
 

@@ -122,10 +122,10 @@ def resolve_person(
             again, and after many tries the file's own path is kept.
         usual_air_c: [degC] air for which people dress as is usual; None draws from the whole catalogue.
     """
-    looks = _draw_looks(stream(seed, f"scenario.{person.name}.looks"), person)
+    drawn = _draw_person(stream(seed, f"scenario.{person.name}.looks"), person)
     if usual_air_c is not None:
         rng = stream(seed, f"scenario.{person.name}.clothes")
-        looks["clothes"] = _keep_given(usual_clothes(rng, looks["sex"], usual_air_c), person)
+        drawn["clothes"] = _keep_given(usual_clothes(rng, drawn["sex"], usual_air_c), person)
     rng = stream(seed, f"scenario.{person.name}.walk")
     delay = float(rng.uniform(0.0, person.enter_jitter_s)) if person.enter_jitter_s > 0.0 else 0.0
     later = replace(
@@ -134,7 +134,7 @@ def resolve_person(
         leave_s=None if person.leave_s is None else _rounded(person.leave_s + delay),
     )
     path = _vary_path(later, rng, can_walk)
-    return replace(later, **looks, path=path, jitter_m=0.0, speed_jitter=0.0, enter_jitter_s=0.0)
+    return replace(later, **drawn, path=path, jitter_m=0.0, speed_jitter=0.0, enter_jitter_s=0.0)
 
 
 def make_config(person: PersonSpec) -> PersonConfig:
@@ -170,7 +170,7 @@ def _moved(path: Path, points: Sequence[tuple[float, float]]) -> Path:
     )
 
 
-def _draw_looks(rng: np.random.Generator, person: PersonSpec) -> dict[str, Any]:
+def _draw_person(rng: np.random.Generator, person: PersonSpec) -> dict[str, Any]:
     """Sex, build, height and clothes; each is drawn even where the file gives it, so the others stay."""
     sex = str(rng.choice(list(_STATURE_M)))
     build = str(rng.choice(list(_BUILDS), p=list(_BUILDS.values())))

@@ -12,7 +12,7 @@ import numpy as np
 from peopleboy.scenarios.files.people import PersonSpec, make_config
 from peopleboy.scenarios.files.validation import validated
 from peopleboy.scenarios.random_worlds.distribution import RANGES, SHARES, Range
-from peopleboy.sim.people.appearance.finisher import draw_bearing, looks_stream
+from peopleboy.sim.people.appearance.finisher import appearance_stream, draw_bearing
 
 Values = dict[str, list[float] | list[str]]
 """By name of what was drawn: a value, or as many as there are."""
@@ -96,7 +96,7 @@ def drawn_values(played: Mapping[str, Any]) -> Values:
 def _bearings(people: Sequence[Mapping[str, Any]], seed: int) -> dict[str, list[str]]:
     """Draw again what a world of this seed draws beside its scenario: what people carry, and wear how."""
     configs = [make_config(validated(PersonSpec, person)) for person in people]
-    drawn = [draw_bearing(config, looks_stream(seed, config.name)) for config in configs]
+    drawn = [draw_bearing(config, appearance_stream(seed, config.name)) for config in configs]
     return {
         "carried": [outfit.carried for outfit, _ in drawn],
         "coat": [outfit.coat for outfit, _ in drawn],

@@ -124,15 +124,15 @@ class MakingWay:
         """Tell what the person would rather do than its script."""
         robot = now.robot.position
         if now.is_walking or now.is_seated:
-            return Wish(clear_m=self._keep_m, looks_at=robot)
+            return Wish(clear_m=self._keep_m, gaze_at=robot)
         place = now.at if now.home is None else now.home
         is_coming = _lateral_m(place, now, self._keep_m + _SPARE_M) is not None
         if is_coming and self._aside is None:
             self._aside = self._place_aside(now)
         if not is_coming:
             self._aside = None
-            return Wish(clear_m=self._keep_m, looks_at=robot)
-        return Wish(clear_m=self._keep_m, looks_at=robot, goes_to=self._aside, stands=True, faces=robot)
+            return Wish(clear_m=self._keep_m, gaze_at=robot)
+        return Wish(clear_m=self._keep_m, gaze_at=robot, goes_to=self._aside, stands=True, faces=robot)
 
     def _place_aside(self, now: Situation) -> Array | None:
         """Where to stand so that the robot passes, on the nearer side of its way if there is room."""
@@ -161,16 +161,16 @@ class Wary:
         robot = now.robot.position
         if now.is_seated or (now.is_walking and now.gap_m > self._keep_m):
             self._refuge = None
-            return Wish(clear_m=self._keep_m, looks_at=robot)
+            return Wish(clear_m=self._keep_m, gaze_at=robot)
         if self._refuge is not None and math.dist(now.at, self._refuge) < _ARRIVED_M:
             self._refuge = None
         is_near = now.gap_m < self._keep_m + _SPARE_M
         if is_near and (self._refuge is None or math.dist(self._refuge, robot) < self._keep_m):
             self._refuge = self._place_away(now)
         if self._refuge is not None:
-            return Wish(clear_m=self._keep_m, looks_at=robot, goes_to=self._refuge)
+            return Wish(clear_m=self._keep_m, gaze_at=robot, goes_to=self._refuge)
         stays = now.home is not None and math.dist(now.home, robot) < self._keep_m + _SPARE_M
-        return Wish(clear_m=self._keep_m, looks_at=robot, stands=stays, faces=robot if stays else None)
+        return Wish(clear_m=self._keep_m, gaze_at=robot, stands=stays, faces=robot if stays else None)
 
     def _place_away(self, now: Situation) -> Array | None:
         """Where to be clear of the robot again: straight away from it, or as far aside as walls demand."""
@@ -189,22 +189,22 @@ class Curious:
 
     def __init__(self, reaction: Reaction) -> None:
         self._keep_m = reaction.distance_m
-        self._looks_s = reaction.duration_s
+        self._gaze_s = reaction.duration_s
         self._chases_s = _CHASE_S
 
     def wish(self, dt_s: float, now: Situation) -> Wish:
         """Tell what the person would rather do than its script."""
-        if self._looks_s <= 0.0 or self._chases_s <= 0.0:
+        if self._gaze_s <= 0.0 or self._chases_s <= 0.0:
             return Wish(clear_m=_PASSES_M)
         robot = now.robot.position
         if now.gap_m <= self._keep_m + _ARRIVED_M:
-            self._looks_s -= dt_s
-            return Wish(stands=True, faces=robot, looks_at=robot)
+            self._gaze_s -= dt_s
+            return Wish(stands=True, faces=robot, gaze_at=robot)
         self._chases_s -= dt_s
         place = robot + self._keep_m * now.away
         if now.is_seated or not now.can_go(place):
-            return Wish(looks_at=robot)
-        return Wish(goes_to=place, faces=robot, looks_at=robot)
+            return Wish(gaze_at=robot)
+        return Wish(goes_to=place, faces=robot, gaze_at=robot)
 
 
 class Blocking:
@@ -226,11 +226,11 @@ class Blocking:
         if off_m <= _IN_THE_WAY_M:
             self._stands_s -= dt_s
         if off_m <= _ARRIVED_M:
-            return Wish(stands=True, faces=robot.position, looks_at=robot.position)
+            return Wish(stands=True, faces=robot.position, gaze_at=robot.position)
         self._chases_s -= dt_s
         if now.is_seated or not now.can_go(place):
-            return Wish(looks_at=robot.position)
-        return Wish(goes_to=place, faces=robot.position, looks_at=robot.position)
+            return Wish(gaze_at=robot.position)
+        return Wish(goes_to=place, faces=robot.position, gaze_at=robot.position)
 
 
 class Surprised:
@@ -246,7 +246,7 @@ class Surprised:
         self._stands_s -= dt_s
         robot = now.robot.position
         off = math.remainder(math.atan2(*(robot - now.at)[::-1]) - now.heading, math.tau)
-        return Wish(stands=True, looks_at=robot, faces=robot if abs(off) > _NECK_RAD else None)
+        return Wish(stands=True, gaze_at=robot, faces=robot if abs(off) > _NECK_RAD else None)
 
 
 def _lateral_m(place: Array, now: Situation, keep_m: float) -> float | None:
@@ -285,8 +285,8 @@ class Leading:
         if self._waited_s is not None:
             self._waited_s += dt_s
             if self._waited_s <= lead.at_most_s:
-                return Wish(stands=True, faces=robot, looks_at=robot, calls=True)
+                return Wish(stands=True, faces=robot, gaze_at=robot, calls=True)
             self._waited_s, self._has_given_up = None, True
         self._walked_s += dt_s
         is_glancing = self._walked_s % _GLANCE_EVERY_S > _GLANCE_EVERY_S - _GLANCE_S
-        return Wish(looks_at=robot if is_glancing else None)
+        return Wish(gaze_at=robot if is_glancing else None)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.poses import quaternions
-from peopleboy.sim.people.appearance.finisher import Finisher, looks_stream
+from peopleboy.sim.people.appearance.finisher import Finisher, appearance_stream
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.script import (
@@ -177,7 +177,7 @@ class Crowd:
 
     def _finisher(self, config: PersonConfig, seed: int) -> Finisher:
         """Who refines a person, by the air of the place."""
-        rng = looks_stream(seed, config.name)
+        rng = appearance_stream(seed, config.name)
         return Finisher(config, air_of(self._place), rng, is_outdoors=is_outdoors(self._place))
 
     def _add(self, person: Person) -> None:

@@ -218,7 +218,7 @@ class Person:
 
     def _look(self, dt_s: float, robot: PlanarState | None) -> None:
         """Turn the head towards what is to be looked at, else back to the front."""
-        target = self._wish.looks_at
+        target = self._wish.gaze_at
         if target is None and robot is not None and self._walker.is_awaiting(robot):
             target = robot.position
         bearing = None
@@ -294,7 +294,7 @@ class Person:
             is_held=is_held[None],
             arms=np.array([-1 if arms is None else POSTURES[arms]], np.int64),
             has_bag=np.array([self.config.bag]),
-            looks_about_rad=np.array([self._manner.looks_about_rad], np.float64),
+            head_sweep_rad=np.array([self._manner.head_sweep_rad], np.float64),
         )
 
     def poses(self) -> Array:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from peopleboy.sim.shapes.shapes import Vector
 from peopleboy.sim.truth.truth import BORDER, PersonTruth, ThingTruth, Truth
 
-_Told = tuple[str, str, str]  # what, to whom, by whom
+_Reported = tuple[str, str, str]  # what, to whom, by whom
 
 # Somebody enters the view when more than this share of the whole silhouette is seen, and leaves it when less
 # than the second lies inside the image, hidden or not.
@@ -60,7 +60,7 @@ class EventLog:
 
     def update(self, truth: Truth) -> list[Event]:
         """Compare with the truth before, and return what is new."""
-        found: list[_Told] = []
+        found: list[_Reported] = []
         people = {person.name: person for person in truth.people}
         for name in sorted((self._in_view | self._hidden.keys() | self._total.keys()) - people.keys()):
             found += self._leave(name)
@@ -69,8 +69,8 @@ class EventLog:
         found += self._touch(truth.time_s, truth.contacts)
         return [Event(time_s=truth.time_s, kind=kind, person=who, other=other) for kind, who, other in found]
 
-    def _look_at(self, person: PersonTruth, people: Collection[str]) -> list[_Told]:
-        name, found = person.name, list[_Told]()
+    def _look_at(self, person: PersonTruth, people: Collection[str]) -> list[_Reported]:
+        name, found = person.name, list[_Reported]()
         if person.inside_fraction < LEAVES_INSIDE:
             return self._leave(name)
         if name not in self._in_view and person.visible_fraction > ENTERS_SEEN:
@@ -83,9 +83,9 @@ class EventLog:
         }
         return found + self._occlusions(name, shares)
 
-    def _occlusions(self, name: str, shares: Mapping[str, float]) -> list[_Told]:
+    def _occlusions(self, name: str, shares: Mapping[str, float]) -> list[_Reported]:
         """Tell what is new of an occlusion by the share that each occluder hides."""
-        found: list[_Told] = []
+        found: list[_Reported] = []
         hidden, total = self._hidden.setdefault(name, []), sum(shares.values())
         most = max(shares, key=lambda other: shares[other], default="")
         starts = [
@@ -102,7 +102,7 @@ class EventLog:
         self._hidden[name] = [other for other in hidden if other not in ends]
         return found + [("occlusion ends", name, other) for other in ends]
 
-    def _leave(self, name: str) -> list[_Told]:
+    def _leave(self, name: str) -> list[_Reported]:
         found = self._occlusions(name, {})
         if name in self._in_view:
             self._in_view.remove(name)
@@ -110,7 +110,7 @@ class EventLog:
         del self._hidden[name]
         return found
 
-    def _touch(self, time_s: float, contacts: Sequence[str]) -> list[_Told]:
+    def _touch(self, time_s: float, contacts: Sequence[str]) -> list[_Reported]:
         last = self._last_touch_s
         found = [("contact starts", "robot", other) for other in contacts if other not in last]
         last.update(dict.fromkeys(contacts, time_s))

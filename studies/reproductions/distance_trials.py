@@ -77,7 +77,7 @@ def general_trials(run: DistanceSamples, taught: Sequence[tuple[Rows, Floats]]) 
 
     Source: OMNIVIS 2003, section 6.1.
     """
-    tested = [(rest, np.abs(told[rest] - run.distance_m[rest])) for rest, told in taught]
+    tested = [(rest, np.abs(predicted[rest] - run.distance_m[rest])) for rest, predicted in taught]
     return ImageErrors.of(tested, len(run.cues))
 
 
@@ -95,10 +95,10 @@ def personal_trials(run: DistanceSamples, trial: SplitTrial) -> dict[tuple[int, 
         rng = np.random.default_rng((0, repeat))
         parts = {one: SPLITS[trial.split](len(rows), rng) for one, rows in whose.items()}
         for taught in people:
-            told = _predict(run, whose[taught][parts[taught][0]], trial.settings, rng)
+            predicted = _predict(run, whose[taught][parts[taught][0]], trial.settings, rng)
             for one in people:
                 rest = whose[one][parts[one][1]]
-                tested[one, taught].append((rest, np.abs(told[rest] - run.distance_m[rest])))
+                tested[one, taught].append((rest, np.abs(predicted[rest] - run.distance_m[rest])))
     return {pair: ImageErrors.of(parts, len(run.cues)) for pair, parts in tested.items()}
 
 
@@ -131,8 +131,8 @@ def position_trials(
     Source: OMNIVIS 2003, section 6.2.
     """
     tested: dict[str, Tested] = {name: [] for name in FILTERS}
-    for repeat, (rest, told) in enumerate(taught):
-        measured = run.positions_at(told)
+    for repeat, (rest, predicted) in enumerate(taught):
+        measured = run.positions_at(predicted)
         if is_noisy:
             measured = as_noisy_as_printed(run, measured, np.random.default_rng((1, repeat)))
         for name, parts in tested.items():
@@ -162,20 +162,20 @@ def correlations(run: DistanceSamples, taught: Sequence[tuple[Rows, Floats]]) ->
 
     Source: OMNIVIS 2003, figure 5.
     """
-    rest, told = taught[0]
+    rest, predicted = taught[0]
     cues = [np.corrcoef(cue, run.distance_m)[0, 1] for cue in run.cues.T]
-    return np.array([*cues, np.corrcoef(told[rest], run.distance_m[rest])[0, 1]])
+    return np.array([*cues, np.corrcoef(predicted[rest], run.distance_m[rest])[0, 1]])
 
 
-def told_in_turn(run: DistanceSamples, trial: SplitTrial) -> Floats:
+def predicted_in_turn(run: DistanceSamples, trial: SplitTrial) -> Floats:
     """Tell the distances (N,) [m] of all images of a film, each by a network that did not learn from it."""
-    told, repeat = np.full(len(run.cues), np.nan), 0
-    while np.isnan(told).any():
+    predicted, repeat = np.full(len(run.cues), np.nan), 0
+    while np.isnan(predicted).any():
         training, rest, rng = trial.parts(len(run.cues), repeat)
-        untold = rest[np.isnan(told[rest])]
-        told[untold] = _predict(run, training, trial.settings, rng)[untold]
+        unpredicted = rest[np.isnan(predicted[rest])]
+        predicted[unpredicted] = _predict(run, training, trial.settings, rng)[unpredicted]
         repeat += 1
-    return told
+    return predicted
 
 
 def _samples(run: DistanceSamples) -> tuple[Floats, Floats]:
@@ -200,14 +200,14 @@ def _positions(run: DistanceSamples, measured: Floats, name: str) -> Floats:
 
 def filtered(run: DistanceSamples, measured: Floats, position_filter: PositionFilter) -> Floats:
     """Filter positions (N, 2) [m]; the filter starts anew with each person."""
-    told = [position_filter.start(measured[0])]
+    predicted = [position_filter.start(measured[0])]
     for k in range(1, len(measured)):
         if run.person[k] != run.person[k - 1]:
-            told.append(position_filter.start(measured[k]))
+            predicted.append(position_filter.start(measured[k]))
         else:
             steps = float(run.time_s[k] - run.time_s[k - 1]) / STEP_S
-            told.append(position_filter.update(told[-1], measured[k], steps))
-    return np.array([estimate.position_m for estimate in told])
+            predicted.append(position_filter.update(predicted[-1], measured[k], steps))
+    return np.array([estimate.position_m for estimate in predicted])
 
 
 def as_noisy_as_printed(run: DistanceSamples, measured: Floats, rng: np.random.Generator) -> Floats:

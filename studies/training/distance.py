@@ -268,8 +268,8 @@ def run_epoch(
         for j in range(len(hidden)):
             units[j] = 1.0 / (1.0 + np.exp(-np.dot(hidden[j], inputs[sample])))
             total += output[j] * units[j]
-        told = 1.0 / (1.0 + np.exp(-total))
-        blame = (targets[sample] - told) * told * (1.0 - told)
+        predicted = 1.0 / (1.0 + np.exp(-total))
+        blame = (targets[sample] - predicted) * predicted * (1.0 - predicted)
         for j in range(len(hidden)):
             passed = blame * output[j] * units[j] * (1.0 - units[j])
             output[j] += rate * blame * units[j]

@@ -4,13 +4,13 @@ import numba
 import pytest
 from rich.console import Console
 
-from peopleboy.scenarios.compiling import told_of_compiling
+from peopleboy.scenarios.compiling import announced_compiling
 
 
 @pytest.mark.parametrize("is_terminal", [True, False])
 def test_the_first_kernel_that_is_compiled_is_told_on_a_terminal(is_terminal):
     told = io.StringIO()
-    with told_of_compiling(Console(file=told, force_terminal=is_terminal, width=200)):
+    with announced_compiling(Console(file=told, force_terminal=is_terminal, width=200)):
         for change in (1, 2):
             numba.njit(lambda x, change=change: x + change)(3)
     assert told.getvalue().count("compiling kernels of tests.scenarios.test_compiling") == is_terminal

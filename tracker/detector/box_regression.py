@@ -81,11 +81,11 @@ def _place(
     weight: Cells,
     threshold: Cells,
     leaf: Cells,
-    told: Cells,
+    result: Cells,
 ) -> None:  # pragma: no cover
     """Add up all trees, one after the other for all windows: trees take more memory than windows."""
     trees = leaf.shape[1]
-    told[:] = 0.0
+    result[:] = 0.0
     for offset_of in range(leaf.shape[0]):
         for tree in range(trees):
             nodes = (offset_of * trees + tree) * NODES
@@ -96,4 +96,4 @@ def _place(
                     corner, by = offset[nodes + node], weight[nodes + node]
                     seen = patch(sums, at, corner, by)
                     node = 2 * node + 1 + (seen > threshold[nodes + node])
-                told[number, offset_of] += leaf[offset_of, tree, node - NODES]
+                result[number, offset_of] += leaf[offset_of, tree, node - NODES]

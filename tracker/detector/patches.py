@@ -56,9 +56,9 @@ class Patches:
     def of(self, sums: Sums, number: int) -> Cells:
         """Give a patch (N,) of windows of which each has sums in its column (9 * 21 * 11, N)."""
         offset, weight = self.corners(np.array([number], np.int32), ROWS + 1, COLUMNS + 1)
-        told = np.empty(sums.shape[1], np.float32)
-        _told(sums, offset[0], weight[0], told)
-        return told
+        result = np.empty(sums.shape[1], np.float32)
+        _measure(sums, offset[0], weight[0], result)
+        return result
 
 
 class Layouts:
@@ -106,12 +106,12 @@ def patch(sums: Sums, at: np.uint32, corner: NDArray[np.uint32], by: Cells) -> n
 
 
 @njit(cache=True, nogil=True)
-def _told(sums: Sums, corner: NDArray[np.uint32], by: Cells, told: Cells) -> None:  # pragma: no cover
+def _measure(sums: Sums, corner: NDArray[np.uint32], by: Cells, result: Cells) -> None:  # pragma: no cover
     a, b, c, d = sums[corner[0]], sums[corner[1]], sums[corner[2]], sums[corner[3]]
     e, f, g, h = sums[corner[4]], sums[corner[5]], sums[corner[6]], sums[corner[7]]
-    for k in range(len(told)):
+    for k in range(len(result)):
         one, two = a[k] - b[k] - c[k] + d[k], e[k] - f[k] - g[k] + h[k]
-        told[k] = np.float32(one) * by[0] - np.float32(two) * by[1]
+        result[k] = np.float32(one) * by[0] - np.float32(two) * by[1]
 
 
 @njit(cache=True, nogil=True)

@@ -91,8 +91,8 @@ def _batches(count: int, size: int) -> Iterator[slice]:
 def tile_kernel(kernel: Planes) -> Planes:
     """Turn a kernel (9 C, K) into what is multiplied by tiles, (16, C, K)."""
     square = kernel.reshape(3, 3, -1, kernel.shape[1]).astype(np.float64)
-    told = np.einsum("ai,bj,ijck->abck", _INTO, _INTO, square)
-    return np.ascontiguousarray(told.reshape(TILE * TILE, *told.shape[2:]), np.float32)
+    result = np.einsum("ai,bj,ijck->abck", _INTO, _INTO, square)
+    return np.ascontiguousarray(result.reshape(TILE * TILE, *result.shape[2:]), np.float32)
 
 
 def convolve_tiles(planes: Planes, kernel: Planes, bias: Planes, workspace: Workspace) -> Planes:
@@ -206,5 +206,5 @@ def _out_of_tiles(products: Planes, bias: Planes, right: int, given: Planes) -> 
                 put[top + i, left, k] = max(half[i, 0, k] + half[i, 1, k] + half[i, 2, k] + bias[k], zero)
             if left + 1 < wide:
                 for k in range(deep):
-                    told = half[i, 1, k] - half[i, 2, k] - half[i, 3, k]
-                    put[top + i, left + 1, k] = max(told + bias[k], zero)
+                    result = half[i, 1, k] - half[i, 2, k] - half[i, 3, k]
+                    put[top + i, left + 1, k] = max(result + bias[k], zero)

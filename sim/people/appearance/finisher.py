@@ -149,7 +149,7 @@ class Finisher:
         return paint.finish(_SHIRT_RGB if name in OPEN else skin)
 
 
-def looks_stream(seed: int, name: str) -> np.random.Generator:
+def appearance_stream(seed: int, name: str) -> np.random.Generator:
     """Give the stream from which a person's looks are drawn, in a world of this seed."""
     return stream(seed, f"person.{name}.looks")
 

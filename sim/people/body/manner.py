@@ -44,7 +44,7 @@ class Manner:
     elbow_rad: float = 0.0
     stoop_rad: float = 0.0
     head_rad: tuple[float, float] = (0.0, 0.0)
-    looks_about_rad: float = 0.0
+    head_sweep_rad: float = 0.0
     stance_width: float = 1.0
     narrows: float = 0.45
     stance_ahead: float = 0.0
@@ -128,7 +128,7 @@ def draw_manner(rng: np.random.Generator, carries: str | None, *, has_straps: bo
         elbow_rad=math.radians(near("elbow")),
         stoop_rad=math.radians(near("stoop")),
         head_rad=(math.radians(near("bow")), math.radians(near("aside"))),
-        looks_about_rad=abs(math.radians(near("looks_about"))),
+        head_sweep_rad=abs(math.radians(near("looks_about"))),
         stance_width=stance,
         narrows=stance - near("step_width"),
         stance_ahead=near("ahead"),

@@ -100,7 +100,7 @@ class Builds(NamedTuple):
     is_held: NDArray[np.bool_]
     arms: NDArray[np.int64]
     has_bag: NDArray[np.bool_]
-    looks_about_rad: Array
+    head_sweep_rad: Array
 
 
 @njit(cache=True, nogil=True)
@@ -163,7 +163,7 @@ def hold(builds: Builds, stances: Stances, q: int, turns: Array) -> tuple[float,
         if weights[k] > 0.0 and k != _STANDING:
             turns += weights[k] * (_ROTATIONS[k] - _ROTATIONS[_STANDING])
             front += weights[k] * _SHIFTS[k] * builds.height_m[q]
-    _sway(stance.time_s, stance.sway_phase, builds.looks_about_rad[q], turns)
+    _sway(stance.time_s, stance.sway_phase, builds.head_sweep_rad[q], turns)
     if weights[_CALLING] > 0.0:
         swung = WAVE_RAD * math.sin(2.0 * math.pi * WAVE_HZ * stance.time_s)
         turns[_WAVING, 0] += weights[_CALLING] * swung
@@ -191,13 +191,13 @@ def _keep_arms(builds: Builds, q: int, share: float, turns: Array) -> None:
 
 
 @njit(cache=True)
-def _sway(time_s: float, sway_phase: float, looks_about_rad: float, turns: Array) -> None:
+def _sway(time_s: float, sway_phase: float, head_sweep_rad: float, turns: Array) -> None:
     """Lean a little about the ankles."""
     angle = 2.0 * math.pi * (_SWAY_HZ * time_s + sway_phase)
     lean = _SWAY_RAD * math.sin(angle), _SWAY_RAD * math.cos(0.71 * angle)
     for k in range(2):
         turns[_PELVIS, k] += lean[k]
-    turns[_HEAD, 2] += looks_about_rad * math.sin(_LOOK_RATIO * angle)
+    turns[_HEAD, 2] += head_sweep_rad * math.sin(_LOOK_RATIO * angle)
     for foot in _FEET:
         for k in range(2):
             turns[foot, k] -= lean[k]

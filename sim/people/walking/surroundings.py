@@ -76,7 +76,7 @@ class Wish:
     goes_to: Array | None = None
     stands: bool = False
     faces: Array | None = None
-    looks_at: Array | None = None
+    gaze_at: Array | None = None
     pace: float = 1.0
     clear_m: float | None = None
     heeds_robot: bool = True

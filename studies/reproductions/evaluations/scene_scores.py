@@ -230,14 +230,14 @@ def event_counts(
     person counts where a person caused it, and it was found.
     """
     found = matching(happenings, events, first)
-    told = {n: k for k, numbers in sorted(found.items(), reverse=True) for n in numbers}
-    asked = {n: k for n, k in told.items() if events[n].by}
+    predicted = {n: k for k, numbers in sorted(found.items(), reverse=True) for n in numbers}
+    asked = {n: k for n, k in predicted.items() if events[n].by}
     named = sum(identities.name(happenings[k].person) == events[n].by for n, k in asked.items())
     return {
         "right": len(found),
         "false": len(happenings) - len(found),
         "events": len(events),
-        "told": len(told),
+        "told": len(predicted),
         "asked": len(asked),
         "named": named,
     }

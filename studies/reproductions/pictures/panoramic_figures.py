@@ -18,7 +18,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.geometry.panorama import Mirror
 from peopleboy.sim.world_config import WorldConfig
-from peopleboy.studies.reproductions.distance_trials import SplitTrial, filtered, told_in_turn
+from peopleboy.studies.reproductions.distance_trials import SplitTrial, filtered, predicted_in_turn
 from peopleboy.studies.reproductions.evaluations.webcam_positions import (
     HEADING,
     RANGE,
@@ -231,9 +231,9 @@ def draw_fields_of_view() -> Figure:
 
 def draw_correlations(run: DistanceSamples, names: Sequence[str]) -> Figure:
     """Draw each cue of a film, and what the network tells, over the true distance."""
-    told = told_in_turn(run, SplitTrial(split="random"))
+    predicted = predicted_in_turn(run, SplitTrial(split="random"))
     figure = canvas(5.6)
-    for axes, name, values in zip(figure.subplots(2, 2).flat, names, (*run.cues.T, told), strict=True):
+    for axes, name, values in zip(figure.subplots(2, 2).flat, names, (*run.cues.T, predicted), strict=True):
         for person, colour in zip(np.unique(run.person).tolist(), _PEOPLE, strict=False):
             is_here = run.person == person
             axes.plot(
@@ -245,14 +245,14 @@ def draw_correlations(run: DistanceSamples, names: Sequence[str]) -> Figure:
                 label=f"person {person}",
             )
         r = np.corrcoef(values, run.distance_m)[0, 1]
-        label(axes, f"{name}: r = {r:.3f}", "true distance [m]", "m" if values is told else "px")
+        label(axes, f"{name}: r = {r:.3f}", "true distance [m]", "m" if values is predicted else "px")
     figure.axes[0].legend(fontsize=7, frameon=False, markerscale=3)
     return figure
 
 
 def draw_path(run: DistanceSamples) -> Figure:
     """Draw a piece of a path on the floor: true, by the model alone, and with the filter."""
-    measured = run.positions_at(told_in_turn(run, SplitTrial(split="blocks")))
+    measured = run.positions_at(predicted_in_turn(run, SplitTrial(split="blocks")))
     smooth = filtered(run, measured, PositionFilter(PRINTED, uses_velocity=True))
     figure = canvas(4.6)
     axes = figure.subplots()
@@ -278,7 +278,7 @@ def draw_ranges(films: Mapping[str, Sequence[DistanceSamples]]) -> Figure:
     for (room, runs), colour in zip(films.items(), _ROOMS, strict=False):
         distance = np.concatenate([run.distance_m for run in runs])
         errors = np.concatenate(
-            [np.abs(told_in_turn(run, SplitTrial(split="blocks")) - run.distance_m) for run in runs]
+            [np.abs(predicted_in_turn(run, SplitTrial(split="blocks")) - run.distance_m) for run in runs]
         )
         middles, means, spreads = error_by_range(distance, errors)
         axes.plot(middles, means, "o-", color=colour, markersize=4, label=room)

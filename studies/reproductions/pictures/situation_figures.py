@@ -82,12 +82,12 @@ def draw_world(film: Film, who: str) -> Figure:
         width=0.003,
         scale=40.0,
     )
-    told = _rows(film[who]["tracks"])
-    pose = robot[told[:, 0].astype(int) - 1]
+    predicted = _rows(film[who]["tracks"])
+    pose = robot[predicted[:, 0].astype(int) - 1]
     cosine, sine = np.cos(pose[:, 2]), np.sin(pose[:, 2])
-    x = pose[:, 0] + cosine * told[:, 2] - sine * told[:, 3]
-    y = pose[:, 1] + sine * told[:, 2] + cosine * told[:, 3]
-    _lines(axes, np.stack([told[:, 0], told[:, 1], x, y], axis=1), as_plan=False)
+    x = pose[:, 0] + cosine * predicted[:, 2] - sine * predicted[:, 3]
+    y = pose[:, 1] + sine * predicted[:, 2] + cosine * predicted[:, 3]
+    _lines(axes, np.stack([predicted[:, 0], predicted[:, 1], x, y], axis=1), as_plan=False)
     axes.set_aspect("equal")
     label(axes, "", "x [m]", "y [m]")
     axes.legend(fontsize=7, frameon=False)

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 
 from peopleboy.behaviours.behaviour import STOP
-from peopleboy.behaviours.following.avoidance import ClearanceConfig, is_somebody_near, is_way_out
+from peopleboy.behaviours.following.avoidance import ClearanceConfig, is_person_near, is_way_out
 from peopleboy.behaviours.following.follow_person import FollowConfig, FollowState, follow
 from tests.helpers.percepts.percepts import free, percept, person
 from tests.helpers.percepts.toy_world import STEP_S
@@ -51,9 +51,9 @@ def test_who_came_too_near_to_be_seen_has_room_made_only_while_somebody_is_there
 
 def test_something_is_near_within_the_lane_ahead_and_farther_where_somebody_was_near():
     ahead, beside, behind = np.array([[1.8, 0.2]]), np.array([[1.0, 0.8]]), np.array([[-0.5, 0.0]])
-    assert is_somebody_near(ahead, ROOM, was_near=True)
-    assert not is_somebody_near(ahead, ROOM, was_near=False)
-    assert not is_somebody_near(np.concatenate([beside, behind]), ROOM, was_near=True)
+    assert is_person_near(ahead, ROOM, was_near=True)
+    assert not is_person_near(ahead, ROOM, was_near=False)
+    assert not is_person_near(np.concatenate([beside, behind]), ROOM, was_near=True)
 
 
 def test_a_way_leads_out_of_a_narrow_place_where_nothing_is_ahead():

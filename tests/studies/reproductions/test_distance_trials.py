@@ -16,8 +16,8 @@ from peopleboy.studies.reproductions.distance_trials import (
     new_people_trials,
     personal_trials,
     position_trials,
+    predicted_in_turn,
     random_split,
-    told_in_turn,
 )
 from peopleboy.studies.reproductions.image_errors import (
     BLOCKS,
@@ -132,7 +132,7 @@ def test_new_people_are_told_by_a_network_that_saw_others():
 
 def test_every_image_is_told_by_a_network_that_did_not_learn_from_it():
     run = film()
-    told = told_in_turn(run, SplitTrial(split="blocks", settings=Backpropagation(epochs=400)))
+    told = predicted_in_turn(run, SplitTrial(split="blocks", settings=Backpropagation(epochs=400)))
     assert told.shape == run.distance_m.shape
     assert np.abs(told - run.distance_m).mean() < 0.3
 
