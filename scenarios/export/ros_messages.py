@@ -47,7 +47,7 @@ class OdometryCovariance:
         self._covariance = np.zeros((3, 3))
 
     def carry(self, pose: Pose2) -> NDArray[np.float64]:
-        """Return the covariance (3, 3) of x, y [m] and heading [rad] at the next pose; at the first it is 0."""
+        """Return the covariance (3, 3) of x, y [m] and heading [rad] at the next pose, zero at the first."""
         if self._before is not None:
             self._covariance = self._carried(self._before, pose)
         self._before = pose

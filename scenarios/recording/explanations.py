@@ -1,23 +1,45 @@
-"""What a tracker explains beyond its tracks, drawn by its kind: of contours, their sections and samples."""
+"""Draw what a tracker explains beyond its tracks, by its kind.
+
+On the thermal image these are sections and samples of contours, or detections; on further cameras' images,
+lines and the scene without people.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import singledispatch
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.drawing.palette import Rgb, track_colour
 from peopleboy.scenarios.loop.loop import Tick
-from peopleboy.scenarios.recording.marks import Lines, Points, colours_of, lines_of, particle_points
+from peopleboy.scenarios.recording.marks import (
+    CHI_95,
+    Colours,
+    Lines,
+    Points,
+    colours_of,
+    lines_of,
+    particle_points,
+)
+from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.panorama import around_px
+from peopleboy.sim.geometry.pinhole import invert_pose, transform
 from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.contour.measurement.contour import FEET, SECTIONS
 from peopleboy.tracker.contour.measurement.section_evidence import Evidence, evidence_of, section_lines
-from peopleboy.tracker.fusion.fused_explanations import BothExplanations, FusedExplanation
-from peopleboy.tracker.track import Track
+from peopleboy.tracker.frame import DEPTH, PANORAMA
+from peopleboy.tracker.fusion.fused_explanations import parts_of
+from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure
+from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicExplanation
+from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
+from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation
+from peopleboy.tracker.track import Box, FloorPlace, Track
 from peopleboy.tracker.tracking.association import DetectionExplanation
 
 # ColorBrewer's RdYlBu without its dark ends: against a person, undecided, for one; in thresholds.
@@ -29,21 +51,32 @@ UNLIKELY: Rgb = (110, 110, 110)
 _CORNERS = 4  # of a box
 _ARM = 0.3  # of a corner, as a share of the box's width
 _HALF = 0.5  # share of a section that must be in view
+HISTOGRAM: Rgb = (245, 245, 245)
+NOBODYS: Rgb = (150, 150, 150)
+VERIFIED: Rgb = (245, 245, 245)
+_BAR_PX = 0.3  # height of a bar for each pixel that a column has
+_ROUND = np.linspace(0.0, 2.0 * np.pi, 49)
+
+Line = NDArray[np.float64]
 
 
 @singledispatch
-def draw_explained_lines(explanation: object, tick: Tick) -> Lines:  # noqa: ARG001
-    """Give the lines on the thermal image that explain a tick's tracks; none for a kind nobody can draw.
+def draw_explained_lines(explanation: object, tick: Tick) -> Lines:
+    """Draw lines on the thermal image that explain a tick's tracks; none for an unknown kind.
 
-    A new kind of explanation registers here, and below, how it is drawn in recordings.
+    A new kind of explanation registers here, and below, how it is drawn in recordings; one that joins others
+    is drawn by its parts.
     """
-    return Lines(lines_of([], 2), colours_of([]))
+    drawn = (draw_explained_lines(part, tick) for part in parts_of(explanation))
+    nothing = Lines(lines_of([], 2), colours_of([]))
+    return next((lines for lines in drawn if len(lines.line)), nothing)
 
 
 @draw_explained_lines.register
 def _(explanation: ContourExplanation, tick: Tick) -> Lines:
-    evidence = evidence_of(tick.observation.images["thermal"], tick.tracks, explanation)
-    return section_marks(tick.tracks, evidence, explanation)
+    tracks = tuple(track for track in tick.tracks if track.id in explanation.ellipses)
+    evidence = evidence_of(tick.observation.images["thermal"], tracks, explanation)
+    return section_marks(tracks, evidence, explanation)
 
 
 @draw_explained_lines.register
@@ -55,26 +88,14 @@ def _(explanation: DetectionExplanation, tick: Tick) -> Lines:  # noqa: ARG001
     )
 
 
-@draw_explained_lines.register
-def _(explanation: BothExplanations, tick: Tick) -> Lines:
-    warm = tuple(track for track in tick.tracks if track.id in explanation.thermal.ellipses)
-    return draw_explained_lines(explanation.thermal, replace(tick, tracks=warm))
-
-
-@draw_explained_lines.register
-def _(explanation: FusedExplanation, tick: Tick) -> Lines:
-    return draw_explained_lines(explanation.both, tick)
-
-
-@draw_explained_lines.register
-def _(explanation: AttentiveExplanation, tick: Tick) -> Lines:
-    return draw_explained_lines(explanation.below, tick)
-
-
 @singledispatch
-def draw_explained_points(explanation: object) -> Mapping[str, Points]:  # noqa: ARG001
-    """Give the points on the thermal image that explain a tick's tracks, by the layer that they lie in."""
-    return {}
+def draw_explained_points(explanation: object) -> Mapping[str, Points]:
+    """Draw points on the thermal image that explain a tick's tracks, by layer."""
+    return {
+        layer: points
+        for part in parts_of(explanation)
+        for layer, points in draw_explained_points(part).items()
+    }
 
 
 @draw_explained_points.register
@@ -85,30 +106,9 @@ def _(explanation: ContourExplanation) -> Mapping[str, Points]:
     return {"particles/people": particle_points(people), "particles/detector": particle_points(detector)}
 
 
-@draw_explained_points.register
-def _(explanation: BothExplanations) -> Mapping[str, Points]:
-    return draw_explained_points(explanation.thermal)
-
-
-@draw_explained_points.register
-def _(explanation: FusedExplanation) -> Mapping[str, Points]:
-    return draw_explained_points(explanation.both)
-
-
-@draw_explained_points.register
-def _(explanation: AttentiveExplanation) -> Mapping[str, Points]:
-    return draw_explained_points(explanation.below)
-
-
-@singledispatch
-def likeness_by_track(explanation: object) -> Mapping[int, float]:  # noqa: ARG001
-    """Give how much people look like who they are said to be, 0..1, by track; of trackers that compare."""
-    return {}
-
-
-@likeness_by_track.register
-def _(explanation: AttentiveExplanation) -> Mapping[int, float]:
-    return explanation.likeness
+def likeness_by_track(explanation: object) -> Mapping[int, float]:
+    """Return how much people resemble those they are taken for, 0..1, by track; of trackers that compare."""
+    return explanation.likeness if isinstance(explanation, AttentiveExplanation) else {}
 
 
 def box_corners(box: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -146,3 +146,167 @@ def _shades(evidence: Evidence, threshold: float) -> NDArray[np.uint8]:
     responses = np.nan_to_num(evidence.response) / threshold
     shades = np.stack([np.interp(responses, _STEPS, channel) for channel in _SHADES.T], axis=1)
     return np.where((evidence.seen >= _HALF)[:, None], np.rint(shades), OUT_OF_VIEW).astype(np.uint8)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sketch:
+    """What explains the newest image of one camera.
+
+    Attributes:
+        background: (H, W) or (H, W, 3) the empty scene as the tracker knows it; None if it knows none.
+        lines: K lines of (n, 2) [px].
+        colour: (K, 3).
+    """
+
+    background: NDArray[np.uint8] | None
+    lines: list[Line]
+    colour: Colours
+
+    @classmethod
+    def of(cls, background: NDArray[np.uint8] | None, coloured: Sequence[tuple[Line, Rgb]]) -> Sketch:
+        """Draw lines in their colours."""
+        return cls(background, [line for line, _ in coloured], colours_of(colour for _, colour in coloured))
+
+
+@singledispatch
+def draw_explained_sketches(
+    explanation: object, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
+) -> Mapping[str, Sketch]:
+    """Draw what explains tracks in further cameras' images, by camera; nothing for an unknown kind.
+
+    A new kind of explanation registers here how it is drawn in recordings; one that joins others is drawn by
+    its parts.
+    """
+    return {
+        name: sketch
+        for part in parts_of(explanation)
+        for name, sketch in draw_explained_sketches(part, tracks, cameras).items()
+    }
+
+
+@draw_explained_sketches.register
+def _(
+    explanation: PanoramicExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
+) -> Mapping[str, Sketch]:
+    camera, figure = cameras[PANORAMA].camera, explanation.figure
+    own = track_colour(tracks[0].id) if tracks else NOBODYS
+    coloured = [(line, own) for line in outlines_of(explanation.silhouette)]
+    if figure is not None:
+        coloured += [(line, HISTOGRAM) for line in (*column_bars(figure), row_bars(figure))]
+        middle = np.array([[figure.mean_column, -0.5], [figure.mean_column, camera.height - 0.5]])
+        coloured.append((middle, own))
+    coloured += [(line, own) for line, _ in _floor_ellipses(tracks, camera)]
+    background = np.rint(explanation.background.mean).astype(np.uint8)
+    return {PANORAMA: Sketch.of(background if background.shape[2] == 3 else background[:, :, 0], coloured)}
+
+
+@draw_explained_sketches.register
+def _(
+    explanation: PeopleExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
+) -> Mapping[str, Sketch]:
+    found = [(line, NOBODYS) for line in outlines_of(explanation.foreground > 0.5)]
+    coloured = found + _floor_ellipses(tracks, cameras[PANORAMA].camera)
+    return {PANORAMA: Sketch.of(explanation.background, coloured)}
+
+
+@draw_explained_sketches.register
+def _(
+    explanation: RgbdExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
+) -> Mapping[str, Sketch]:
+    found = [
+        (_frame(one.found.box), VERIFIED if one.is_verified else NOBODYS) for one in explanation.detections
+    ]
+    return {DEPTH: Sketch.of(None, found + _floor_ellipses(tracks, cameras[DEPTH].camera))}
+
+
+@draw_explained_sketches.register
+def _(
+    explanation: AttentiveExplanation, tracks: Sequence[Track], cameras: Mapping[str, CameraConfig]
+) -> Mapping[str, Sketch]:
+    below, attended = draw_explained_sketches(explanation.below, tracks, cameras), explanation.attended
+    if attended is None or attended.camera in below:
+        return below
+    focus, own = attended.focus(), track_colour(attended.number)
+    lines = [_frame(focus.box), *_cross(focus.place, 0.1 * focus.box[3])]
+    background = _brightened(focus.scores, attended.image.shape)
+    return {**below, attended.camera: Sketch.of(background, [(line, own) for line in lines])}
+
+
+def _floor_ellipses(tracks: Sequence[Track], camera: CameraGeometry) -> list[tuple[Line, Rgb]]:
+    """Draw `floor_ellipse` of every track with a place, in its colour."""
+    return [
+        (line, track_colour(track.id))
+        for track in tracks
+        if track.place is not None
+        for line in floor_ellipse(track.place, camera)
+    ]
+
+
+def outlines_of(mask: NDArray[np.bool_]) -> list[Line]:
+    """Trace closed lines (n, 2) round all that is set in an image (H, W), through its outermost pixels."""
+    # Pixels of two by two have outlines even if they are alone.
+    fine = np.repeat(np.repeat(np.asarray(mask, np.uint8), 2, axis=0), 2, axis=1)
+    found, _ = cv2.findContours(fine, cv2.RETR_LIST, cv2.CHAIN_APPROX_SIMPLE)
+    return [(np.concatenate([line, line[:1]])[:, 0] - 0.5) / 2.0 for line in found]
+
+
+def column_bars(figure: MeasuredFigure) -> list[Line]:
+    """Draw the histogram of columns along the lower border, from the person's first to its last column."""
+    width, bottom = len(figure.columns), len(figure.rows) - 0.5
+    columns = figure.first_column + np.arange(int(figure.cues.width_px))
+    heights = bottom - _BAR_PX * figure.columns[columns % width]
+    sides = (columns < width, columns >= width)
+    return [_steps(columns[side] % width, heights[side], bottom) for side in sides if side.any()]
+
+
+def row_bars(figure: MeasuredFigure) -> Line:
+    """Draw the histogram of rows beside the person, to the right if there is room for it."""
+    left, _, width, _ = figure.box
+    is_right = left + 2.0 * width < len(figure.columns)
+    edge, way = (left + width, 1.0) if is_right else (left, -1.0)
+    rows = np.arange(*np.flatnonzero(figure.rows)[[0, -1]] + (0, 1))
+    return _steps(rows, edge + way * figure.rows[rows], edge)[:, ::-1]
+
+
+def floor_ellipse(place: FloorPlace, camera: CameraGeometry) -> list[Line]:
+    """Draw the ellipse on the floor that holds 95 % of where a person may stand, in parts at the seam."""
+    xx, xy, yy = place.covariance_m2
+    variance, axes = np.linalg.eigh(np.array([[xx, xy], [xy, yy]]))
+    ring = np.stack([np.cos(_ROUND), np.sin(_ROUND)], axis=1) * np.sqrt(np.maximum(variance, 0.0))
+    floor = np.zeros((len(_ROUND), 3))
+    floor[:, :2] = np.array(place.position_m) + CHI_95 * ring @ axes.T
+    pixels = camera.project(transform(invert_pose(camera.robot_from_camera), floor))
+    return list(_parts(pixels[~np.isnan(pixels).any(axis=1)], around_px(camera)))
+
+
+def _frame(box: Box) -> Line:
+    """Draw a box (5, 2)."""
+    left, top, width, height = box
+    right, bottom = left + width, top + height
+    return np.array([(left, top), (right, top), (right, bottom), (left, bottom), (left, top)])
+
+
+def _cross(place: tuple[float, float], reach: float) -> list[Line]:
+    """Draw an upright cross (2, 2) and (2, 2) about a place."""
+    u, v = place
+    return [np.array([(u - reach, v), (u + reach, v)]), np.array([(u, v - reach), (u, v + reach)])]
+
+
+def _brightened(scores: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.uint8]:
+    """Draw scores 0..1 as an image (H, W) of an image's size, brighter than they are."""
+    grey = np.rint(255.0 * np.sqrt(np.clip(scores, 0.0, 1.0))).astype(np.uint8)
+    size = (shape[1], shape[0])
+    return np.asarray(cv2.resize(grey, size, interpolation=cv2.INTER_LINEAR), np.uint8)
+
+
+def _parts(line: Line, around: float) -> Iterator[Line]:
+    """Cut a line (n, 2) where it goes on at the other border; lone points are left out."""
+    jumps = np.flatnonzero(np.abs(np.diff(line[:, 0])) > around / 2.0) + 1
+    yield from (part for part in np.split(line, jumps) if len(part) > 1)
+
+
+def _steps(places: NDArray[np.int64], ends: NDArray[np.floating], base: float) -> Line:
+    """Draw bars one pixel wide beside each other from a base, as one line (2 n + 2, 2)."""
+    sides = np.repeat(places, 2) + np.tile([-0.5, 0.5], len(places))
+    heights = np.repeat(ends, 2)
+    return np.stack([np.r_[sides[0], sides, sides[-1]], np.r_[base, heights, base]], axis=1)

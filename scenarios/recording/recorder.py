@@ -20,6 +20,7 @@ from peopleboy.scenarios.recording import marks
 from peopleboy.scenarios.recording.explanations import (
     draw_explained_lines,
     draw_explained_points,
+    draw_explained_sketches,
     likeness_by_track,
 )
 from peopleboy.scenarios.recording.layout import (
@@ -38,7 +39,6 @@ from peopleboy.scenarios.recording.layout import (
 from peopleboy.scenarios.recording.marks import Arrows, believed_arrows, true_arrows, world_arrows
 from peopleboy.scenarios.recording.recording_file import pack
 from peopleboy.scenarios.recording.rows import METRE_STEP, PIXEL_STEP, TURN_STEP, RowBuffer, rounded
-from peopleboy.scenarios.recording.sketches import draw_explained_sketches
 from peopleboy.scenarios.recording.solids import NOBODY, body_capsules
 from peopleboy.scenarios.recording.still import JPEG, Still
 from peopleboy.sim.cameras.camera_config import DepthConfig

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict
-from functools import singledispatch
 from pathlib import Path
 from typing import Any, Final
 
@@ -15,11 +14,10 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.contour.explanation import ContourExplanation, Ellipse
 from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.frame import THERMAL
-from peopleboy.tracker.fusion.fused_explanations import BothExplanations, FusedExplanation
+from peopleboy.tracker.fusion.fused_explanations import parts_of
 from peopleboy.tracker.track import FloorPlace, Status, Track
 
 STATE = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")
@@ -30,30 +28,12 @@ COLUMNS = (SPREAD, *STATE)
 _NOTHING: Mapping[str, Any] = dict.fromkeys(COLUMNS)
 
 
-@singledispatch
-def explained(explanation: object, track: int) -> Mapping[str, Any]:  # noqa: ARG001
-    """Give the values of `COLUMNS` for a track; None for a kind of explanation without them."""
-    return _NOTHING
-
-
-@explained.register
-def _(explanation: ContourExplanation, track: int) -> Mapping[str, Any]:
-    return {SPREAD: explanation.spread_px2[track], **asdict(explanation.ellipses[track])}
-
-
-@explained.register
-def _(explanation: BothExplanations, track: int) -> Mapping[str, Any]:
-    return explained(explanation.thermal, track) if track in explanation.thermal.ellipses else _NOTHING
-
-
-@explained.register
-def _(explanation: FusedExplanation, track: int) -> Mapping[str, Any]:
-    return explained(explanation.both, track)
-
-
-@explained.register
-def _(explanation: AttentiveExplanation, track: int) -> Mapping[str, Any]:
-    return explained(explanation.below, track)
+def explained(explanation: object, track: int) -> Mapping[str, Any]:
+    """Return the values of `COLUMNS` for a track; None for a kind of explanation without contours."""
+    if isinstance(explanation, ContourExplanation) and track in explanation.ellipses:
+        return {SPREAD: explanation.spread_px2[track], **asdict(explanation.ellipses[track])}
+    found = (explained(part, track) for part in parts_of(explanation))
+    return next((values for values in found if values is not _NOTHING), _NOTHING)
 
 
 def read_explanation(tracker: str, rows: Iterable[Mapping[str, Any]]) -> ContourExplanation | None:

@@ -22,6 +22,11 @@ class BothExplanations:
     thermal: ContourExplanation
     panoramic: PeopleExplanation | None
 
+    @property
+    def parts(self) -> tuple[object, ...]:
+        """The explanations that it joins."""
+        return self.thermal, self.panoramic
+
     @classmethod
     def of(
         cls, thermal: ContourExplanation, panoramic: PeopleExplanation | None, number: Mapping[int, int]
@@ -54,3 +59,13 @@ class FusedExplanation:
 
     both: BothExplanations
     depth: RgbdExplanation | None
+
+    @property
+    def parts(self) -> tuple[object, ...]:
+        """The explanations that it joins."""
+        return self.both, self.depth
+
+
+def parts_of(explanation: object) -> tuple[object, ...]:
+    """Return the explanations that one joins or wraps in its `parts`; none of a kind that stands alone."""
+    return getattr(explanation, "parts", ())

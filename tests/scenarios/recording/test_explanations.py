@@ -13,13 +13,11 @@ from hypothesis import strategies as st
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.recording.explanations import (
     LIKELY,
+    NOBODYS,
     UNLIKELY,
+    column_bars,
     draw_explained_lines,
     draw_explained_points,
-)
-from peopleboy.scenarios.recording.sketches import (
-    NOBODYS,
-    column_bars,
     draw_explained_sketches,
     floor_ellipse,
     outlines_of,

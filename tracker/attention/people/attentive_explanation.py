@@ -64,6 +64,11 @@ class AttentiveExplanation:
     likeness: Mapping[int, float]
     attended: Attended | None
 
+    @property
+    def parts(self) -> tuple[object, ...]:
+        """The explanation of the tracker below."""
+        return (self.below,)
+
 
 @singledispatch
 def renumbered(explanation: object, number: Mapping[int, int]) -> object:  # noqa: ARG001
