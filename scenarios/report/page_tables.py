@@ -20,7 +20,8 @@ from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.scores.bootstrap import bootstrap
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
-from peopleboy.scenarios.scores.following_metrics import FollowingScore, Row
+from peopleboy.scenarios.scores.following_metrics import FollowingScore
+from peopleboy.scenarios.scores.score_record import Row
 from peopleboy.sim.truth.events import Move
 from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, by_length
 from peopleboy.tracker.evaluation.table import FIGURES, FLOOR, Figure
@@ -208,7 +209,7 @@ def _rows(run: FinishedRun, group: str) -> list[Row]:
     score: Callable[..., FollowingScore | CorridorScore | ComfortScore] = _SCORES[group]
     try:
         return score(**{name: math.nan if v is None else v for name, v in figures.items()}).rows()
-    except (TypeError, AttributeError) as error:
+    except (TypeError, ValueError, AttributeError) as error:
         path = run.folder / "metrics.json"
         raise BadInput(f"{path}: {group}: not the figures of this version; run the scenario again") from error
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict
+from operator import attrgetter
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -13,12 +14,11 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.loop.loop import Tick
-from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.contour.explanation import ContourExplanation, Ellipse
 from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.fusion.fused_explanations import parts_of
-from peopleboy.tracker.track import FloorPlace, Status, Track
+from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
 STATE = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")
 SPREAD = "uncertainty_px2"
@@ -38,94 +38,155 @@ def explained(explanation: object, track: int) -> Mapping[str, Any]:
 
 def read_explanation(tracker: str, rows: Iterable[Mapping[str, Any]]) -> ContourExplanation | None:
     """Read back what a tracker of that name explained at one frame; None if its rows hold nothing of it."""
-    told = [row for row in rows if row[SPREAD] is not None]
-    if not told or tracker not in VARIANTS:
+    explained_rows = [row for row in rows if row[SPREAD] is not None]
+    if not explained_rows or tracker not in VARIANTS:
         return None
     return ContourExplanation(
         config=VARIANTS[tracker],
-        ellipses={row["id"]: Ellipse(**{name: row[name] for name in STATE}) for row in told},
-        spread_px2={row["id"]: row[SPREAD] for row in told},
+        ellipses={row["id"]: Ellipse(**{name: row[name] for name in STATE}) for row in explained_rows},
+        spread_px2={row["id"]: row[SPREAD] for row in explained_rows},
     )
 
 
 Row = dict[str, Any]
 
 
-def _box_fields(prefix: str) -> list[pa.Field]:
-    return [pa.field(f"{prefix}{edge}_px", pa.float64()) for edge in ("left", "top", "width", "height")]
+class Column(NamedTuple):
+    """One column of a table.
+
+    Attributes:
+        type: of its values.
+        value: gives the value of what a row is about.
+        may_be_empty: whether rows may have no value.
+    """
+
+    type: pa.DataType
+    value: Callable[[Any], Any]
+    may_be_empty: bool = False
 
 
-def _floats(*names: str) -> list[pa.Field]:
-    return [pa.field(name, pa.float64()) for name in names]
+Columns = Mapping[str, Column]
 
+INT, FLOAT, BOOL, STRING = pa.int64(), pa.float64(), pa.bool_(), pa.string()
+_SHARES = pa.map_(pa.string(), pa.float64())
+_INSTANT = [pa.field("frame", INT), pa.field("time_s", FLOAT)]
 
 PLACE: Final = ("place_x_m", "place_y_m", "place_xx_m2", "place_xy_m2", "place_yy_m2")
 _EDGES = ("left_px", "top_px", "width_px", "height_px")
-_INSTANT = [pa.field("frame", pa.int64()), pa.field("time_s", pa.float64())]
 
-TRUTH = pa.schema(
-    [
-        *_INSTANT,
-        pa.field("id", pa.int64()),
-        pa.field("name", pa.string()),
-        *_floats("x_m", "y_m", "heading_rad", "velocity_x_m_s", "velocity_y_m_s", "distance_m"),
-        pa.field("posture", pa.string()),
-        pa.field("is_counted", pa.bool_()),
-        *_box_fields(""),
-        *_box_fields("whole_"),
-        *_box_fields("visible_"),
-        pa.field("whole_px", pa.int64()),
-        pa.field("visible_px", pa.int64()),
-        *_floats("visible_fraction", "occluded_fraction"),
-        pa.field("occluder", pa.string()),
-        pa.field("hidden_by", pa.map_(pa.string(), pa.float64())),
-        pa.field("part_temperature_c", pa.map_(pa.string(), pa.float64())),
-        pa.field("joints_m", pa.list_(pa.float64(), 51)),
-        pa.field("joints_px", pa.list_(pa.float64(), 34)),
-        pa.field("joint_is_visible", pa.list_(pa.bool_(), 17)),
-    ]
-)
 
-TRACKS = pa.schema(
-    [
-        *_INSTANT,
-        pa.field("id", pa.int64()),
-        pa.field("status", pa.string()),
-        *_floats("confidence", "age_s", SPREAD),
-        *_box_fields(""),
-        *_floats(*PLACE),
-        *_floats(*STATE),
-        pa.field("occluder", pa.int64()),
-    ]
-)
+def plain(kind: pa.DataType, *names: str) -> Columns:
+    """Declare columns whose values are attributes of the same name."""
+    return {name: Column(kind, attrgetter(name)) for name in names}
 
-ROBOT = pa.schema(
-    [
-        *_INSTANT,
-        *_floats("x_m", "y_m", "heading_rad", "linear_m_s", "angular_rad_s"),
-        *_floats("odometry_x_m", "odometry_y_m", "odometry_heading_rad", "left_wheel_m_s", "right_wheel_m_s"),
-        *_floats("command_linear_m_s", "command_angular_rad_s"),
-        pa.field("command_is_emergency", pa.bool_()),
-        pa.field("mode", pa.string()),
-        pa.field("sonar_m", pa.list_(pa.float64(), 16)),
-        pa.field("contacts", pa.list_(pa.string())),
-    ]
-)
+
+def numbers(
+    names: Iterable[str], values: Callable[[Any], Sequence[float] | None], *, may_be_empty: bool = False
+) -> Columns:
+    """Declare a column for each number of a tuple, all without a value where there is none."""
+
+    def nth(k: int) -> Callable[[Any], float | None]:
+        return lambda one: None if (found := values(one)) is None else found[k]
+
+    return {name: Column(FLOAT, nth(k), may_be_empty) for k, name in enumerate(names)}
+
+
+def box(prefix: str, attribute: str) -> Columns:
+    """Declare the columns of a box."""
+    return numbers((f"{prefix}{edge}" for edge in _EDGES), attrgetter(attribute), may_be_empty=True)
+
+
+def schema_of(columns: Columns) -> pa.Schema:
+    """Return the schema of a table with these columns behind frame and time."""
+    return pa.schema([*_INSTANT, *(pa.field(name, column.type) for name, column in columns.items())])
+
+
+def row_of(columns: Columns, frame: int, time_s: float, one: object) -> Row:
+    """Return the row of a table about one person, thing, track or robot."""
+    values = {name: column.value(one) for name, column in columns.items()}
+    return {"frame": frame, "time_s": time_s, **values}
+
+
+_PERSON: Final[Columns] = {
+    **plain(INT, "id"),
+    **plain(STRING, "name"),
+    **numbers(("x_m", "y_m"), attrgetter("position_m")),
+    **plain(FLOAT, "heading_rad"),
+    **numbers(("velocity_x_m_s", "velocity_y_m_s"), attrgetter("velocity_m_s")),
+    **plain(FLOAT, "distance_m"),
+    **plain(STRING, "posture"),
+    **plain(BOOL, "is_counted"),
+    **box("", "box"),
+    **box("whole_", "whole_box"),
+    **box("visible_", "visible_box"),
+    **plain(INT, "whole_px", "visible_px"),
+    **plain(FLOAT, "visible_fraction", "occluded_fraction"),
+    "occluder": Column(STRING, attrgetter("occluder"), True),
+    "hidden_by": Column(_SHARES, lambda person: dict(person.hidden_by)),
+    "part_temperature_c": Column(_SHARES, lambda person: dict(person.part_temperature_c)),
+    "joints_m": Column(pa.list_(FLOAT, 51), lambda person: person.joints_m.ravel().tolist()),
+    "joints_px": Column(pa.list_(FLOAT, 34), lambda person: person.joints_px.ravel().tolist()),
+    "joint_is_visible": Column(pa.list_(BOOL, 17), lambda person: person.joint_is_visible.tolist()),
+}
+
+
+class _Tracked(NamedTuple):
+    """A track, its box in one camera's image, and what its tracker explained of it, by `COLUMNS`."""
+
+    track: Track
+    box: Box | None
+    explained: Mapping[str, Any]
+
+    @property
+    def place(self) -> tuple[float, ...] | None:
+        place = self.track.place
+        return None if place is None else (*place.position_m, *place.covariance_m2)
+
+
+def _explained(name: str) -> Column:
+    return Column(FLOAT, lambda one: one.explained[name], True)
+
+
+_TRACK: Final[Columns] = {
+    "id": Column(INT, attrgetter("track.id")),
+    "status": Column(STRING, lambda one: str(one.track.status)),
+    "confidence": Column(FLOAT, attrgetter("track.confidence")),
+    "age_s": Column(FLOAT, attrgetter("track.age_s")),
+    SPREAD: _explained(SPREAD),
+    **box("", "box"),
+    **numbers(PLACE, attrgetter("place"), may_be_empty=True),
+    **{name: _explained(name) for name in STATE},
+    "occluder": Column(INT, attrgetter("track.occluder"), True),
+}
+
+_ROBOT: Final[Columns] = {
+    **numbers(
+        ("x_m", "y_m", "heading_rad"), attrgetter("truth.robot.x", "truth.robot.y", "truth.robot.heading")
+    ),
+    **numbers(("linear_m_s", "angular_rad_s"), attrgetter("truth.robot_velocity")),
+    "odometry_x_m": Column(FLOAT, attrgetter("observation.odometry.x")),
+    "odometry_y_m": Column(FLOAT, attrgetter("observation.odometry.y")),
+    "odometry_heading_rad": Column(FLOAT, attrgetter("observation.odometry.heading")),
+    **numbers(("left_wheel_m_s", "right_wheel_m_s"), attrgetter("observation.wheel_speeds_m_s")),
+    "command_linear_m_s": Column(FLOAT, attrgetter("command.linear_m_s")),
+    "command_angular_rad_s": Column(FLOAT, attrgetter("command.angular_rad_s")),
+    "command_is_emergency": Column(BOOL, attrgetter("command.is_emergency")),
+    **plain(STRING, "mode"),
+    "sonar_m": Column(pa.list_(FLOAT, 16), lambda tick: tick.observation.sonar_m.tolist()),
+    "contacts": Column(pa.list_(STRING), lambda tick: list(tick.truth.contacts)),
+}
+
+TRUTH, TRACKS, ROBOT = schema_of(_PERSON), schema_of(_TRACK), schema_of(_ROBOT)
 
 MAY_BE_EMPTY = frozenset(
-    (
-        "occluder",
-        *COLUMNS,
-        *PLACE,
-        *(f"{prefix}{edge}" for prefix in ("", "whole_", "visible_") for edge in _EDGES),
-    )
+    name for columns in (_PERSON, _TRACK) for name, column in columns.items() if column.may_be_empty
 )
-"""Columns that have no value where there is nobody or nothing to tell of."""
+"""Columns that have no value where there is nobody or nothing."""
 
 
 def truth_rows(tick: Tick, camera: str = "thermal") -> list[Row]:
-    """Rows of a camera's truth table for one tick: one per person present."""
-    return [_person_row(tick, person) for person in tick.truths[camera].people]
+    """Return the rows of a camera's truth table for one tick: one per person present."""
+    return [row_of(_PERSON, tick.frame, tick.truth.time_s, one) for one in tick.truths[camera].people]
 
 
 def is_in_image(people: pa.Table) -> NDArray[np.bool_]:
@@ -135,100 +196,27 @@ def is_in_image(people: pa.Table) -> NDArray[np.bool_]:
 
 
 def track_rows(tick: Tick) -> list[Row]:
-    """Rows of the tracks table for one tick: one per track, tentative ones too."""
+    """Return the rows of the tracks table for one tick: one per track, tentative ones too."""
     return [track_row(tick.frame, tick.truth.time_s, track, tick.explanation) for track in tick.tracks]
 
 
+def track_row(frame: int, time_s: float, track: Track, explanation: object, camera: str = THERMAL) -> Row:
+    """Return the row of one track at one instant, with what the tracker explained of it.
+
+    The box is that in the image of the camera of this name.
+    """
+    one = _Tracked(track, track.boxes.get(camera), explained(explanation, track.id))
+    return row_of(_TRACK, frame, time_s, one)
+
+
 def robot_row(tick: Tick) -> Row:
-    """Row of the robot table for one tick."""
-    truth, senses = tick.truth, tick.observation
-    left, right = senses.wheel_speeds_m_s
-    return _instant(tick) | {
-        "x_m": truth.robot.x,
-        "y_m": truth.robot.y,
-        "heading_rad": truth.robot.heading,
-        "linear_m_s": truth.robot_velocity[0],
-        "angular_rad_s": truth.robot_velocity[1],
-        "odometry_x_m": senses.odometry.x,
-        "odometry_y_m": senses.odometry.y,
-        "odometry_heading_rad": senses.odometry.heading,
-        "left_wheel_m_s": left,
-        "right_wheel_m_s": right,
-        "command_linear_m_s": tick.command.linear_m_s,
-        "command_angular_rad_s": tick.command.angular_rad_s,
-        "command_is_emergency": tick.command.is_emergency,
-        "mode": tick.mode,
-        "sonar_m": senses.sonar_m.tolist(),
-        "contacts": list(truth.contacts),
-    }
+    """Return the row of the robot table for one tick."""
+    return row_of(_ROBOT, tick.frame, tick.truth.time_s, tick)
 
 
 def write_table(path: Path, rows: list[Row], schema: pa.Schema) -> None:
     """Write rows as a parquet file; no rows give an empty table with the same columns."""
     pq.write_table(pa.Table.from_pylist(rows, schema=schema), path)
-
-
-def _instant(tick: Tick) -> Row:
-    return {"frame": tick.frame, "time_s": tick.truth.time_s}
-
-
-def _box(prefix: str, box: tuple[float, float, float, float] | None) -> Row:
-    names = [f"{prefix}{edge}_px" for edge in ("left", "top", "width", "height")]
-    return dict(zip(names, box or (None,) * 4, strict=True))
-
-
-def _place(place: FloorPlace | None) -> Row:
-    values = (None,) * 5 if place is None else (*place.position_m, *place.covariance_m2)
-    return dict(zip(PLACE, values, strict=True))
-
-
-def _person_row(tick: Tick, person: PersonTruth) -> Row:
-    row = {
-        "id": person.id,
-        "name": person.name,
-        "x_m": person.position_m[0],
-        "y_m": person.position_m[1],
-        "heading_rad": person.heading_rad,
-        "velocity_x_m_s": person.velocity_m_s[0],
-        "velocity_y_m_s": person.velocity_m_s[1],
-        "distance_m": person.distance_m,
-        "posture": person.posture,
-        "is_counted": person.is_counted,
-        "whole_px": person.whole_px,
-        "visible_px": person.visible_px,
-        "visible_fraction": person.visible_fraction,
-        "occluded_fraction": person.occluded_fraction,
-        "occluder": person.occluder,
-        "hidden_by": dict(person.hidden_by),
-        "part_temperature_c": dict(person.part_temperature_c),
-        "joints_m": person.joints_m.ravel().tolist(),
-        "joints_px": person.joints_px.ravel().tolist(),
-        "joint_is_visible": person.joint_is_visible.tolist(),
-    }
-    boxes = _box("", person.box) | _box("whole_", person.whole_box) | _box("visible_", person.visible_box)
-    return _instant(tick) | row | boxes
-
-
-def track_row(frame: int, time_s: float, track: Track, explanation: object, camera: str = THERMAL) -> Row:
-    """Row of the tracks table for one track at one instant, with what the tracker explained of it.
-
-    The box is that in the image of the camera of this name.
-    """
-    row = {
-        "id": track.id,
-        "status": str(track.status),
-        "confidence": track.confidence,
-        "age_s": track.age_s,
-    }
-    hider = {"occluder": track.occluder}
-    return (
-        {"frame": frame, "time_s": time_s}
-        | row
-        | _box("", track.boxes.get(camera))
-        | _place(track.place)
-        | hider
-        | dict(explained(explanation, track.id))
-    )
 
 
 def track_of(row: Mapping[str, Any]) -> Track:

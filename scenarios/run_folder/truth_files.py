@@ -3,20 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from operator import attrgetter
 from pathlib import Path
 from typing import Final, TextIO
 
 import numpy as np
-import pyarrow as pa
 
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.image_files import millimetres, write_png
 from peopleboy.scenarios.run_folder.run_files import WRITTEN_TRUTH, read_table, written_truth
-from peopleboy.scenarios.run_folder.run_tables import TRUTH, Row, truth_rows, write_table
+from peopleboy.scenarios.run_folder.run_tables import (
+    BOOL,
+    FLOAT,
+    INT,
+    STRING,
+    TRUTH,
+    Columns,
+    Row,
+    box,
+    numbers,
+    plain,
+    row_of,
+    schema_of,
+    truth_rows,
+    write_table,
+)
 from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig
 from peopleboy.sim.cameras.kinds import with_boxes
 from peopleboy.sim.truth.backgrounds import Backgrounds
-from peopleboy.sim.truth.truth import ThingTruth
 from peopleboy.tracker.evaluation.mot_files import read_truth, truth_line
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind
@@ -98,25 +112,20 @@ def open_text(path: Path) -> TextIO:
     return path.open("w", encoding="utf-8", newline="\n")
 
 
-_EDGES = ("left_px", "top_px", "width_px", "height_px")
-
-THINGS: Final = pa.schema(
-    [
-        pa.field("frame", pa.int64()),
-        pa.field("time_s", pa.float64()),
-        pa.field("name", pa.string()),
-        *(pa.field(name, pa.float64()) for name in ("x_m", "y_m", "z_m", "heading_rad")),
-        pa.field("is_there", pa.bool_()),
-        pa.field("is_moving", pa.bool_()),
-        pa.field("moved_by", pa.string()),
-        pa.field("visible_px", pa.int64()),
-        *(pa.field(name, pa.float64()) for name in _EDGES),
-    ]
-)
+_THING: Final[Columns] = {
+    **plain(STRING, "name"),
+    **numbers(("x_m", "y_m", "z_m"), attrgetter("position_m")),
+    **plain(FLOAT, "heading_rad"),
+    **plain(BOOL, "is_there", "is_moving"),
+    **plain(STRING, "moved_by"),
+    **plain(INT, "visible_px"),
+    **box("", "visible_box"),
+}
+THINGS: Final = schema_of(_THING)
 
 
 def things_camera(cameras: Mapping[str, CameraConfig]) -> str:
-    """Name the camera in whose image things are told: the first depth camera, else `thermal`."""
+    """Name the camera in whose image things are described: the first depth camera, else `thermal`."""
     return next(iter(depth_cameras(cameras)), "thermal")
 
 
@@ -138,42 +147,26 @@ class ThingFiles:
         self._folder = folder
         self._camera = things_camera(cameras)
         self._rows: list[Row] = []
-        self._is_told = False
+        self._has_things = False
         self._backgrounds = {name: Backgrounds() for name in depth_cameras(cameras)} if frames else {}
 
     def write(self, tick: Tick) -> None:
         """Take in what is true at one tick."""
         if tick.truth.things and self._camera in tick.truths:
-            self._is_told = True
-            self._rows += [_row(tick, thing) for thing in tick.truths[self._camera].things]
+            self._has_things = True
+            self._rows += [
+                row_of(_THING, tick.frame, tick.truth.time_s, thing)
+                for thing in tick.truths[self._camera].things
+            ]
         for name, backgrounds in self._backgrounds.items():
             if name in tick.truths:
                 backgrounds.update(tick.truths[name])
 
     def flush(self) -> None:
         """Bring everything to disk."""
-        if self._is_told:
+        if self._has_things:
             write_table(self._folder / "things.parquet", self._rows, THINGS)
         for name, backgrounds in self._backgrounds.items():
             for kind, depth in (("clean", backgrounds.clean), ("ever", backgrounds.ever)):
                 if depth is not None:
                     write_png(self._folder / f"{name}_{kind}.png", millimetres(depth))
-
-
-def _row(tick: Tick, thing: ThingTruth) -> Row:
-    x, y, z = thing.position_m
-    box = (None,) * 4 if thing.visible_box is None else thing.visible_box
-    return {
-        "frame": tick.frame,
-        "time_s": tick.truth.time_s,
-        "name": thing.name,
-        "x_m": x,
-        "y_m": y,
-        "z_m": z,
-        "heading_rad": thing.heading_rad,
-        "is_there": thing.is_there,
-        "is_moving": thing.is_moving,
-        "moved_by": thing.moved_by,
-        "visible_px": thing.visible_px,
-        **dict(zip(_EDGES, box, strict=True)),
-    }

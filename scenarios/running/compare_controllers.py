@@ -25,7 +25,7 @@ from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import RunTask, play, unfinished
 from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
-from peopleboy.scenarios.scores.comfort_metrics import COMFORT_WORDS
+from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, is_own
 
@@ -176,8 +176,8 @@ def _names(means: Mapping[Controller, Mapping[str, Interval]]) -> list[str]:
 
 def _label(name: str) -> str:
     """Turn a key of metrics.json into words with a unit; those of comfort are called as everywhere else."""
-    if name in COMFORT_WORDS:
-        return COMFORT_WORDS[name]
+    if name in ComfortScore.metrics():
+        return ComfortScore.metrics()[name].label
     stem, unit = name, "%" if name in _SHARES else ""
     for ending, written in (("_m_s3", "m/s3"), ("_m_s", "m/s"), ("_rad", "deg"), ("_m", "m"), ("_s", "s")):
         if stem.endswith(ending):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -236,7 +236,7 @@ def _once(runs: Sequence[ScoredRun]) -> Mapping[Scene, Scores]:
     return {scene: scores[0] for scene, scores in found.items() if len(scores) == 1}
 
 
-_NAMES = tuple(field.name for field in fields(ComfortScore))
+_NAMES = tuple(ComfortScore.metrics())
 
 
 def comfort_by_tracker(groups: Groups) -> Mapping[str, ComfortScore]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.scenarios.scores.following_metrics import Floats, Row, count_starts
+from peopleboy.scenarios.scores.score_record import Floats, ScoreRecord, count_starts, metric
 from peopleboy.sim.robot.robot_body import RADIUS_M, outline_gap
 from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.sim.truth.truth import Truth
@@ -25,63 +25,27 @@ _FORESEEN_S: Final = 30.0  # beyond which nobody goes on as they are
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ComfortScore:
-    """Scores of one run, over all of it and everybody in it.
+class ComfortScore(ScoreRecord):
+    """Scores of one run, over all of it and all people in it.
+
+    `min_time_to_collision_s` takes robot and person for discs; it is NaN if none would have touched within
+    30 s. Jerk is the second difference of the forward speed; `felt_jerk_m_s3` is NaN if nobody was within
+    social space. Numbers of intrusions are whole but in means of runs.
 
     Source: metrics of HuNavSim (Perez-Higueras et al. 2023) and of Francis et al. 2023, Principles and
     Guidelines for Evaluating Social Robot Navigation, which have time in spaces, least time to collision and
     jerk; ours are in seconds rather than in shares of a run.
-
-    Attributes:
-        personal_s, intimate_s: [s] for which somebody was within personal, and within intimate space.
-        personal_intrusions, intimate_intrusions: how often somebody and the robot came so near; a whole
-            number but in means of runs.
-        min_time_to_collision_s: [s] least time after which a robot and a person who both went on as they
-            were would have touched, both being discs; NaN if none ever would have within 30 s.
-        jerk_m_s3: [m/s3] root mean square of the second difference of the forward speed.
-        felt_jerk_m_s3: [m/s3] the same while somebody was within social space, 3.6 m; NaN if nobody was.
-
-    What is not defined is NaN.
     """
 
-    personal_s: float
-    intimate_s: float
-    personal_intrusions: float
-    intimate_intrusions: float
-    min_time_to_collision_s: float
-    jerk_m_s3: float
-    felt_jerk_m_s3: float
-
-    def to_json(self) -> dict[str, float | None]:
-        """Give the figures as JSON can hold them: None for what is undefined."""
-        return {name: None if math.isnan(value) else value for name, value in asdict(self).items()}
-
-    def rows(self) -> list[Row]:
-        """Give the scores as table rows: name, value, unit, explanation."""
-        return [
-            ("within 1.2 m", self.personal_s, "s", "time with somebody in personal space"),
-            ("within 0.45 m", self.intimate_s, "s", "time with somebody in intimate space"),
-            ("intrusions, 1.2 m", self.personal_intrusions, "", "into personal space"),
-            ("intrusions, 0.45 m", self.intimate_intrusions, "", "into intimate space"),
-            (
-                "time to collision",
-                self.min_time_to_collision_s,
-                "s",
-                "least, if both had gone on as they were",
-            ),
-            ("jerk", self.jerk_m_s3, "m/s3", "of the robot, root mean square, forwards"),
-            ("jerk felt", self.felt_jerk_m_s3, "m/s3", "the same with somebody within 3.6 m"),
-        ]
-
-
-_NAMES: Final = tuple(field.name for field in fields(ComfortScore))
-COMFORT_WORDS: Final = {
-    name: f"{words}, {unit}" if unit else words
-    for name, (words, _, unit, _) in zip(
-        _NAMES, ComfortScore(**dict.fromkeys(_NAMES, math.nan)).rows(), strict=True
+    personal_s: float = metric("within 1.2 m", "s", "time with somebody in personal space")
+    intimate_s: float = metric("within 0.45 m", "s", "time with somebody in intimate space")
+    personal_intrusions: float = metric("intrusions, 1.2 m", "", "into personal space")
+    intimate_intrusions: float = metric("intrusions, 0.45 m", "", "into intimate space")
+    min_time_to_collision_s: float = metric(
+        "time to collision", "s", "least, if both had gone on as they were"
     )
-}
-"""What each figure is called, with its unit, by its key in metrics.json."""
+    jerk_m_s3: float = metric("jerk", "m/s3", "of the robot, root mean square, forwards")
+    felt_jerk_m_s3: float = metric("jerk felt", "m/s3", "the same with somebody within 3.6 m")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

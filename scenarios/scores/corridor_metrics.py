@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.scores.following_metrics import Flags, Floats, Row, count_contacts
+from peopleboy.scenarios.scores.score_record import Flags, Floats, ScoreRecord, count_contacts, metric
 from peopleboy.sim.places.floor_plan import FloorPlan, Rectangle
 from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.sim.truth.truth import Truth
@@ -31,43 +31,21 @@ class Leg:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CorridorScore:
+class CorridorScore(ScoreRecord):
     """Scores of one run.
 
     Errors are over the frames on a leg, no nearer to its ends or a junction than its width: there the robot
-    turns. They count every frame there, also those in which it waits for people or passes them.
-
-    Attributes:
-        lateral_rms_m: [m] root mean square distance to the centre line.
-        lateral_max_m: [m] largest.
-        heading_error_rad: [rad] mean absolute angle to the centre line, either way along it.
-        contacts: contacts begun, over the whole run.
-        mean_speed_m_s: [m/s] way driven by time, over the whole run.
-        way_m: [m] driven, over the whole run.
-        legs: on how many legs the robot was.
-
-    What is not defined (never on a leg) is NaN.
+    turns. They count every frame there, also those in which it waits for people or passes them. They are NaN
+    if it never was on a leg. The angle to the centre line [rad] is either way along it.
     """
 
-    lateral_rms_m: float
-    lateral_max_m: float
-    heading_error_rad: float
-    contacts: int
-    mean_speed_m_s: float
-    way_m: float
-    legs: int
-
-    def rows(self) -> list[Row]:
-        """Give the scores as table rows: name, value, unit, explanation."""
-        return [
-            ("lateral error RMS", self.lateral_rms_m, "m", "distance to the centre line, root mean square"),
-            ("lateral error max", self.lateral_max_m, "m", "the largest"),
-            ("heading error", math.degrees(self.heading_error_rad), "deg", "mean angle to the centre line"),
-            ("contacts", float(self.contacts), "", "contacts begun in the run"),
-            ("mean speed", self.mean_speed_m_s, "m/s", "way driven by time"),
-            ("way", self.way_m, "m", "driven in the run"),
-            ("legs", float(self.legs), "", "straight pieces of corridor that the robot was on"),
-        ]
+    lateral_rms_m: float = metric("lateral error RMS", "m", "distance to the centre line, root mean square")
+    lateral_max_m: float = metric("lateral error max", "m", "the largest")
+    heading_error_rad: float = metric("heading error", "deg", "mean angle to the centre line")
+    contacts: int = metric("contacts", "", "contacts begun in the run")
+    mean_speed_m_s: float = metric("mean speed", "m/s", "way driven by time")
+    way_m: float = metric("way", "m", "driven in the run")
+    legs: int = metric("legs", "", "straight pieces of corridor that the robot was on")
 
 
 def score_corridor(*, time_s: Floats, robot: Floats, is_contact: Flags, legs: Sequence[Leg]) -> CorridorScore:

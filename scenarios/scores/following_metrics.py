@@ -9,29 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.truth.events import CONTACT_ENDS_S
-
-
-def count_contacts(time_s: NDArray[np.float64], is_contact: NDArray[np.bool_]) -> int:
-    """Count the contacts that begin in a run; who bounces, or rubs along a wall, touches it once.
-
-    Args:
-        time_s: (T,) of the frames.
-        is_contact: (T,) whether the robot touched anything or anyone at each of them.
-    """
-    touches = np.flatnonzero(is_contact)
-    is_apart = time_s[touches[1:] - 1] - time_s[touches[:-1]] >= CONTACT_ENDS_S
-    return min(len(touches), 1) + int(is_apart.sum())
-
-
-def count_starts(flags: NDArray[np.bool_]) -> int:
-    """Count the runs of true values (T,)."""
-    return int(np.sum(flags & ~np.concatenate([[False], flags[:-1]])))
-
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-Row = tuple[str, float, str, str]  # name, value, unit, explanation
+from peopleboy.scenarios.scores.score_record import Flags, Floats, ScoreRecord, count_contacts, metric
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,74 +33,33 @@ class FollowingTask:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FollowingScore:
-    """Scores of one run; shares and means are over the frames since the encounter with the person there.
+class FollowingScore(ScoreRecord):
+    """Scores of one run; shares and means are over the frames with the person there, from the first track on.
 
-    Attributes:
-        found: whether the person was ever tracked: the encounter.
-        time_to_find_s: [s] from the start to the encounter.
-        followed: share of time tracked.
-        in_band: share of time within the band of distances.
-        facing: share of time facing the person.
-        in_band_and_facing: share of time both.
-        mean_distance_error_m, rms_distance_error_m: [m] off the distance to keep, absolute.
-        min_distance_m: [m] over the whole run.
-        collisions: contacts begun, over the whole run.
-        times_lost: periods without track, each of lost_s or longer.
-        longest_lost_s: [s] longest period without track.
-        followed_to_end: whether the person was tracked for most of the last reached_s, and not exchanged.
-        path_efficiency: from the encounter to the first time in the band, straight way / way driven.
-        mean_heading_error_rad: [rad] mean absolute bearing of the person.
-        wrong_person_s: [s] for which the robot went after somebody else; NaN if nobody knows.
-        identity_changes: how often the track that lay on the person got another number.
-
-    What is not defined (no encounter, nobody there) is NaN.
+    Shares are 0..1, angles [rad]. `min_distance_m` and `collisions` are over the whole run. A period without
+    track counts as lost if it takes `lost_s` or longer. `path_efficiency` ends with the first time in the
+    band. `wrong_person_s` is NaN if it is not known whom the robot follows.
     """
 
-    found: bool
-    time_to_find_s: float
-    followed: float
-    in_band: float
-    facing: float
-    in_band_and_facing: float
-    mean_distance_error_m: float
-    rms_distance_error_m: float
-    min_distance_m: float
-    collisions: int
-    times_lost: int
-    longest_lost_s: float
-    followed_to_end: bool
-    path_efficiency: float
-    mean_heading_error_rad: float
-    wrong_person_s: float
-    identity_changes: int
-
-    def rows(self) -> list[Row]:
-        """Give the scores as table rows: name, value, unit, explanation."""
-        return [
-            ("found", float(self.found), "", "1 if the person was ever tracked"),
-            ("time to find", self.time_to_find_s, "s", "from the start to the first track"),
-            ("followed", 100.0 * self.followed, "%", "time tracked since found"),
-            ("in band", 100.0 * self.in_band, "%", "time at a good distance since found"),
-            ("facing", 100.0 * self.facing, "%", "time turned to the person since found"),
-            ("in band and facing", 100.0 * self.in_band_and_facing, "%", "both at once"),
-            ("distance error", self.mean_distance_error_m, "m", "mean of the absolute error since found"),
-            ("distance error RMS", self.rms_distance_error_m, "m", "root mean square since found"),
-            (
-                "nearest",
-                self.min_distance_m,
-                "m",
-                "smallest distance to the person to follow, centre to centre",
-            ),
-            ("collisions", float(self.collisions), "", "contacts begun in the run"),
-            ("times lost", float(self.times_lost), "", "periods without track since found"),
-            ("longest lost", self.longest_lost_s, "s", "longest period without track since found"),
-            ("to the end", float(self.followed_to_end), "", "1 if the right person was followed at the end"),
-            ("path efficiency", 100.0 * self.path_efficiency, "%", "straight way to the band / way driven"),
-            ("heading error", math.degrees(self.mean_heading_error_rad), "deg", "mean absolute since found"),
-            ("wrong person", self.wrong_person_s, "s", "time spent going after somebody else"),
-            ("identity changes", float(self.identity_changes), "", "new numbers of the person's track"),
-        ]
+    found: bool = metric("found", "", "1 if the person was ever tracked")
+    time_to_find_s: float = metric("time to find", "s", "from the start to the first track")
+    followed: float = metric("followed", "%", "time tracked since found")
+    in_band: float = metric("in band", "%", "time at a good distance since found")
+    facing: float = metric("facing", "%", "time turned to the person since found")
+    in_band_and_facing: float = metric("in band and facing", "%", "both at once")
+    mean_distance_error_m: float = metric("distance error", "m", "mean of the absolute error since found")
+    rms_distance_error_m: float = metric("distance error RMS", "m", "root mean square since found")
+    min_distance_m: float = metric(
+        "nearest", "m", "smallest distance to the person to follow, centre to centre"
+    )
+    collisions: int = metric("collisions", "", "contacts begun in the run")
+    times_lost: int = metric("times lost", "", "periods without track since found")
+    longest_lost_s: float = metric("longest lost", "s", "longest period without track since found")
+    followed_to_end: bool = metric("to the end", "", "1 if the right person was followed at the end")
+    path_efficiency: float = metric("path efficiency", "%", "straight way to the band / way driven")
+    mean_heading_error_rad: float = metric("heading error", "deg", "mean absolute since found")
+    wrong_person_s: float = metric("wrong person", "s", "time spent going after somebody else")
+    identity_changes: int = metric("identity changes", "", "new numbers of the person's track")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

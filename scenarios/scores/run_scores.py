@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.evaluate_runs import ScoredPeople, score_people
-from peopleboy.scenarios.scores.following_metrics import (
-    FollowingScore,
-)
+from peopleboy.scenarios.scores.following_metrics import FollowingScore
 from peopleboy.scenarios.scores.reference_boxes import (
     BoxReference,
     kind_of_boxes,
@@ -60,10 +58,7 @@ class RunScores:
         drives = {"following": self.following, "corridor": self.corridor, "comfort": self.comfort}
         for group, score in drives.items():
             if score is not None:
-                groups[group] = {
-                    name: None if isinstance(value, float) and math.isnan(value) else value
-                    for name, value in asdict(score).items()
-                }
+                groups[group] = score.to_json()
         if self.further:
             groups["cameras"] = {camera: to_json(scores) for camera, scores in self.further.items()}
         return groups

@@ -1,0 +1,85 @@
+"""Declare the figures of a score once: key, table name, unit and meaning; count what the scores share."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, fields
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.sim.truth.events import CONTACT_ENDS_S
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Row = tuple[str, float, str, str]  # name, value, unit, explanation
+
+# Records hold shares and radians.
+_IN_UNIT: Final[Mapping[str, Callable[[float], float]]] = {
+    "%": lambda share: 100.0 * share,
+    "deg": math.degrees,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Metric:
+    """What one figure is called in tables, its unit there, and what it means."""
+
+    name: str
+    unit: str
+    meaning: str
+
+    @property
+    def label(self) -> str:
+        """Its name with its unit."""
+        return f"{self.name}, {self.unit}" if self.unit else self.name
+
+
+def metric(name: str, unit: str, meaning: str) -> Any:
+    """Declare a figure as a field of a `ScoreRecord`."""
+    return field(metadata={"metric": Metric(name, unit, meaning)})
+
+
+class ScoreRecord:
+    """A dataclass whose fields are all declared by `metric`; NaN is what is not defined."""
+
+    __slots__ = ()
+
+    @classmethod
+    def metrics(cls) -> dict[str, Metric]:
+        """Return the figures by their key in metrics.json."""
+        return {one.name: one.metadata["metric"] for one in fields(cls)}  # type: ignore[arg-type]
+
+    def rows(self) -> list[Row]:
+        """Return the figures as table rows: name, value, unit, explanation."""
+        return [
+            (one.name, _IN_UNIT.get(one.unit, float)(getattr(self, key)), one.unit, one.meaning)
+            for key, one in self.metrics().items()
+        ]
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the figures as JSON can hold them: None for what is undefined."""
+        figures: dict[str, Any] = asdict(self)  # type: ignore[call-overload]
+        return {
+            key: None if isinstance(value, float) and math.isnan(value) else value
+            for key, value in figures.items()
+        }
+
+
+def count_contacts(time_s: Floats, is_contact: Flags) -> int:
+    """Count the contacts that begin in a run; bouncing, or rubbing along a wall, is one contact.
+
+    Args:
+        time_s: (T,) of the frames.
+        is_contact: (T,) whether the robot touched anything or anyone at each of them.
+    """
+    touches = np.flatnonzero(is_contact)
+    is_apart = time_s[touches[1:] - 1] - time_s[touches[:-1]] >= CONTACT_ENDS_S
+    return min(len(touches), 1) + int(is_apart.sum())
+
+
+def count_starts(flags: Flags) -> int:
+    """Count the runs of true values (T,)."""
+    return int(np.sum(flags & ~np.concatenate([[False], flags[:-1]])))
