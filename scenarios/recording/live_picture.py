@@ -12,7 +12,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.recording.recorder import APPLICATION
+from peopleboy.scenarios.recording.rows import APPLICATION
 from peopleboy.scenarios.recording.viewer import live_viewer
 
 _QUALITY = 75  # of JPEG

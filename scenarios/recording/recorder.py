@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Sequence
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -37,8 +36,7 @@ from peopleboy.scenarios.recording.layout import (
     thing_path,
 )
 from peopleboy.scenarios.recording.marks import Arrows, believed_arrows, true_arrows, world_arrows
-from peopleboy.scenarios.recording.recording_file import pack
-from peopleboy.scenarios.recording.rows import METRE_STEP, PIXEL_STEP, TURN_STEP, RowBuffer, rounded
+from peopleboy.scenarios.recording.rows import METRE_STEP, PIXEL_STEP, TURN_STEP, RecordingWriter, rounded
 from peopleboy.scenarios.recording.solids import NOBODY, body_capsules
 from peopleboy.scenarios.recording.still import JPEG, Still
 from peopleboy.sim.cameras.camera_config import DepthConfig
@@ -49,8 +47,6 @@ from peopleboy.sim.shapes.shapes import Vector
 from peopleboy.sim.truth.truth import ThingTruth
 from peopleboy.sim.world_config import WorldConfig
 
-APPLICATION = "peopleboy"
-
 _FRAMES_SENT_TOGETHER = 15
 _JPEG_QUALITY = 45
 _POINTS = 10_000  # about, of a depth image
@@ -59,16 +55,11 @@ _GONE = 1e-4  # of its size is what is not there
 _GRAVE = ("contact", "lost", "fault starts")
 
 
-def recording_id(title: str) -> str:
-    """Give the id of a recording by its title; viewers take recordings of one id together."""
-    return title.replace(", ", "-").replace(" ", "-")
-
-
-class Recorder:
-    """Writes one recording as the run goes; use it as a context manager.
+class Recorder(RecordingWriter):
+    """Write the recording of a run as it goes; use it as a context manager.
 
     Every 15 frames everything since the last time goes to the file, so that a run that is killed leaves a
-    file that opens and lacks those frames at most. A file that is closed is packed.
+    file that opens and lacks those frames at most.
 
     Args:
         path: the file to write.
@@ -91,6 +82,8 @@ class Recorder:
         attends: bool = False,
         is_lossless: bool = False,
     ) -> None:
+        blueprint = lay_out(config, watched, attends=attends, follows=viewer is not None)
+        super().__init__(path, title, viewer, blueprint)
         self._is_lossless = is_lossless
         self._cameras = config.robot.cameras
         self._boxed = with_boxes(self._cameras)
@@ -99,7 +92,6 @@ class Recorder:
         self._colour_from_thermal = colour_from_thermal(self._cameras)
         self._backgrounds: dict[str, NDArray[np.uint8]] = {}
         self._names = [person.name for person in config.people]
-        self._path = path
         self._trails = marks.Trails()
         self._things: dict[str, tuple[Vector, float, bool]] = {}
         self._sightings = marks.Sightings(self._boxed)
@@ -107,27 +99,13 @@ class Recorder:
         self._compared: set[int] = set()
         self._tracked = {"thermal"}
         self._has_places = False
-        self._rows = RowBuffer()
-        self._stream = rr.RecordingStream(APPLICATION, recording_id=recording_id(title))
-        sinks = [rr.FileSink(path)] if viewer is None else [rr.FileSink(path), rr.GrpcSink(viewer)]
-        self._stream.set_sinks(
-            *sinks, default_blueprint=lay_out(config, watched, attends=attends, follows=viewer is not None)
-        )
-        self._stream.send_recording_name(title)
-        self._still = Still(self._stream, "image/png" if is_lossless else JPEG)
+        self.stream.send_recording_name(title)
+        self._still = Still(self.stream, "image/png" if is_lossless else JPEG)
         self._still.log_world(config)
-
-    def __enter__(self) -> Recorder:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def log(self, tick: Tick, events: Sequence[LogLine]) -> None:
         """Add one tick and what happened at it."""
-        self._rows.begin(tick.frame, tick.observation.time_s)
+        self.begin(tick.frame, tick.observation.time_s)
         self._log_images(tick)
         self._log_tracks(tick)
         self._log_points(tick)
@@ -137,22 +115,8 @@ class Recorder:
         self._log_curves(tick)
         for line in events:
             level = "WARN" if line.kind.startswith(_GRAVE) else "INFO"
-            self._rows.add(EVENTS, rr.TextLog, text=[describe_fully(line)], level=[level])
-        if self._rows.frames >= _FRAMES_SENT_TOGETHER:
-            self._send()
-
-    def close(self) -> None:
-        """Write what is left, close the file, and pack it."""
-        self._send()
-        self._stream.disconnect()
-        pack(self._path)
-
-    def _send(self) -> None:
-        for rows in self._rows.take():
-            frames = rr.TimeColumn("frame", sequence=rows.frames)
-            times = rr.TimeColumn("time", duration=np.array(rows.times_s))
-            columns = rows.kind.columns(**rows.columns).partition(rows.lengths)
-            self._stream.send_columns(rows.path, [frames, times], columns, strict=True)
+            self.add(EVENTS, rr.TextLog, text=[describe_fully(line)], level=[level])
+        self.send_if_due(_FRAMES_SENT_TOGETHER)
 
     def _log_images(self, tick: Tick) -> None:
         images = tick.observation.images
@@ -162,7 +126,7 @@ class Recorder:
                 self._log_depth(name, config, tick)
                 continue
             blob = self._encoded(shown_to_people(images, name, config))
-            self._rows.add(f"{camera_path(name)}/image", rr.EncodedImage, blob=[blob])
+            self.add(f"{camera_path(name)}/image", rr.EncodedImage, blob=[blob])
 
     def _encoded(self, image: NDArray[np.uint8]) -> bytes:
         if self._is_lossless:
@@ -172,18 +136,18 @@ class Recorder:
     def _log_depth(self, name: str, config: DepthConfig, tick: Tick) -> None:
         """Log a depth image without loss, and the points that it stands for where they are in the world."""
         images = tick.observation.images
-        self._rows.add(f"{camera_path(name)}/image", rr.EncodedDepthImage, blob=[encode_png(images[name])])
+        self.add(f"{camera_path(name)}/image", rr.EncodedDepthImage, blob=[encode_png(images[name])])
         colour = images[f"{name}_colour"] if config.colour else shown_to_people(images, name, config)
         every = max(round(math.sqrt(images[name].size / _POINTS)), 1)
         places, pixels = points_of(images[name], config.camera, every)
         world = transform(tick.truths[name].world_from_camera, places.astype(np.float64))
         colours = colour[pixels[:, 0], pixels[:, 1]]
-        self._rows.add(points_path(name), rr.Points3D, positions=rounded(world, METRE_STEP), colors=colours)
+        self.add(points_path(name), rr.Points3D, positions=rounded(world, METRE_STEP), colors=colours)
 
     def _log_tracks(self, tick: Tick) -> None:
         contours = draw_explained_lines(tick.explanation, tick)
         strips, colours = _from_corner(contours.line), contours.colour
-        self._rows.add(f"{THERMAL}/tracks/contours", rr.LineStrips2D, strips=strips, colors=colours)
+        self.add(f"{THERMAL}/tracks/contours", rr.LineStrips2D, strips=strips, colors=colours)
         self._tracked |= {camera for track in tick.tracks for camera in track.boxes}
         for name in self._boxed:
             if name in self._tracked:
@@ -201,14 +165,14 @@ class Recorder:
         if self._has_places:
             seen = self._sightings.update(tick) if self._tells_cameras else {}
             places = marks.places(tick.tracks, seen)
-            self._rows.add(
+            self.add(
                 PLACES, rr.Ellipsoids3D, centers=rounded(places.centre, METRE_STEP),
                 half_sizes=rounded(places.half_size, METRE_STEP), quaternions=places.quaternion,
                 colors=places.colour, labels=places.label,
             )  # fmt: skip
 
     def _log_arrows(self, layer: str, arrows: Arrows) -> None:
-        self._rows.add(
+        self.add(
             f"{THERMAL}/{layer}", rr.Arrows2D, origins=_from_corner(arrows.start),
             vectors=rounded(arrows.vector, PIXEL_STEP), colors=arrows.colour, labels=arrows.label,
         )  # fmt: skip
@@ -216,7 +180,7 @@ class Recorder:
     def _log_points(self, tick: Tick) -> None:
         for layer, points in draw_explained_points(tick.explanation).items():
             place, colour = _from_corner(points.place), points.colour
-            self._rows.add(f"{THERMAL}/{layer}", rr.Points2D, positions=place, colors=colour)
+            self.add(f"{THERMAL}/{layer}", rr.Points2D, positions=place, colors=colour)
 
     def _log_sketches(self, tick: Tick) -> None:
         """Log what the tracker explains of further cameras' new images, and the empty scenes that are new."""
@@ -227,9 +191,9 @@ class Recorder:
             if empty is not None and not np.array_equal(self._backgrounds.get(camera, ()), empty):
                 self._backgrounds[camera] = empty
                 blob = encode_jpeg(empty, _JPEG_QUALITY, has_own_codes=False)
-                self._rows.add(f"{path}/{BACKGROUND}", rr.EncodedImage, blob=[blob], media_type=[JPEG])
+                self.add(f"{path}/{BACKGROUND}", rr.EncodedImage, blob=[blob], media_type=[JPEG])
             strips = [_from_corner(line) for line in sketch.lines]
-            self._rows.add(f"{path}/explained/lines", rr.LineStrips2D, strips=strips, colors=sketch.colour)
+            self.add(f"{path}/explained/lines", rr.LineStrips2D, strips=strips, colors=sketch.colour)
 
     def _log_truth(self, tick: Tick) -> None:
         for name in (name for name in self._boxed if name in tick.truths):
@@ -244,20 +208,18 @@ class Recorder:
         above = _from_corner(boxes.box[:, :2]) + boxes.box[:, 2:] * (0.5, 0.0) - (0.0, lift_px)
         # A panorama shows few heads.
         above[:, 1] = np.maximum(above[:, 1], 0.0)
-        self._rows.add(
-            f"{path}/truth/names", rr.Points2D, positions=above, colors=boxes.colour, labels=boxes.label
-        )
+        self.add(f"{path}/truth/names", rr.Points2D, positions=above, colors=boxes.colour, labels=boxes.label)
 
     def _log_boxes(self, path: str, boxes: marks.Boxes, **labels: list[str]) -> None:
         half = rounded(boxes.box[:, 2:] / 2.0, PIXEL_STEP)
         centre = _from_corner(boxes.box[:, :2]) + half
-        self._rows.add(path, rr.Boxes2D, centers=centre, half_sizes=half, colors=boxes.colour, **labels)
+        self.add(path, rr.Boxes2D, centers=centre, half_sizes=half, colors=boxes.colour, **labels)
 
     def _log_world(self, tick: Tick) -> None:
-        self._rows.add("world/robot", rr.Transform3D, **_planar(tick.truth.robot))
+        self.add("world/robot", rr.Transform3D, **_planar(tick.truth.robot))
         trails, arrows = self._trails.update(tick), world_arrows(tick.truth.people)
-        self._rows.add(TRAILS, rr.LineStrips3D, strips=trails.line, colors=trails.colour)
-        self._rows.add(
+        self.add(TRAILS, rr.LineStrips3D, strips=trails.line, colors=trails.colour)
+        self.add(
             OCCLUSIONS, rr.Arrows3D, origins=arrows.start, vectors=arrows.vector, colors=arrows.colour,
             labels=arrows.label,
         )  # fmt: skip
@@ -275,7 +237,7 @@ class Recorder:
         self._things[thing.name] = place
         x, y, z = thing.position_m
         half = thing.heading_rad / 2.0
-        self._rows.add(
+        self.add(
             thing_path(thing.name), rr.Transform3D, translation=np.array([(x, y, z)]),
             quaternion=np.array([(0.0, 0.0, np.sin(half), np.cos(half))]),
             scale=np.full((1, 3), 1.0 if thing.is_there else _GONE),
@@ -283,7 +245,7 @@ class Recorder:
 
     def _log_person(self, path: str, joints: Matrix | None) -> None:
         body = NOBODY if joints is None else body_capsules(joints)
-        self._rows.add(
+        self.add(
             f"{path}/body", rr.Capsules3D, translations=rounded(body.start, METRE_STEP),
             quaternions=rounded(body.quaternion, TURN_STEP), lengths=rounded(body.length, METRE_STEP),
             radii=rounded(body.radius, METRE_STEP / 2),
@@ -310,7 +272,7 @@ class Recorder:
                 self._still.log_track(number, ("likeness",))
             curves[f"curves/likeness/track_{number}"] = [likeness]
         for path, values in curves.items():
-            self._rows.add(path, rr.Scalars, scalars=np.array(values, np.float64))
+            self.add(path, rr.Scalars, scalars=np.array(values, np.float64))
 
 
 def _from_corner(pixels: NDArray[np.floating]) -> NDArray[np.float32]:

@@ -1,65 +1,88 @@
-"""Collect rows of many tables frame by frame, round their numbers, and hand them on column by column."""
+"""Write a recording frame by frame, with rounded numbers, and send its rows column by column."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Final
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Final, Self
 
 import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
+from peopleboy.scenarios.recording.recording_file import pack
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Columns:
-    """The rows of one table, put one behind the other.
+APPLICATION: Final = "peopleboy"
 
-    Attributes:
-        path: which table.
-        kind: what its rows are, as given to `Rows.add`.
-        frames: (R,) frame of each row.
-        times_s: (R,) [s] time of each row.
-        lengths: (R,) how many values of each column belong to each row.
-        columns: all values by name.
+
+def recording_id(title: str) -> str:
+    """Return the id of a recording by its title; viewers take recordings of one id together."""
+    return title.replace(", ", "-").replace(" ", "-")
+
+
+class RecordingWriter:
+    """Write a recording; use it as a context manager. A file that is closed is packed.
+
+    Rows are collected frame by frame and sent column by column, which costs a tenth of sending them one by
+    one.
+
+    Args:
+        path: the file to write.
+        title: name of the recording; the same title gives the same recording id.
+        viewer: address of a viewer that shows it at once; None for none.
+        blueprint: layout of its views.
     """
 
-    path: str
-    kind: Any
-    frames: list[int]
-    times_s: list[float]
-    lengths: list[int]
-    columns: dict[str, Any]
-
-
-class RowBuffer:
-    """Collects rows of a few values each, which costs a tenth of handing on every row by itself."""
-
-    def __init__(self) -> None:
-        self.frames = 0
+    def __init__(
+        self, path: Path, title: str, viewer: str | None = None, blueprint: rrb.Blueprint | None = None
+    ) -> None:
+        self._path = path
         self._now = (0, 0.0)
+        self._frames = 0
         self._rows: dict[tuple[str, Any], list[tuple[tuple[int, float], Mapping[str, Any]]]] = {}
+        self.stream = rr.RecordingStream(APPLICATION, recording_id=recording_id(title))
+        sinks = [rr.FileSink(path)] if viewer is None else [rr.FileSink(path), rr.GrpcSink(viewer)]
+        self.stream.set_sinks(*sinks, default_blueprint=blueprint)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Write what is left, close the file, and pack it."""
+        self._send()
+        self.stream.disconnect()
+        pack(self._path)
 
     def begin(self, frame: int, time_s: float) -> None:
         """Date the rows to come."""
         self._now = (frame, time_s)
-        self.frames += 1
+        self._frames += 1
 
     def add(self, path: str, kind: Any, **values: Any) -> None:
-        """Add one row to a table: under every name the same number of values, perhaps none."""
+        """Add a row to an entity: under every name the same number of values, perhaps none."""
         self._rows.setdefault((path, kind), []).append((self._now, values))
 
-    def take(self) -> Iterator[Columns]:
-        """Hand on every table, and forget it."""
-        tables, self._rows, self.frames = self._rows, {}, 0
+    def send_if_due(self, frames: int) -> None:
+        """Send all rows if they are those of so many frames."""
+        if self._frames >= frames:
+            self._send()
+
+    def _send(self) -> None:
+        tables, self._rows, self._frames = self._rows, {}, 0
         for (path, kind), rows in tables.items():
-            yield Columns(
-                path=path,
-                kind=kind,
-                frames=[frame for (frame, _), _ in rows],
-                times_s=[time_s for (_, time_s), _ in rows],
-                lengths=[len(next(iter(values.values()))) for _, values in rows],
-                columns={name: _joined([values[name] for _, values in rows]) for name in rows[0][1]},
-            )
+            frames = rr.TimeColumn("frame", sequence=[frame for (frame, _), _ in rows])
+            times = rr.TimeColumn("time", duration=np.array([time_s for (_, time_s), _ in rows]))
+            columns = {name: _joined([values[name] for _, values in rows]) for name in rows[0][1]}
+            lengths = [len(next(iter(values.values()))) for _, values in rows]
+            content = kind.columns(**columns).partition(lengths)
+            self.stream.send_columns(path, [frames, times], content, strict=True)
 
 
 def _joined(rows: Sequence[Any]) -> Any:

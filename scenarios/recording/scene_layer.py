@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from types import TracebackType
 
 import numpy as np
 import rerun as rr
@@ -13,9 +12,7 @@ import rerun as rr
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.drawing.palette import person_colour, track_colour
 from peopleboy.scenarios.recording.marks import Colours
-from peopleboy.scenarios.recording.recorder import APPLICATION, recording_id
-from peopleboy.scenarios.recording.recording_file import pack
-from peopleboy.scenarios.recording.rows import RowBuffer
+from peopleboy.scenarios.recording.rows import RecordingWriter
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.scene_model.geometry import Geometry
 from peopleboy.tracker.scene_model.scene import Metres, VistaScene
@@ -27,8 +24,8 @@ _POINT_M = 0.015
 _MOST = 4000  # points of things in a frame
 
 
-class SceneRecording:
-    """Writes static map, things and people where they are in the world; use it as a context manager.
+class SceneRecording(RecordingWriter):
+    """Write static map, things and people where they are in the world; use it as a context manager.
 
     Args:
         path: the file to write.
@@ -37,32 +34,19 @@ class SceneRecording:
     """
 
     def __init__(self, path: Path, title: str, first: Pose2) -> None:
-        self._path = path
+        super().__init__(path, title)
         self._pose = first
-        self._rows = RowBuffer()
-        self._stream = rr.RecordingStream(APPLICATION, recording_id=recording_id(title))
-        self._stream.set_sinks(rr.FileSink(path))
-
-    def __enter__(self) -> SceneRecording:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._send()
-        self._stream.disconnect()
-        pack(self._path)
 
     def log(self, frame: int, scene: VistaScene, depth_m: Metres, geometry: Geometry, pose: Pose2) -> None:
         """Add a frame: its things as points in their colours, its people as columns, and what happened."""
-        self._rows.begin(frame, scene.time_s)
+        self.begin(frame, scene.time_s)
         points, colours = _coloured(scene, depth_m, geometry)
         world = self._pose.compose(pose).transform_points(points).astype(np.float32)
-        self._rows.add(f"{_SCENE}/things", rr.Points3D, positions=world, colors=colours)
+        self.add(f"{_SCENE}/things", rr.Points3D, positions=world, colors=colours)
         places = [(*self._pose.transform_point(one.place_m), 0.9) for one in scene.persons]
         shades = [person_colour(one.id) for one in scene.persons]
         labels = [f"person {one.id}" for one in scene.persons]
-        self._rows.add(
+        self.add(
             f"{_SCENE}/people",
             rr.Ellipsoids3D,
             centers=np.array(places, np.float32).reshape(-1, 3),
@@ -74,22 +58,15 @@ class SceneRecording:
     def log_events(self, lines: Sequence[tuple[float, str]]) -> None:
         """Add what happened, at the times [s] when it was told."""
         for time_s, line in lines:
-            self._stream.set_time("time", duration=time_s)
-            self._stream.log("events", rr.TextLog(line, level="INFO"), strict=True)
-        self._stream.reset_time()
+            self.stream.set_time("time", duration=time_s)
+            self.stream.log("events", rr.TextLog(line, level="INFO"), strict=True)
+        self.stream.reset_time()
 
     def log_map(self, surface: Surface) -> None:
         """Add what stands."""
         world = self._pose.transform_points(surface.points_m)
         points = rr.Points3D(world, colors=_GREY, radii=_POINT_M)
-        self._stream.log(f"{_SCENE}/static", points, static=True, strict=True)
-
-    def _send(self) -> None:
-        for rows in self._rows.take():
-            frames = rr.TimeColumn("frame", sequence=rows.frames)
-            times = rr.TimeColumn("time", duration=np.array(rows.times_s))
-            columns = rows.kind.columns(**rows.columns).partition(rows.lengths)
-            self._stream.send_columns(rows.path, [frames, times], columns, strict=True)
+        self.stream.log(f"{_SCENE}/static", points, static=True, strict=True)
 
 
 def _coloured(scene: VistaScene, depth_m: Metres, geometry: Geometry) -> tuple[Floats, Colours]:
