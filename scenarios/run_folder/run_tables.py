@@ -23,7 +23,7 @@ from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 STATE = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")
 SPREAD = "uncertainty_px2"
 COLUMNS = (SPREAD, *STATE)
-"""Columns of the tracks table that have no value for trackers without contours."""
+"""TableColumns of the tracks table that have no value for trackers without contours."""
 
 _NOTHING: Mapping[str, Any] = dict.fromkeys(COLUMNS)
 
@@ -51,7 +51,7 @@ def read_explanation(tracker: str, rows: Iterable[Mapping[str, Any]]) -> Contour
 Row = dict[str, Any]
 
 
-class Column(NamedTuple):
+class TableColumn(NamedTuple):
     """One column of a table.
 
     Attributes:
@@ -65,7 +65,7 @@ class Column(NamedTuple):
     may_be_empty: bool = False
 
 
-Columns = Mapping[str, Column]
+TableColumns = Mapping[str, TableColumn]
 
 INT, FLOAT, BOOL, STRING = pa.int64(), pa.float64(), pa.bool_(), pa.string()
 _SHARES = pa.map_(pa.string(), pa.float64())
@@ -75,39 +75,39 @@ PLACE: Final = ("place_x_m", "place_y_m", "place_xx_m2", "place_xy_m2", "place_y
 _EDGES = ("left_px", "top_px", "width_px", "height_px")
 
 
-def plain(kind: pa.DataType, *names: str) -> Columns:
+def plain(kind: pa.DataType, *names: str) -> TableColumns:
     """Declare columns whose values are attributes of the same name."""
-    return {name: Column(kind, attrgetter(name)) for name in names}
+    return {name: TableColumn(kind, attrgetter(name)) for name in names}
 
 
 def numbers(
     names: Iterable[str], values: Callable[[Any], Sequence[float] | None], *, may_be_empty: bool = False
-) -> Columns:
+) -> TableColumns:
     """Declare a column for each number of a tuple, all without a value where there is none."""
 
     def nth(k: int) -> Callable[[Any], float | None]:
         return lambda one: None if (found := values(one)) is None else found[k]
 
-    return {name: Column(FLOAT, nth(k), may_be_empty) for k, name in enumerate(names)}
+    return {name: TableColumn(FLOAT, nth(k), may_be_empty) for k, name in enumerate(names)}
 
 
-def box(prefix: str, attribute: str) -> Columns:
+def box(prefix: str, attribute: str) -> TableColumns:
     """Declare the columns of a box."""
     return numbers((f"{prefix}{edge}" for edge in _EDGES), attrgetter(attribute), may_be_empty=True)
 
 
-def schema_of(columns: Columns) -> pa.Schema:
+def schema_of(columns: TableColumns) -> pa.Schema:
     """Return the schema of a table with these columns behind frame and time."""
     return pa.schema([*_INSTANT, *(pa.field(name, column.type) for name, column in columns.items())])
 
 
-def row_of(columns: Columns, frame: int, time_s: float, one: object) -> Row:
+def row_of(columns: TableColumns, frame: int, time_s: float, one: object) -> Row:
     """Return the row of a table about one person, thing, track or robot."""
     values = {name: column.value(one) for name, column in columns.items()}
     return {"frame": frame, "time_s": time_s, **values}
 
 
-_PERSON: Final[Columns] = {
+_PERSON: Final[TableColumns] = {
     **plain(INT, "id"),
     **plain(STRING, "name"),
     **numbers(("x_m", "y_m"), attrgetter("position_m")),
@@ -121,12 +121,12 @@ _PERSON: Final[Columns] = {
     **box("visible_", "visible_box"),
     **plain(INT, "whole_px", "visible_px"),
     **plain(FLOAT, "visible_fraction", "occluded_fraction"),
-    "occluder": Column(STRING, attrgetter("occluder"), True),
-    "hidden_by": Column(_SHARES, lambda person: dict(person.hidden_by)),
-    "part_temperature_c": Column(_SHARES, lambda person: dict(person.part_temperature_c)),
-    "joints_m": Column(pa.list_(FLOAT, 51), lambda person: person.joints_m.ravel().tolist()),
-    "joints_px": Column(pa.list_(FLOAT, 34), lambda person: person.joints_px.ravel().tolist()),
-    "joint_is_visible": Column(pa.list_(BOOL, 17), lambda person: person.joint_is_visible.tolist()),
+    "occluder": TableColumn(STRING, attrgetter("occluder"), True),
+    "hidden_by": TableColumn(_SHARES, lambda person: dict(person.hidden_by)),
+    "part_temperature_c": TableColumn(_SHARES, lambda person: dict(person.part_temperature_c)),
+    "joints_m": TableColumn(pa.list_(FLOAT, 51), lambda person: person.joints_m.ravel().tolist()),
+    "joints_px": TableColumn(pa.list_(FLOAT, 34), lambda person: person.joints_px.ravel().tolist()),
+    "joint_is_visible": TableColumn(pa.list_(BOOL, 17), lambda person: person.joint_is_visible.tolist()),
 }
 
 
@@ -143,37 +143,37 @@ class _Tracked(NamedTuple):
         return None if place is None else (*place.position_m, *place.covariance_m2)
 
 
-def _explained(name: str) -> Column:
-    return Column(FLOAT, lambda one: one.explained[name], True)
+def _explained(name: str) -> TableColumn:
+    return TableColumn(FLOAT, lambda one: one.explained[name], True)
 
 
-_TRACK: Final[Columns] = {
-    "id": Column(INT, attrgetter("track.id")),
-    "status": Column(STRING, lambda one: str(one.track.status)),
-    "confidence": Column(FLOAT, attrgetter("track.confidence")),
-    "age_s": Column(FLOAT, attrgetter("track.age_s")),
+_TRACK: Final[TableColumns] = {
+    "id": TableColumn(INT, attrgetter("track.id")),
+    "status": TableColumn(STRING, lambda one: str(one.track.status)),
+    "confidence": TableColumn(FLOAT, attrgetter("track.confidence")),
+    "age_s": TableColumn(FLOAT, attrgetter("track.age_s")),
     SPREAD: _explained(SPREAD),
     **box("", "box"),
     **numbers(PLACE, attrgetter("place"), may_be_empty=True),
     **{name: _explained(name) for name in STATE},
-    "occluder": Column(INT, attrgetter("track.occluder"), True),
+    "occluder": TableColumn(INT, attrgetter("track.occluder"), True),
 }
 
-_ROBOT: Final[Columns] = {
+_ROBOT: Final[TableColumns] = {
     **numbers(
         ("x_m", "y_m", "heading_rad"), attrgetter("truth.robot.x", "truth.robot.y", "truth.robot.heading")
     ),
     **numbers(("linear_m_s", "angular_rad_s"), attrgetter("truth.robot_velocity")),
-    "odometry_x_m": Column(FLOAT, attrgetter("observation.odometry.x")),
-    "odometry_y_m": Column(FLOAT, attrgetter("observation.odometry.y")),
-    "odometry_heading_rad": Column(FLOAT, attrgetter("observation.odometry.heading")),
+    "odometry_x_m": TableColumn(FLOAT, attrgetter("observation.odometry.x")),
+    "odometry_y_m": TableColumn(FLOAT, attrgetter("observation.odometry.y")),
+    "odometry_heading_rad": TableColumn(FLOAT, attrgetter("observation.odometry.heading")),
     **numbers(("left_wheel_m_s", "right_wheel_m_s"), attrgetter("observation.wheel_speeds_m_s")),
-    "command_linear_m_s": Column(FLOAT, attrgetter("command.linear_m_s")),
-    "command_angular_rad_s": Column(FLOAT, attrgetter("command.angular_rad_s")),
-    "command_is_emergency": Column(BOOL, attrgetter("command.is_emergency")),
+    "command_linear_m_s": TableColumn(FLOAT, attrgetter("command.linear_m_s")),
+    "command_angular_rad_s": TableColumn(FLOAT, attrgetter("command.angular_rad_s")),
+    "command_is_emergency": TableColumn(BOOL, attrgetter("command.is_emergency")),
     **plain(STRING, "mode"),
-    "sonar_m": Column(pa.list_(FLOAT, 16), lambda tick: tick.observation.sonar_m.tolist()),
-    "contacts": Column(pa.list_(STRING), lambda tick: list(tick.truth.contacts)),
+    "sonar_m": TableColumn(pa.list_(FLOAT, 16), lambda tick: tick.observation.sonar_m.tolist()),
+    "contacts": TableColumn(pa.list_(STRING), lambda tick: list(tick.truth.contacts)),
 }
 
 TRUTH, TRACKS, ROBOT = schema_of(_PERSON), schema_of(_TRACK), schema_of(_ROBOT)

@@ -18,8 +18,8 @@ from peopleboy.scenarios.run_folder.run_tables import (
     INT,
     STRING,
     TRUTH,
-    Columns,
     Row,
+    TableColumns,
     box,
     numbers,
     plain,
@@ -112,7 +112,7 @@ def open_text(path: Path) -> TextIO:
     return path.open("w", encoding="utf-8", newline="\n")
 
 
-_THING: Final[Columns] = {
+_THING: Final[TableColumns] = {
     **plain(STRING, "name"),
     **numbers(("x_m", "y_m", "z_m"), attrgetter("position_m")),
     **plain(FLOAT, "heading_rad"),
