@@ -14,7 +14,7 @@ from typing import Any, Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.peers.detectors import Boxes, Detections
+from benchmarks.peers.detectors import Boxes, PeerDetections
 from peopleboy.tracker.frame import Frame
 
 # Chosen in their favour, like those of the other peers, on crossing_2 and crossing_3.
@@ -34,7 +34,7 @@ _PLACES: Final = (0, 2, 4, 5)  # of x, y, width and height in the state x, vx, y
 
 
 class _Detector(Protocol):
-    def detect(self, frame: Frame) -> Detections: ...
+    def detect(self, frame: Frame) -> PeerDetections: ...
 
 
 class DetectAndFilter:

@@ -10,7 +10,7 @@ import supervision as sv
 from trackers import ByteTrackTracker, SORTTracker
 
 from benchmarks.peers.classic import DetectAndFilter
-from benchmarks.peers.detectors import Blobs, Boxes, Detections, Hog, Oracle
+from benchmarks.peers.detectors import Blobs, Boxes, Hog, Oracle, PeerDetections
 from benchmarks.peers.joint_filter import JointFilter
 from benchmarks.peers.ours import Contestant, Ours
 from peopleboy.sim.random_streams import stream
@@ -34,21 +34,21 @@ _WIDE: Final = 0.43  # of .43 and the .45 of ours
 _WEAKEST: Final = 0.0  # distance from the classifier's boundary
 
 
-class _Detector(Protocol):
-    def detect(self, frame: Frame) -> Detections: ...
+class _BoxDetector(Protocol):
+    def detect(self, frame: Frame) -> PeerDetections: ...
 
 
 class DetectAndAssociate:
     """A detector, and a tracker that sees only its boxes."""
 
-    def __init__(self, detector: _Detector, tracker: Any) -> None:
+    def __init__(self, detector: _BoxDetector, tracker: Any) -> None:
         self._detector, self._tracker = detector, tracker
 
     def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
         """Detect, and associate."""
         found = self._detector.detect(frame)
         corners = np.concatenate([found.box[:, :2], found.box[:, :2] + found.box[:, 2:]], axis=1)
-        tracked = self._tracker.update(sv.Detections(xyxy=corners, confidence=found.confidence))
+        tracked = self._tracker.update(sv.PeerDetections(xyxy=corners, confidence=found.confidence))
         is_known = np.asarray(tracked.tracker_id).reshape(-1) >= 0
         corners = tracked.xyxy[is_known]
         boxes = np.concatenate([corners[:, :2], corners[:, 2:] - corners[:, :2]], axis=1)

@@ -23,7 +23,7 @@ TRUTH_PER_HEIGHT = 0.27  # width of a box of the truth over its height, mean of 
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Detections:
+class PeerDetections:
     """What a detector finds in a frame.
 
     Attributes:
@@ -62,7 +62,7 @@ class Hog:
         self._hog = cv2.HOGDescriptor()
         self._hog.setSVMDetector(cv2.HOGDescriptor_getDefaultPeopleDetector())
 
-    def detect(self, frame: Frame) -> Detections:
+    def detect(self, frame: Frame) -> PeerDetections:
         """Find people in a frame."""
         image = frame.rgb(COLOUR) if self._uses_colour else frame.grey(THERMAL)
         large = cv2.resize(image, None, fx=self._enlarged, fy=self._enlarged, interpolation=cv2.INTER_LINEAR)
@@ -73,7 +73,7 @@ class Hog:
         boxes = _shaped(windows, self._MAN_PER_WINDOW, self._width_per_height)
         if self._uses_colour:
             boxes = _from_colour(boxes, image.shape, frame)
-        return Detections(
+        return PeerDetections(
             boxes, 1.0 / (1.0 + np.exp(-2.0 * np.asarray(weight, dtype=np.float64).reshape(-1)))
         )
 
@@ -85,7 +85,7 @@ class Blobs:
     _SMALLEST_PX = 24  # height
     _UPRIGHT = (1.1, 7.0)  # height over width
 
-    def detect(self, frame: Frame) -> Detections:
+    def detect(self, frame: Frame) -> PeerDetections:
         """Find people in a frame."""
         warm = (frame.grey(THERMAL) > self._WARMER_THAN).astype(np.uint8)
         warm = cv2.morphologyEx(warm, cv2.MORPH_CLOSE, np.ones((9, 3), np.uint8))
@@ -95,7 +95,7 @@ class Blobs:
         boxes = boxes[
             (boxes[:, 3] >= self._SMALLEST_PX) & (ratio >= self._UPRIGHT[0]) & (ratio <= self._UPRIGHT[1])
         ]
-        return Detections(_shaped(boxes, 1.0, TRUTH_PER_HEIGHT), np.ones(len(boxes)))
+        return PeerDetections(_shaped(boxes, 1.0, TRUTH_PER_HEIGHT), np.ones(len(boxes)))
 
 
 class Oracle:
@@ -105,11 +105,11 @@ class Oracle:
         self._truth = truth.take(truth.visible > SEEN)
         self._frame = 0
 
-    def detect(self, frame: Frame) -> Detections:  # noqa: ARG002
+    def detect(self, frame: Frame) -> PeerDetections:  # noqa: ARG002
         """Find people in the next frame."""
         self._frame += 1
         rows = self._truth.frame == self._frame
-        return Detections(self._truth.box[rows], np.ones(int(rows.sum())))
+        return PeerDetections(self._truth.box[rows], np.ones(int(rows.sum())))
 
 
 def _shaped(boxes: Boxes, height_share: float, width_per_height: float) -> Boxes:

@@ -19,7 +19,7 @@ from PIL import Image, ImageDraw, ImageFont
 from PIL.PngImagePlugin import PngInfo
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.drawing.key_moments import KeyMoments, Moment, Shot
+from peopleboy.scenarios.drawing.key_moments import KeyMoment, KeyMoments, Shot
 from peopleboy.scenarios.drawing.overlay import (
     Picture,
     Plate,
@@ -157,7 +157,7 @@ class ContactSheet:
             return counted(0, "frame")
         return f"{counted(self._last.frame, 'frame')}, {self._last.observation.time_s:.1f} s"
 
-    def _tile(self, moment: Moment) -> Image.Image:
+    def _tile(self, moment: KeyMoment) -> Image.Image:
         """Draw one moment: caption, thermal, colour, then further cameras."""
         further = _rows_of(moment.further)
         rows = [[self._thermal_picture(moment)], [self._colour_picture(moment)]]
@@ -172,19 +172,19 @@ class ContactSheet:
             top += height + _SEAM
         return tile
 
-    def _thermal_picture(self, moment: Moment) -> Picture:
+    def _thermal_picture(self, moment: KeyMoment) -> Picture:
         scale = _fitting_scale(moment.thermal, _TILE)
         picture = enlarge(show_thermal(moment.thermal), scale)
         plates: list[Plate] = []
         picture = self._with_tracks("thermal", picture, moment.tracks, scale, moment.explanation, plates)
         return draw_truth(picture, moment.people, scale, plates=plates)
 
-    def _colour_picture(self, moment: Moment) -> Picture:
+    def _colour_picture(self, moment: KeyMoment) -> Picture:
         scale = _fitting_scale(moment.colour, _TILE)
         picture = enlarge(moment.colour, scale)
         return self._with_tracks("colour", picture, moment.tracks, scale, moment.explanation, [])
 
-    def _further_picture(self, shot: Shot, beside: int, moment: Moment) -> Picture:
+    def _further_picture(self, shot: Shot, beside: int, moment: KeyMoment) -> Picture:
         """Draw what a further camera saw, with tracks, truth where it has boxes, name and how old it is."""
         scale = _fitting_scale(shot.image, _share(beside))
         config = self._robot.cameras[shot.camera]
@@ -272,7 +272,7 @@ def read_tiles(path: Path) -> list[Tile]:
     return tiles or [Tile(sheet, "key moments of the run")]
 
 
-def _caption(tile: Image.Image, moment: Moment) -> None:
+def _caption(tile: Image.Image, moment: KeyMoment) -> None:
     """Write time, mode and what happened above the images."""
     draw = ImageDraw.Draw(tile)
     draw.text((0, 11), f"{moment.time_s:.1f} s", STRONG, font(17, is_bold=True), anchor="lm")

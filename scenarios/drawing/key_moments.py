@@ -62,7 +62,7 @@ class Shot:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Moment:
+class KeyMoment:
     """What is needed to draw one instant.
 
     Attributes:
@@ -87,7 +87,7 @@ class Moment:
 
 
 # Says what a moment is about, of the one that is shown, which may be another just before or after.
-Words = Callable[[Moment], str]
+Words = Callable[[KeyMoment], str]
 
 
 @dataclass(slots=True)
@@ -107,12 +107,12 @@ class KeyMoments:
 
     def __init__(self, cameras: Mapping[str, CameraConfig]) -> None:
         self._cameras = cameras
-        self._kept: dict[tuple[str, int], tuple[Moment, Words]] = {}
+        self._kept: dict[tuple[str, int], tuple[KeyMoment, Words]] = {}
         self._newest: dict[str, Shot] = {}
         self._counts: Counter[str] = Counter()
         self._occlusions: dict[tuple[str, str], _Occlusion] = {}
         self._closest_m = np.inf
-        self._spare: list[Moment] = []
+        self._spare: list[KeyMoment] = []
         self._stride = 1
 
     def add(self, tick: Tick, events: Sequence[LogLine]) -> None:
@@ -128,9 +128,9 @@ class KeyMoments:
         self._look_for_closest(moment)
         self._keep_spare(moment)
 
-    def choose(self, count: int) -> list[Moment]:
+    def choose(self, count: int) -> list[KeyMoment]:
         """Choose at most `count` moments: what happened, then others as far from them as can be; in time."""
-        chosen: list[Moment] = []
+        chosen: list[KeyMoment] = []
         words: dict[int, tuple[str, ...]] = {}
         # The first of every kind comes before the second of any.
         for _, (moment, say) in sorted(
@@ -145,7 +145,7 @@ class KeyMoments:
         self._fill(chosen, count)
         return [_with_words(m, words.get(m.frame, ())) for m in sorted(chosen, key=lambda m: m.frame)]
 
-    def _keep_new(self, kind: str, moment: Moment, say: Words) -> tuple[str, int] | None:
+    def _keep_new(self, kind: str, moment: KeyMoment, say: Words) -> tuple[str, int] | None:
         """Keep a moment of this kind if there are not too many yet, and return where."""
         slot = (kind, self._counts[kind])
         if slot[1] >= _KINDS.get(kind, 0):
@@ -164,7 +164,7 @@ class KeyMoments:
         elif line.kind == "occlusion ends":
             self._occlusions.pop(pair, None)
 
-    def _look_for_worst(self, moment: Moment) -> None:
+    def _look_for_worst(self, moment: KeyMoment) -> None:
         people = {person.name: person for person in moment.people}
         for (name, other), occlusion in self._occlusions.items():
             person = people.get(name)
@@ -173,14 +173,14 @@ class KeyMoments:
                 occlusion.hidden = hidden
                 self._kept[occlusion.slot] = (moment, partial(_hidden, person, other))
 
-    def _look_for_closest(self, moment: Moment) -> None:
+    def _look_for_closest(self, moment: KeyMoment) -> None:
         for person in moment.people:
             if person.visible_px > 0 and person.distance_m < self._closest_m:
                 self._closest_m = person.distance_m
                 text = f"closest in view: {person.name}, {person.distance_m:.1f} m"
                 self._kept[("closest", 0)] = (moment, partial(_always, text))
 
-    def _keep_spare(self, moment: Moment) -> None:
+    def _keep_spare(self, moment: KeyMoment) -> None:
         """Keep every n-th moment, n doubling whenever there are too many."""
         if (moment.frame - 1) % self._stride == 0:
             self._spare.append(moment)
@@ -188,7 +188,7 @@ class KeyMoments:
             self._stride *= 2
             self._spare = [m for m in self._spare if (m.frame - 1) % self._stride == 0]
 
-    def _fill(self, chosen: list[Moment], count: int) -> None:
+    def _fill(self, chosen: list[KeyMoment], count: int) -> None:
         """Add spare moments, each time the one farthest from all that are chosen."""
         while len(chosen) < count:
             gaps = [min(abs(spare.frame - m.frame) for m in chosen) for spare in self._spare]
@@ -197,11 +197,11 @@ class KeyMoments:
             chosen.append(self._spare[gaps.index(max(gaps))])
 
 
-def _always(text: str, moment: Moment) -> str:  # noqa: ARG001
+def _always(text: str, moment: KeyMoment) -> str:  # noqa: ARG001
     return text
 
 
-def _hidden(person: PersonTruth, other: str, moment: Moment) -> str:
+def _hidden(person: PersonTruth, other: str, moment: KeyMoment) -> str:
     """Say how much one hides of another at a moment, which may be shown instead of the worst one."""
     shown = next((one for one in moment.people if one.name == person.name), person)
     hidden = shown.hidden_inside(other)
@@ -218,9 +218,9 @@ def _further(tick: Tick, cameras: Mapping[str, CameraConfig]) -> Iterator[Shot]:
         yield Shot(name, senses.time_s, image, truth.people, tick.tracks)
 
 
-def _moment(tick: Tick, further: tuple[Shot, ...]) -> Moment:
+def _moment(tick: Tick, further: tuple[Shot, ...]) -> KeyMoment:
     senses = tick.observation
-    return Moment(
+    return KeyMoment(
         frame=tick.frame,
         time_s=senses.time_s,
         mode=tick.mode,
@@ -233,7 +233,7 @@ def _moment(tick: Tick, further: tuple[Shot, ...]) -> Moment:
     )
 
 
-def _with_words(moment: Moment, words: tuple[str, ...]) -> Moment:
+def _with_words(moment: KeyMoment, words: tuple[str, ...]) -> KeyMoment:
     """Say what happened, or else who is there."""
     if not words:
         seen = sum(person.visible_px > 0 for person in moment.people)

@@ -19,7 +19,7 @@ _ROOM_M: Final = 0.3  # that a person keeps from walls
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Situation:
+class ConductSituation:
     """A person and the robot at an instant.
 
     Attributes:
@@ -73,7 +73,7 @@ class Encounter:
         self._from_m = from_m
         self._is_on = False
 
-    def update(self, now: Situation) -> bool:
+    def update(self, now: ConductSituation) -> bool:
         """Take in an instant, and tell whether the two have met."""
         gap_m = now.gap_m
         if self._is_on:
@@ -100,7 +100,7 @@ _WAYS_OUT_RAD: Final = tuple(math.radians(side * off) for off in (0.0, 30.0, 60.
 class Conduct(Protocol):
     """What a person does during one encounter with the robot."""
 
-    def wish(self, dt_s: float, now: Situation) -> Wish:
+    def wish(self, dt_s: float, now: ConductSituation) -> Wish:
         """Tell what the person would rather do than its script."""
         ...
 
@@ -108,7 +108,7 @@ class Conduct(Protocol):
 class Ignoring:
     """Neither looks nor makes way; stops only where it would walk into the robot."""
 
-    def wish(self, dt_s: float, now: Situation) -> Wish:  # noqa: ARG002
+    def wish(self, dt_s: float, now: ConductSituation) -> Wish:  # noqa: ARG002
         """Tell what the person would rather do than its script."""
         return Wish(heeds_robot=False)
 
@@ -120,7 +120,7 @@ class MakingWay:
         self._keep_m = reaction.distance_m
         self._aside: Array | None = None
 
-    def wish(self, dt_s: float, now: Situation) -> Wish:  # noqa: ARG002
+    def wish(self, dt_s: float, now: ConductSituation) -> Wish:  # noqa: ARG002
         """Tell what the person would rather do than its script."""
         robot = now.robot.position
         if now.is_walking or now.is_seated:
@@ -134,7 +134,7 @@ class MakingWay:
             return Wish(clear_m=self._keep_m, gaze_at=robot)
         return Wish(clear_m=self._keep_m, gaze_at=robot, goes_to=self._aside, stands=True, faces=robot)
 
-    def _place_aside(self, now: Situation) -> Array | None:
+    def _place_aside(self, now: ConductSituation) -> Array | None:
         """Where to stand so that the robot passes, on the nearer side of its way if there is room."""
         lateral = _lateral_m(now.at, now, self._keep_m)
         if lateral is None:
@@ -156,7 +156,7 @@ class Wary:
         self._keep_m = reaction.distance_m
         self._refuge: Array | None = None
 
-    def wish(self, dt_s: float, now: Situation) -> Wish:  # noqa: ARG002
+    def wish(self, dt_s: float, now: ConductSituation) -> Wish:  # noqa: ARG002
         """Tell what the person would rather do than its script."""
         robot = now.robot.position
         if now.is_seated or (now.is_walking and now.gap_m > self._keep_m):
@@ -172,7 +172,7 @@ class Wary:
         stays = now.home is not None and math.dist(now.home, robot) < self._keep_m + _SPARE_M
         return Wish(clear_m=self._keep_m, gaze_at=robot, stands=stays, faces=robot if stays else None)
 
-    def _place_away(self, now: Situation) -> Array | None:
+    def _place_away(self, now: ConductSituation) -> Array | None:
         """Where to be clear of the robot again: straight away from it, or as far aside as walls demand."""
         away = now.away
         for turn in _WAYS_OUT_RAD:
@@ -192,7 +192,7 @@ class Curious:
         self._gaze_s = reaction.duration_s
         self._chases_s = _CHASE_S
 
-    def wish(self, dt_s: float, now: Situation) -> Wish:
+    def wish(self, dt_s: float, now: ConductSituation) -> Wish:
         """Tell what the person would rather do than its script."""
         if self._gaze_s <= 0.0 or self._chases_s <= 0.0:
             return Wish(clear_m=_PASSES_M)
@@ -215,7 +215,7 @@ class Blocking:
         self._stands_s = reaction.duration_s
         self._chases_s = _CHASE_S
 
-    def wish(self, dt_s: float, now: Situation) -> Wish:
+    def wish(self, dt_s: float, now: ConductSituation) -> Wish:
         """Tell what the person would rather do than its script."""
         if self._stands_s <= 0.0 or self._chases_s <= 0.0:
             return Wish(clear_m=_PASSES_M)
@@ -239,7 +239,7 @@ class Surprised:
     def __init__(self, reaction: Reaction) -> None:
         self._stands_s = reaction.duration_s
 
-    def wish(self, dt_s: float, now: Situation) -> Wish:
+    def wish(self, dt_s: float, now: ConductSituation) -> Wish:
         """Tell what the person would rather do than its script."""
         if self._stands_s <= 0.0:
             return Wish(clear_m=_PASSES_M)
@@ -249,7 +249,7 @@ class Surprised:
         return Wish(stands=True, gaze_at=robot, faces=robot if abs(off) > _NECK_RAD else None)
 
 
-def _lateral_m(place: Array, now: Situation, keep_m: float) -> float | None:
+def _lateral_m(place: Array, now: ConductSituation, keep_m: float) -> float | None:
     """How far to the left [m] of the robot's way a place is; None if it does not come there soon and near."""
     velocity = now.robot.velocity
     speed = float(np.hypot(*velocity))
@@ -275,7 +275,7 @@ class Leading:
         self._has_given_up = False
         self._walked_s = 0.0
 
-    def wish(self, dt_s: float, now: Situation) -> Wish:
+    def wish(self, dt_s: float, now: ConductSituation) -> Wish:
         """Tell what the person would rather do than its script, once a control step of dt_s [s]."""
         robot, gap_m, lead = now.robot.position, now.gap_m, self._lead
         if gap_m <= lead.goes_on_within_m:

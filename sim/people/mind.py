@@ -11,12 +11,12 @@ from typing import Final
 from peopleboy.sim.people.conducts import (
     Blocking,
     Conduct,
+    ConductSituation,
     Curious,
     Encounter,
     Ignoring,
     Leading,
     MakingWay,
-    Situation,
     Surprised,
     Wary,
 )
@@ -80,7 +80,9 @@ class Mind:
         self._encounter = None if reacts is None else Encounter(reacts.begins_m)
         self._conduct: Conduct | None = None
 
-    def wish(self, dt_s: float, now: Situation | None, progress: float, company: Iterable[float]) -> Wish:
+    def wish(
+        self, dt_s: float, now: ConductSituation | None, progress: float, company: Iterable[float]
+    ) -> Wish:
         """Tell what the person would rather do than its script.
 
         Args:
@@ -93,7 +95,7 @@ class Mind:
         pace = pace_among(self._points, progress, company)
         return wish if pace == 1.0 else replace(wish, pace=pace)
 
-    def _take_to_robot(self, dt_s: float, now: Situation) -> Wish:
+    def _take_to_robot(self, dt_s: float, now: ConductSituation) -> Wish:
         if self._leading is not None:
             return self._leading.wish(dt_s, now)
         if self._reaction is None or self._encounter is None:

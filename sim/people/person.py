@@ -38,7 +38,7 @@ from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, joint_offsets, joint_points
 from peopleboy.sim.people.body.stance import POSTURES, STANCE, Builds, Gaze, Stances, hold, move_limbs
-from peopleboy.sim.people.conducts import Situation
+from peopleboy.sim.people.conducts import ConductSituation
 from peopleboy.sim.people.mind import Mind
 from peopleboy.sim.people.person_config import Arms, PersonConfig, Waypoint
 from peopleboy.sim.people.walking.social_force import PlanarState
@@ -205,7 +205,7 @@ class Person:
         """Decide how to change the script, if at all."""
         walker, now = self._walker, None
         if around.robot is not None and (self.config.reacts or self.config.leads):
-            now = Situation(
+            now = ConductSituation(
                 at=walker.position,
                 heading=walker.heading,
                 home=walker.home,

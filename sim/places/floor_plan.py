@@ -106,7 +106,7 @@ def lengthened(block: Rectangle, piece: Rectangle) -> Rectangle | None:
 WALL_M = 0.1  # thickness of every wall
 
 
-class Side(Enum):
+class WallSide(Enum):
     """A side of a rectangle of floor; the value is the outward normal."""
 
     EAST = (1.0, 0.0)
@@ -121,26 +121,26 @@ class Side(Enum):
 
     def strip(self, area: Rectangle, depth_m: float) -> Rectangle:
         """The strip of that depth outside this side; north and south strips own the corners."""
-        if self is Side.EAST:
+        if self is WallSide.EAST:
             return Rectangle(area.max_x, area.min_y, area.max_x + depth_m, area.max_y)
-        if self is Side.WEST:
+        if self is WallSide.WEST:
             return Rectangle(area.min_x - depth_m, area.min_y, area.min_x, area.max_y)
         left, right = area.min_x - depth_m, area.max_x + depth_m
-        if self is Side.NORTH:
+        if self is WallSide.NORTH:
             return Rectangle(left, area.max_y, right, area.max_y + depth_m)
         return Rectangle(left, area.min_y - depth_m, right, area.min_y)
 
     def at(self, area: Rectangle, along_m: float) -> tuple[float, float]:
         """The point (x, y) [m] of this side of an area at a world coordinate along it."""
-        if self is Side.EAST:
+        if self is WallSide.EAST:
             return area.max_x, along_m
-        if self is Side.WEST:
+        if self is WallSide.WEST:
             return area.min_x, along_m
-        return along_m, area.max_y if self is Side.NORTH else area.min_y
+        return along_m, area.max_y if self is WallSide.NORTH else area.min_y
 
     def span(self, area: Rectangle) -> tuple[float, float]:
         """Smallest and largest world coordinate along this side of an area."""
-        if self in (Side.EAST, Side.WEST):
+        if self in (WallSide.EAST, WallSide.WEST):
             return area.min_y, area.max_y
         return area.min_x, area.max_x
 
@@ -151,7 +151,7 @@ class Wall:
 
     name: str
     area: Rectangle
-    side: Side
+    side: WallSide
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -253,7 +253,7 @@ class FloorPlan:
             Wall(name=f"door_{number}_lobby", area=self.lobby(door), side=side)
             for number, door in enumerate(self.doors, start=1)
             if door.is_open
-            for side in Side
+            for side in WallSide
         )
 
     def _behind(self, door: Door, near_m: float, far_m: float, half_m: float) -> Rectangle:
@@ -272,7 +272,7 @@ def _walls(areas: tuple[tuple[str, Rectangle], ...]) -> tuple[Wall, ...]:
     named = (
         Wall(name=f"{name}_{side.name.lower()}" if name else side.name.lower(), area=area, side=side)
         for name, area in areas
-        for side in (Side.NORTH, Side.SOUTH, Side.EAST, Side.WEST)
+        for side in (WallSide.NORTH, WallSide.SOUTH, WallSide.EAST, WallSide.WEST)
     )
     return tuple(wall for wall in named if subtract(_facing(wall), inside))
 
@@ -329,6 +329,6 @@ def _check_fits(plan: FloorPlan, index: int, door: Door) -> None:
 def _facing(wall: Wall) -> Rectangle:
     """The strip outside a wall's area without its corners."""
     strip = wall.side.strip(wall.area, WALL_M)
-    if wall.side in (Side.NORTH, Side.SOUTH):
+    if wall.side in (WallSide.NORTH, WallSide.SOUTH):
         return Rectangle(wall.area.min_x, strip.min_y, wall.area.max_x, strip.max_y)
     return strip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from peopleboy.sim.places.floor_plan import WALL_M, FloorPlan, Rectangle, Side
+from peopleboy.sim.places.floor_plan import WALL_M, FloorPlan, Rectangle, WallSide
 from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.places.rooms import SINK_M, Surfaces, block_fixture, build_door
 from peopleboy.sim.shapes.materials import Covering, Material, Pattern
@@ -13,7 +13,7 @@ _FAR_M = 30.0  # from the street to where the world ends
 _SKY_M = 24.0  # how high the sky hangs
 _STEP_M = 0.02  # how much lower it is where nobody walks
 _LOBBY_M = 2.6  # how high the walls of a lobby are
-_HORIZON = {Side.NORTH: "north", Side.SOUTH: "south", Side.EAST: "east", Side.WEST: "west"}
+_HORIZON = {WallSide.NORTH: "north", WallSide.SOUTH: "south", WallSide.EAST: "east", WallSide.WEST: "west"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -30,7 +30,7 @@ from peopleboy.tracker.rgbd.verification.window_model import WindowModel, featur
 from peopleboy.tracker.rgbd.verification.windows import (
     Features,
     Image,
-    Range,
+    WindowRange,
     cut,
     cut_depth,
     hog,
@@ -39,7 +39,7 @@ from peopleboy.tracker.rgbd.verification.windows import (
 )
 from peopleboy.tracker.track import Box
 
-COST: Final = {Range.FAR: 0.01, Range.NEAR: 0.01}
+COST: Final = {WindowRange.FAR: 0.01, WindowRange.NEAR: 0.01}
 FALSE_ALARMS: Final = 0.01
 """Share of windows without people at which recall is measured."""
 VALIDATION: Final[Mapping[str, int]] = {
@@ -78,13 +78,13 @@ class WindowSamples(Arrays):
     near_is_person: NDArray[np.bool_]
     far_is_person: NDArray[np.bool_]
 
-    def features(self, kind: Range) -> NDArray[np.float16]:
+    def features(self, kind: WindowRange) -> NDArray[np.float16]:
         """Return the features of a range."""
-        return self.near_features if kind is Range.NEAR else self.far_features
+        return self.near_features if kind is WindowRange.NEAR else self.far_features
 
-    def is_person(self, kind: Range) -> NDArray[np.bool_]:
+    def is_person(self, kind: WindowRange) -> NDArray[np.bool_]:
         """Return the labels of a range."""
-        return self.near_is_person if kind is Range.NEAR else self.far_is_person
+        return self.near_is_person if kind is WindowRange.NEAR else self.far_is_person
 
 
 class _Window(NamedTuple):
@@ -94,7 +94,7 @@ class _Window(NamedTuple):
     depth: Depth
     z_m: float
     window: Box
-    kind: Range
+    kind: WindowRange
     is_person: bool
 
 
@@ -112,8 +112,8 @@ def collect_windows(scenario: str, seed: int, has_jitter: bool) -> WindowSamples
     loaded, rng = _scenario(scenario, seed).mounting((DEPTH,)), np.random.default_rng((seed, 2012))
     calibration = calibrations_of(loaded.world(seed).robot.cameras)[DEPTH]
     view, detector = DepthView.of(calibration, DEPTH), PreDetector(_SIZE, UDepthConfig())
-    rows: dict[Range, list[NDArray[np.float16]]] = {kind: [] for kind in Range}
-    labels: dict[Range, list[bool]] = {kind: [] for kind in Range}
+    rows: dict[WindowRange, list[NDArray[np.float16]]] = {kind: [] for kind in WindowRange}
+    labels: dict[WindowRange, list[bool]] = {kind: [] for kind in WindowRange}
     next_s = 0.0
     for world, observation in blind_drive(loaded, seed):
         if DEPTH not in observation.images or observation.time_s < next_s:
@@ -126,13 +126,13 @@ def collect_windows(scenario: str, seed: int, has_jitter: bool) -> WindowSamples
                 rows[window.kind].append(described)
                 labels[window.kind].append(window.is_person)
     features = {
-        kind: np.array(rows[kind], np.float16).reshape(-1, 2 * feature_length(kind)) for kind in Range
+        kind: np.array(rows[kind], np.float16).reshape(-1, 2 * feature_length(kind)) for kind in WindowRange
     }
     return WindowSamples(
-        features[Range.NEAR],
-        features[Range.FAR],
-        np.array(labels[Range.NEAR], np.bool_),
-        np.array(labels[Range.FAR], np.bool_),
+        features[WindowRange.NEAR],
+        features[WindowRange.FAR],
+        np.array(labels[WindowRange.NEAR], np.bool_),
+        np.array(labels[WindowRange.FAR], np.bool_),
     )
 
 
@@ -218,7 +218,7 @@ def _describe(one: _Window, rng: np.random.Generator, *, has_jitter: bool) -> It
             yield _histograms([np.ascontiguousarray(patch[:, ::-1]) for patch in patches], one.kind)
 
 
-def _histograms(patches: Sequence[Image], kind: Range) -> NDArray[np.float16]:
+def _histograms(patches: Sequence[Image], kind: WindowRange) -> NDArray[np.float16]:
     return np.concatenate([hog(patch, kind) for patch in patches]).astype(np.float16)
 
 
@@ -257,17 +257,17 @@ class WindowsTraining(Specification[Split]):
         about = {"trained on": f"{self.sequences} scenes drawn at random, seeds from {FIRST_SEED}"}
         return {
             file_name(sees_depth=sees): WindowModel(
-                {kind: fit_machine(data[0], kind, sees_depth=sees) for kind in Range}, about
+                {kind: fit_machine(data[0], kind, sees_depth=sees) for kind in WindowRange}, about
             )
             for sees in (False, True)
         }
 
     def evaluate(self, model: WindowModel, data: Split) -> Mapping[str, str]:
         """Measure recall and false alarms by range."""
-        return {f"{kind}, on other scenes": evaluate_machine(model, data[1], kind) for kind in Range}
+        return {f"{kind}, on other scenes": evaluate_machine(model, data[1], kind) for kind in WindowRange}
 
 
-def fit_machine(samples: WindowSamples, kind: Range, *, sees_depth: bool) -> Features:
+def fit_machine(samples: WindowSamples, kind: WindowRange, *, sees_depth: bool) -> Features:
     """Train a linear support vector machine; return its weights, the bias last.
 
     Raises:
@@ -294,14 +294,14 @@ def recall_at(scores: NDArray[np.float64], is_person: NDArray[np.bool_], false_a
     return float(np.mean(scores[is_person] > limit))
 
 
-def scores_of(model: WindowModel, samples: WindowSamples, kind: Range) -> NDArray[np.float64]:
+def scores_of(model: WindowModel, samples: WindowSamples, kind: WindowRange) -> NDArray[np.float64]:
     """Return the scores (N,) of all windows of a range."""
     weights = model.weights[kind]
     features = samples.features(kind)[:, : len(weights) - 1].astype(np.float64)
     return np.asarray(features @ weights[:-1] + weights[-1])
 
 
-def evaluate_machine(model: WindowModel, samples: WindowSamples, kind: Range) -> str:
+def evaluate_machine(model: WindowModel, samples: WindowSamples, kind: WindowRange) -> str:
     """Return recall and false alarms of the machine of a range, in words."""
     scores, is_person = scores_of(model, samples, kind), samples.is_person(kind)
     if is_person.all() or not is_person.any():

@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks.peers.classic import DetectAndFilter
 from benchmarks.peers.compete import SequenceTask
-from benchmarks.peers.detectors import Blobs, Boxes, Detections, Oracle, _from_colour
+from benchmarks.peers.detectors import Blobs, Boxes, Oracle, PeerDetections, _from_colour
 from benchmarks.peers.joint_filter import run_chain
 from benchmarks.peers.show import write_results
 from benchmarks.results import read_tables, take_in
@@ -106,12 +106,12 @@ class TwoWhoPass:
     def __init__(self) -> None:
         self._number = -1
 
-    def detect(self, frame: Frame) -> Detections:  # noqa: ARG002
+    def detect(self, frame: Frame) -> PeerDetections:  # noqa: ARG002
         self._number += 1
         k = float(self._number)
         boxes = [[20.0 + 3 * k, 60.0, 30.0, 110.0], [200.0 - 3 * k, 60.0, 30.0, 110.0]]
         shown: Boxes = np.array(boxes[:1] if 18 < k < 24 else boxes)
-        return Detections(shown, np.ones(len(shown)))
+        return PeerDetections(shown, np.ones(len(shown)))
 
 
 @pytest.mark.parametrize("is_joint", [True, False])

@@ -14,7 +14,7 @@ from peopleboy.tracker.detector.crops import FEATURES, Planes, crop_features, cu
 from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.detector.window import Floats
 from peopleboy.tracker.networks.convolution import Workspace
-from peopleboy.tracker.networks.inference import Architecture, CropNetwork, CropSize, Layer
+from peopleboy.tracker.networks.inference import Architecture, CropNetwork, CropSize, NetworkLayer
 from peopleboy.tracker.networks.weights_archive import SHIPPED
 
 Grey = NDArray[np.uint8]
@@ -32,7 +32,7 @@ class BoxRefinementNetwork(CropNetwork):
     """Predicts offsets of boxes, and no scores."""
 
     ARCHITECTURE: ClassVar[Architecture] = Architecture(
-        CropSize(96, 72, 1.3), FEATURES - 1, tuple(Layer(*one) for one in _LAYERS), 160, OFFSETS
+        CropSize(96, 72, 1.3), FEATURES - 1, tuple(NetworkLayer(*one) for one in _LAYERS), 160, OFFSETS
     )
     MODEL: ClassVar[str] = "box-refinement"
 

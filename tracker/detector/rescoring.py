@@ -21,7 +21,7 @@ from peopleboy.tracker.detector.crops import (
 from peopleboy.tracker.detector.detections import Detections, suppress
 from peopleboy.tracker.detector.window import Floats
 from peopleboy.tracker.networks.convolution import Workspace
-from peopleboy.tracker.networks.inference import Architecture, CropNetwork, CropSize, Layer
+from peopleboy.tracker.networks.inference import Architecture, CropNetwork, CropSize, NetworkLayer
 from peopleboy.tracker.networks.weights_archive import SHIPPED
 
 Grey = NDArray[np.uint8]
@@ -46,7 +46,7 @@ class RescoringNetwork(CropNetwork):
     """Predicts log odds and offsets; its weight `line` is gain and offset that calibrate the log odds."""
 
     ARCHITECTURE: ClassVar[Architecture] = Architecture(
-        CropSize(64, 48, 1.4), FEATURES, tuple(Layer(*one) for one in _LAYERS), 128, 1 + OFFSETS
+        CropSize(64, 48, 1.4), FEATURES, tuple(NetworkLayer(*one) for one in _LAYERS), 128, 1 + OFFSETS
     )
     MODEL: ClassVar[str] = "rescoring"
 

@@ -58,7 +58,7 @@ class DenseNetwork:
         return inputs @ weights + bias
 
 
-class Layer(NamedTuple):
+class NetworkLayer(NamedTuple):
     """A convolution.
 
     Attributes:
@@ -103,7 +103,7 @@ class Architecture(NamedTuple):
 
     crop: CropSize
     features: int
-    layers: tuple[Layer, ...]
+    layers: tuple[NetworkLayer, ...]
     units: int
     outputs: int
 

@@ -7,7 +7,7 @@ from typing import Final
 
 from peopleboy.tracker.rgbd.pre_detection import PRINTED_SIZE, HumanSize
 from peopleboy.tracker.rgbd.u_depth import UDepthConfig
-from peopleboy.tracker.rgbd.verification.windows import Range
+from peopleboy.tracker.rgbd.verification.windows import WindowRange
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,9 +103,9 @@ class RgbdConfig:
     least_near_score: float = 0.5
     least_other_score: float = -0.3
 
-    def least_score(self, kind: Range) -> float:
+    def least_score(self, kind: WindowRange) -> float:
         """Tell above which score a window of a range is a human's."""
-        return self.least_far_score if kind is Range.FAR else self.least_near_score
+        return self.least_far_score if kind is WindowRange.FAR else self.least_near_score
 
 
 PRINTED: Final = RgbdConfig(

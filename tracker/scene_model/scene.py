@@ -71,7 +71,7 @@ class Happening:
 
     Attributes:
         time_s: when [s]: the middle of the time in which nobody saw the place.
-        told_s: when the model was sure [s].
+        known_s: when the model was sure [s].
         change: what.
         object: whose id.
         from_m: where it was [m]; None if it was not seen before.

@@ -182,7 +182,7 @@ def _point(place: Array | None) -> tuple[float, float]:
     return (0.0, 0.0) if place is None else (float(place[0]), float(place[1]))
 
 
-class Entry(NamedTuple):
+class TimetableEntry(NamedTuple):
     """One line of a timetable: time [s], place [m], and what happens."""
 
     time_s: float
@@ -191,7 +191,7 @@ class Entry(NamedTuple):
     what: str
 
 
-def timetable(config: PersonConfig) -> list[Entry]:
+def timetable(config: PersonConfig) -> list[TimetableEntry]:
     """List when a person enters, passes or reaches its waypoints, sets off again and leaves.
 
     It is what happens when neither the robot nor other people are in the way.
@@ -220,5 +220,5 @@ def _has_left(config: PersonConfig, time_s: float) -> bool:
     return config.leave_s is not None and time_s >= config.leave_s - 1e-9
 
 
-def _entry(time_s: float, walker: Walker, what: str) -> Entry:
-    return Entry(round(time_s, 3), float(walker.position[0]), float(walker.position[1]), what)
+def _entry(time_s: float, walker: Walker, what: str) -> TimetableEntry:
+    return TimetableEntry(round(time_s, 3), float(walker.position[0]), float(walker.position[1]), what)

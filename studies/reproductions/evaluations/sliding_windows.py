@@ -31,7 +31,7 @@ from peopleboy.tracker.rgbd.pre_detection import HumanSize, Layout, PreDetection
 from peopleboy.tracker.rgbd.u_depth import UDepthConfig
 from peopleboy.tracker.rgbd.v_disparity import HeightLine
 from peopleboy.tracker.rgbd.verification.window_model import people_detector, shipped_windows
-from peopleboy.tracker.rgbd.verification.windows import SIZES, Image, Range, range_of, window_of
+from peopleboy.tracker.rgbd.verification.windows import SIZES, Image, WindowRange, range_of, window_of
 from peopleboy.tracker.track import Box
 
 Floats = NDArray[np.float64]
@@ -56,7 +56,7 @@ class Slide:
         is_opencv: whether OpenCV's people detector judges them, or the tracker's own machine.
     """
 
-    kind: Range
+    kind: WindowRange
     shift_px: int
     scale: float
     is_opencv: bool = False
@@ -73,27 +73,27 @@ class Slide:
 
 
 FAR_SLIDES: Final = tuple(
-    Slide(Range.FAR, shift, scale, is_opencv)
+    Slide(WindowRange.FAR, shift, scale, is_opencv)
     for shift, scale in ((4, 1.05), (8, 1.05), (8, 1.1), (8, 1.2))
     for is_opencv in (True, False)
 )
 """SA table 4.3."""
 
 NEAR_SLIDES: Final = tuple(
-    Slide(Range.NEAR, shift, scale) for shift, scale in ((4, 1.1), (8, 1.05), (8, 1.1))
+    Slide(WindowRange.NEAR, shift, scale) for shift, scale in ((4, 1.1), (8, 1.05), (8, 1.1))
 )
 """SA table 4.4."""
 
 
-_Window = tuple[Range, Box]
+_Window = tuple[WindowRange, Box]
 
 
 @dataclass(frozen=True, slots=True)
 class _Sought:
     """Windows that a person should be in, by range; in which range the person is; whether in plain view."""
 
-    windows: Mapping[Range, Box]
-    kind: Range
+    windows: Mapping[WindowRange, Box]
+    kind: WindowRange
     is_plain: bool
 
 
@@ -106,7 +106,9 @@ class WindowTally:
     found: int = 0
     false: int = 0
 
-    def add(self, windows: Sequence[_Window], people: Sequence[_Sought], kinds: Sequence[Range]) -> None:
+    def add(
+        self, windows: Sequence[_Window], people: Sequence[_Sought], kinds: Sequence[WindowRange]
+    ) -> None:
         """Take in an image: what was found, and who is there; only people in some ranges must be found."""
         matches = [[_is_on(window, person) for window in windows] for person in people]
         wanted = [number for number, person in enumerate(people) if person.is_plain and person.kind in kinds]
@@ -160,8 +162,8 @@ def slide(image: Image, how: Slide) -> Floats:
 class _Comparison:
     def __init__(self) -> None:
         self.slides = {how: WindowTally() for how in (*FAR_SLIDES, *NEAR_SLIDES)}
-        self.by_size: dict[tuple[Range, ...], WindowTally] = {
-            kinds: WindowTally() for kinds in (tuple(Range), (Range.FAR,), (Range.NEAR,))
+        self.by_size: dict[tuple[WindowRange, ...], WindowTally] = {
+            kinds: WindowTally() for kinds in (tuple(WindowRange), (WindowRange.FAR,), (WindowRange.NEAR,))
         }
         self.parts = {name: Stopwatch() for name in PARTS}
         self.detector = PreDetector(HumanSize(), UDepthConfig())
@@ -234,7 +236,7 @@ def _person(person: FloorPerson, view: DepthView, floor: HeightLine, shape: tupl
         probability=1.0,
     )
     return _Sought(
-        windows={kind: window_of(body, kind, floor, view) for kind in Range},
+        windows={kind: window_of(body, kind, floor, view) for kind in WindowRange},
         kind=range_of(z_m, floor, view, shape[0]),
         is_plain=person.is_counted and person.truth.occluded_fraction < _HIDDEN and 0.0 <= middle < shape[1],
     )

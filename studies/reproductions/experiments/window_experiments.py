@@ -24,10 +24,10 @@ from peopleboy.tracker.rgbd.pre_detection import HumanSize
 from peopleboy.tracker.rgbd.rgbd_config import FloorFilterConfig, HypothesesConfig
 from peopleboy.tracker.rgbd.u_depth import UDepthConfig
 from peopleboy.tracker.rgbd.verification.window_model import people_detector, shipped_windows
-from peopleboy.tracker.rgbd.verification.windows import Range
+from peopleboy.tracker.rgbd.verification.windows import WindowRange
 
 OWN, COLOUR, OPENCV = "own machine", "own machine, colour alone", "OpenCV's detector"
-NEAR, FAR = str(Range.NEAR), str(Range.FAR)
+NEAR, FAR = str(WindowRange.NEAR), str(WindowRange.FAR)
 MODELS: Final = ((FAR, OWN), (FAR, COLOUR), (FAR, OPENCV), (NEAR, OWN), (NEAR, COLOUR))
 """Ranges, and who judges windows there."""
 BOTH: Final = f"{NEAR}+{FAR} {BY_SIZE}"
@@ -141,8 +141,8 @@ def score_windows(scenario: str, seed: int) -> Result:
     }
     result: Result = {}
     for kind, name in MODELS:
-        scores = scores_of(models[name], samples, Range(kind)).round(3)
-        is_person = samples.is_person(Range(kind))
+        scores = scores_of(models[name], samples, WindowRange(kind)).round(3)
+        is_person = samples.is_person(WindowRange(kind))
         people, others = scores[is_person].tolist(), scores[~is_person].tolist()
         result[f"{kind} {name}"] = {"people": people, "others": others}
     return result

@@ -24,7 +24,7 @@ from peopleboy.tracker.panoramic.people.figure_patch import (
     FigureMap,
 )
 from peopleboy.tracker.panoramic.people.panorama_patches import PanoramaScene
-from peopleboy.tracker.panoramic.people.place_model import Sightings
+from peopleboy.tracker.panoramic.people.place_model import PlaceEstimates
 from tests.helpers.images.as_taken import as_taken
 
 WIDTH, HEIGHT = 480, 120
@@ -99,10 +99,10 @@ class CardboardEyes:
 class CardboardModel:
     """In the place of a taught model: reads from the patch where cardboard ends below, and its middle."""
 
-    def look(self, patches: NDArray[np.float32], distance_m: NDArray[np.float64]) -> Sightings:
+    def look(self, patches: NDArray[np.float32], distance_m: NDArray[np.float64]) -> PlaceEstimates:
         told = [_read(one, away) for one, away in zip(patches, distance_m.tolist(), strict=True)]
         numbers = np.array(told, np.float32).reshape(-1, 5)
-        return Sightings(evidence=numbers[:, 0], offset_m=numbers[:, 1:3], deviation_m=numbers[:, 3:])
+        return PlaceEstimates(evidence=numbers[:, 0], offset_m=numbers[:, 1:3], deviation_m=numbers[:, 3:])
 
 
 _NOBODY = (-5.0, 0.0, 0.0, 1.0, 1.0)

@@ -25,7 +25,7 @@ _OUTPUTS: Final = {"presence": (1, 2), "place": (2, 3), "doubt": (2, 2)}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sightings:
+class PlaceEstimates:
     """What is seen at N places.
 
     Attributes:
@@ -53,10 +53,10 @@ class PlaceModel:
     place: DenseNetwork
     doubt: DenseNetwork
 
-    def look(self, patches: Map, distance_m: NDArray[np.float64]) -> Sightings:
+    def look(self, patches: Map, distance_m: NDArray[np.float64]) -> PlaceEstimates:
         """Tell what patches (N, PATCH) at distances (N,) show."""
         inputs = with_distance(patches, distance_m)
-        return Sightings(
+        return PlaceEstimates(
             evidence=self.presence.predict(inputs)[:, 0],
             offset_m=self.place.predict(inputs),
             deviation_m=np.exp(self.doubt.predict(inputs)),

@@ -17,7 +17,7 @@ from peopleboy.tracker.rgbd.verification.windows import (
     SIZES,
     Features,
     Image,
-    Range,
+    WindowRange,
     depth_features,
     features,
 )
@@ -31,7 +31,7 @@ def file_name(*, sees_depth: bool) -> str:
     return "windows-colour-and-depth.npz" if sees_depth else "windows-colour.npz"
 
 
-def feature_length(kind: Range) -> int:
+def feature_length(kind: WindowRange) -> int:
     """Return how many numbers describe a window of one image: 36 for each block of 2 x 2 cells of 8 px."""
     width, height = SIZES[kind]
     return (width // 8 - 1) * (height // 8 - 1) * 36
@@ -47,15 +47,15 @@ class WindowModel:
         about: what they were learned from, for the reader.
     """
 
-    weights: Mapping[Range, Features]
+    weights: Mapping[WindowRange, Features]
     about: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def sees_depth(self) -> bool:
         """Whether it looks at depth, too."""
-        return len(self.weights[Range.NEAR]) > feature_length(Range.NEAR) + 1
+        return len(self.weights[WindowRange.NEAR]) > feature_length(WindowRange.NEAR) + 1
 
-    def look(self, colour: Image, depth: Depth, z_m: float, window: Box, kind: Range) -> float:
+    def look(self, colour: Image, depth: Depth, z_m: float, window: Box, kind: WindowRange) -> float:
         """Rate a window of an image: above 0 for a human.
 
         Args:
@@ -70,7 +70,7 @@ class WindowModel:
             seen = np.concatenate([seen, depth_features(depth, z_m, window, kind)])
         return self.score(seen, kind)
 
-    def score(self, features: Features, kind: Range) -> float:
+    def score(self, features: Features, kind: WindowRange) -> float:
         """Rate the features of a window: above 0 for a human, in distances from the margin."""
         weights = self.weights[kind]
         return float(features @ weights[:-1] + weights[-1])
@@ -87,9 +87,9 @@ class WindowModel:
             BadInput: a file that is missing, is none, or holds machines for other windows.
         """
         images = 1 + sees_depth
-        specs = {str(kind): ArraySpec((images * feature_length(kind) + 1,)) for kind in Range}
+        specs = {str(kind): ArraySpec((images * feature_length(kind) + 1,)) for kind in WindowRange}
         archive = WeightsArchive.load(path, MODEL, specs)
-        return cls({kind: archive.arrays[str(kind)] for kind in Range}, archive.about)
+        return cls({kind: archive.arrays[str(kind)] for kind in WindowRange}, archive.about)
 
 
 @lru_cache(maxsize=2)
@@ -101,5 +101,5 @@ def shipped_windows(*, sees_depth: bool) -> WindowModel:
 def people_detector() -> WindowModel:
     """Take OpenCV's people detector for what is far, and the shipped one of colour for what is near."""
     far = np.asarray(cv2.HOGDescriptor.getDefaultPeopleDetector(), np.float32)
-    near = shipped_windows(sees_depth=False).weights[Range.NEAR]
-    return WindowModel({Range.NEAR: near, Range.FAR: far})
+    near = shipped_windows(sees_depth=False).weights[WindowRange.NEAR]
+    return WindowModel({WindowRange.NEAR: near, WindowRange.FAR: far})

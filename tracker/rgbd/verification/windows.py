@@ -21,14 +21,14 @@ Features = NDArray[np.float32]
 _Borders = tuple[int, int, int, int]  # above, below, left, right
 
 
-class Range(StrEnum):
+class WindowRange(StrEnum):
     """How far somebody is: so near that the feet are cut off, or farther (SA 4.4.2)."""
 
     NEAR = "near"
     FAR = "far"
 
 
-SIZES: Final = {Range.NEAR: (64, 64), Range.FAR: (64, 128)}
+SIZES: Final = {WindowRange.NEAR: (64, 64), WindowRange.FAR: (64, 128)}
 """Width and height [px] of the windows: of head and shoulders, and of a whole body."""
 
 _SAFETY_M: Final = 0.1
@@ -38,21 +38,21 @@ _ABOVE: Final = 0.12  # of a near window is above the head
 _RELIEF_M: Final = 0.6  # before and behind a body, that its window shows of the depth
 
 
-def range_of(z_m: float, floor: HeightLine, view: DepthView, rows: int) -> Range:
+def range_of(z_m: float, floor: HeightLine, view: DepthView, rows: int) -> WindowRange:
     """Tell how far something is: far from where feet are in the image on (SA eq. 4.16)."""
     half_angle = math.atan((rows / 2.0 + view.horizon_px) / view.focal_px)
     farthest = floor.offset_m * math.tan(math.pi / 2.0 - half_angle) + _SAFETY_M
-    return Range.FAR if z_m > farthest else Range.NEAR
+    return WindowRange.FAR if z_m > farthest else WindowRange.NEAR
 
 
-def window_of(found: PreDetection, kind: Range, floor: HeightLine, view: DepthView) -> Box:
+def window_of(found: PreDetection, kind: WindowRange, floor: HeightLine, view: DepthView) -> Box:
     """Place a window [px] on what was found.
 
     A far one reaches from the head to the floor, though legs may be hidden.
     """
     left, top, width, height = found.box
     middle = left + width / 2.0
-    if kind is Range.NEAR:
+    if kind is WindowRange.NEAR:
         side = _SHOULDERS_M * view.focal_px / found.z_m
         return middle - side / 2.0, top - _ABOVE * side, side, side
     foot = float(floor.rows(np.array([found.z_m]), view)[0])
@@ -61,12 +61,12 @@ def window_of(found: PreDetection, kind: Range, floor: HeightLine, view: DepthVi
     return middle - tall / 4.0, top - (tall - body) / 2.0, tall / 2.0, tall
 
 
-def features(image: Image, window: Box, kind: Range) -> Features:
+def features(image: Image, window: Box, kind: WindowRange) -> Features:
     """Describe a window of an RGB image by numbers (N,)."""
     return hog(cut(image, window, kind), kind)
 
 
-def depth_features(depth: Depth, z_m: float, window: Box, kind: Range) -> Features:
+def depth_features(depth: Depth, z_m: float, window: Box, kind: WindowRange) -> Features:
     """Describe a window of a depth image by numbers (N,).
 
     They are histograms of oriented depths (Spinello & Arras, IROS 2011): those of gradients, of depth.
@@ -80,18 +80,18 @@ def depth_features(depth: Depth, z_m: float, window: Box, kind: Range) -> Featur
     return hog(cut_depth(depth, z_m, window, kind), kind)
 
 
-def hog(patch: Image, kind: Range) -> Features:
+def hog(patch: Image, kind: WindowRange) -> Features:
     """Give the histograms of oriented gradients (N,) of what was cut out."""
     return np.asarray(_hog(kind).compute(patch), np.float32).ravel()
 
 
-def cut(image: Image, window: Box, kind: Range) -> Image:
+def cut(image: Image, window: Box, kind: WindowRange) -> Image:
     """Cut a window out of an image and bring it to its size; beyond the border it goes on as it ends."""
     inside, borders = _inside(window, image.shape[:2])
     return _sized(image[inside], borders, kind)
 
 
-def cut_depth(depth: Depth, z_m: float, window: Box, kind: Range) -> Image:
+def cut_depth(depth: Depth, z_m: float, window: Box, kind: WindowRange) -> Image:
     """Cut a window out of a depth image [mm] as grey: the farther the brighter; what is unknown is white."""
     inside, borders = _inside(window, depth.shape[:2])
     inner = depth[inside]
@@ -113,7 +113,7 @@ def _inside(window: Box, shape: tuple[int, ...]) -> tuple[tuple[slice, slice], _
     return inside, (max(-first_v, 0), max(last_v - rows, 0), max(-first_u, 0), max(last_u - columns, 0))
 
 
-def _sized(inner: Image, borders: _Borders, kind: Range) -> Image:
+def _sized(inner: Image, borders: _Borders, kind: WindowRange) -> Image:
     if any(borders):
         inner = cv2.copyMakeBorder(inner, *borders, cv2.BORDER_REPLICATE).astype(np.uint8, copy=False)
     # Mean of the pixels that fall together: as if blurred before it is made smaller.
@@ -123,6 +123,6 @@ def _sized(inner: Image, borders: _Borders, kind: Range) -> Image:
 
 
 @lru_cache(maxsize=2)
-def _hog(kind: Range) -> cv2.HOGDescriptor:
+def _hog(kind: WindowRange) -> cv2.HOGDescriptor:
     """Nine directions in cells of 8 px, blocks of two by two cells."""
     return cv2.HOGDescriptor(SIZES[kind], (16, 16), (8, 8), (8, 8), 9)

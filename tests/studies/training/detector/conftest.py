@@ -7,7 +7,7 @@ from peopleboy.studies.training.detector.sequences import ThermalImage, load_ima
 from peopleboy.studies.training.samples import SampleTask
 from peopleboy.tracker.detector.box_refinement import BoxRefinementNetwork
 from peopleboy.tracker.detector.rescoring import RescoringNetwork
-from peopleboy.tracker.networks.inference import Layer
+from peopleboy.tracker.networks.inference import NetworkLayer
 from tests.helpers.images.drawn_films import drawn_film
 
 
@@ -23,7 +23,7 @@ def shots(tmp_path_factory: pytest.TempPathFactory) -> list[ThermalImage]:
 @pytest.fixture
 def small(monkeypatch: pytest.MonkeyPatch) -> None:
     """Networks that are trained in a second, as those that are shipped are in hours."""
-    layers = (Layer(5, 4, 8), Layer(3, 1, 12), Layer(3, 2, 8))
+    layers = (NetworkLayer(5, 4, 8), NetworkLayer(3, 1, 12), NetworkLayer(3, 2, 8))
     for network in (RescoringNetwork, BoxRefinementNetwork):
         architecture = network.ARCHITECTURE._replace(layers=layers, units=24)
         monkeypatch.setattr(network, "ARCHITECTURE", architecture)

@@ -9,13 +9,13 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.rgbd.verification.window_model import WindowModel, feature_length, shipped_windows
-from peopleboy.tracker.rgbd.verification.windows import Range, depth_features, features
+from peopleboy.tracker.rgbd.verification.windows import WindowRange, depth_features, features
 
 
 def make_model(extra: int = 0) -> WindowModel:
     rng = np.random.default_rng(3)
     return WindowModel(
-        {kind: rng.normal(size=feature_length(kind) + 1 + extra).astype(np.float32) for kind in Range},
+        {kind: rng.normal(size=feature_length(kind) + 1 + extra).astype(np.float32) for kind in WindowRange},
         {"trained on": "nothing"},
     )
 
@@ -25,13 +25,13 @@ def test_a_model_comes_back_from_its_file(tmp_path: Path) -> None:
     model.save(tmp_path / "windows.npz")
     read = WindowModel.load(tmp_path / "windows.npz", sees_depth=False)
     assert read.about == model.about
-    assert all(np.array_equal(read.weights[kind], model.weights[kind]) for kind in Range)
+    assert all(np.array_equal(read.weights[kind], model.weights[kind]) for kind in WindowRange)
 
 
 def test_a_score_is_the_distance_from_a_plane() -> None:
-    model, seen = make_model(), np.ones(feature_length(Range.NEAR), np.float32)
-    weights = model.weights[Range.NEAR].astype(float)
-    assert model.score(seen, Range.NEAR) == pytest.approx(weights.sum(), rel=1e-4)
+    model, seen = make_model(), np.ones(feature_length(WindowRange.NEAR), np.float32)
+    weights = model.weights[WindowRange.NEAR].astype(float)
+    assert model.score(seen, WindowRange.NEAR) == pytest.approx(weights.sum(), rel=1e-4)
 
 
 def test_machines_of_another_window_are_refused(tmp_path: Path) -> None:
@@ -54,7 +54,7 @@ def test_what_is_no_model_is_refused(tmp_path: Path, content: bytes) -> None:
 
 def test_numbers_that_are_not_finite_are_refused(tmp_path: Path) -> None:
     model = make_model()
-    model.weights[Range.FAR][7] = np.nan
+    model.weights[WindowRange.FAR][7] = np.nan
     model.save(tmp_path / "nan.npz")
     with pytest.raises(BadInput, match="finite"):
         WindowModel.load(tmp_path / "nan.npz", sees_depth=False)
@@ -68,8 +68,8 @@ def test_the_models_that_are_shipped_say_what_they_were_trained_on(sees_depth: b
 
 
 @pytest.mark.parametrize("sees_depth", [False, True])
-@pytest.mark.parametrize("kind", list(Range))
-def test_a_look_adds_what_colour_and_depth_say(kind: Range, sees_depth: bool) -> None:
+@pytest.mark.parametrize("kind", list(WindowRange))
+def test_a_look_adds_what_colour_and_depth_say(kind: WindowRange, sees_depth: bool) -> None:
     rng, window = np.random.default_rng(1), (30.0, 20.0, 60.0, 120.0)
     colour = rng.integers(0, 255, (240, 320, 3)).astype(np.uint8)
     depth = rng.integers(2500, 3500, (240, 320)).astype(np.uint16)
