@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from peopleboy.behaviours.registry import BEHAVIOURS, make_behaviour
+from peopleboy.behaviours.make_behaviour import BEHAVIOURS, make_behaviour
 from peopleboy.registry import Entry, Registry, plug_ins
 from peopleboy.scenarios.export.formats import FORMATS
 from peopleboy.tracker.trackers import TRACKERS, is_own, make_tracker

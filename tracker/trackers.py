@@ -104,7 +104,7 @@ def _panoramic_tracker() -> PanoramicTracker:
 
 def _rgbd_tracker(config: RgbdConfig, rng: np.random.Generator) -> RgbdTracker:
     from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
-    from peopleboy.tracker.rgbd.verification.window_model import shipped_windows
+    from peopleboy.tracker.rgbd.window_model import shipped_windows
 
     return RgbdTracker(config, shipped_windows(sees_depth=config.sees_depth), rng)
 
@@ -115,7 +115,7 @@ def _fused_tracker(rng: np.random.Generator) -> FusedTracker:
     from peopleboy.tracker.fusion.fusion_config import FusionConfig
     from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
     from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
-    from peopleboy.tracker.rgbd.verification.window_model import shipped_windows
+    from peopleboy.tracker.rgbd.window_model import shipped_windows
 
     thermal_rng, depth_rng = rng.spawn(2)
     thermal = _contour_tracker(CONTOUR_TRACKER, thermal_rng)

@@ -21,7 +21,7 @@ from examples.learning.follower import LearnedFollower, load_weights
 from examples.learning.worlds import LEARNED_ON, NEVER_SEEN
 from examples.show import Figures, play, print_figures, summary
 from peopleboy.behaviours.behaviour import Behaviour
-from peopleboy.behaviours.registry import make_behaviour
+from peopleboy.behaviours.make_behaviour import make_behaviour
 from peopleboy.behaviours.safety_guard import Guarded
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.written_controller import WrittenController

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from examples.learning.follower import LearnedFollower, Weights
-from peopleboy.behaviours.registry import make_behaviour
+from peopleboy.behaviours.make_behaviour import make_behaviour
 from peopleboy.behaviours.safety_guard import Guarded
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.written_controller import WrittenController

@@ -12,7 +12,7 @@ from pathlib import Path
 import click
 from click.shell_completion import CompletionItem
 
-from peopleboy.behaviours.registry import BEHAVIOURS, SCRIPTED
+from peopleboy.behaviours.make_behaviour import BEHAVIOURS, SCRIPTED
 from peopleboy.tracker.trackers import TRACKERS
 
 TRACKER_NAMES = tuple(TRACKERS.shipped)

@@ -16,7 +16,7 @@ from peopleboy.sim.people.walking.surroundings import ALONE
 from peopleboy.sim.people.walking.walker import Walker
 from peopleboy.sim.places.moving import Action, Mover
 from peopleboy.sim.places.place import HEAD_M, STEP_M, Place
-from peopleboy.sim.places.solid_boxes import SolidBoxes, boxes_of, overlaps
+from peopleboy.sim.places.solid_boxes import BoxSet, boxes_of, overlaps
 
 REACH_M = 0.75  # from a person's middle, on the floor, to what the hand holds, leaning included
 _HOLDS_M = 0.08  # to what one moves
@@ -47,7 +47,7 @@ class MovedThings:
     seats: frozenset[str]
     keys: Mapping[str, Key]
     duration_s: float
-    _boxes: dict[str, SolidBoxes] = field(default_factory=dict)
+    _boxes: dict[str, BoxSet] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Measure the things once."""
@@ -136,7 +136,7 @@ class MovedThings:
                 raise BadInput(f"{mover.name!r} would sweep through {what!r} at {time_s:.1f} s", key=key)
 
     @cached_property
-    def _still(self) -> tuple[list[str], SolidBoxes]:
+    def _still(self) -> tuple[list[str], BoxSet]:
         """Names and boxes of all solid shapes that nobody moves, floor and ceiling aside."""
         moved = {mover.name for mover in self.place.movers} | {"floor", "ceiling"}
         fixtures = [f for f in self.place.fixtures if f.is_solid and f.name.split("/")[0] not in moved]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 from pydantic import Field, model_validator
 
 from peopleboy.bad_input import BadInput, found_in
-from peopleboy.behaviours.registry import BEHAVIOURS
+from peopleboy.behaviours.make_behaviour import BEHAVIOURS
 from peopleboy.scenarios.files.validation import GivenCamera
 from peopleboy.settings import Point, Seconds, meaning_of
 from peopleboy.sim.cameras.kinds import check_rate, colour_from_thermal, configure_camera

@@ -13,7 +13,7 @@ from peopleboy.behaviours.behaviour import Behaviour, Command
 from peopleboy.behaviours.corridor.corridor_from_image import CorridorCamera
 from peopleboy.behaviours.corridor.follow_corridor import FollowCorridorConfig
 from peopleboy.behaviours.following.follow_person import FollowConfig
-from peopleboy.behaviours.registry import is_own, make_behaviour
+from peopleboy.behaviours.make_behaviour import is_own, make_behaviour
 from peopleboy.scenarios.files.check import Ground, check_scenario, make_ground
 from peopleboy.scenarios.files.own_files import read_own_files
 from peopleboy.scenarios.files.people import PersonSpec, assign_distinct_colours, make_config, resolve_person

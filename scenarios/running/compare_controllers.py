@@ -18,7 +18,7 @@ from rich.console import Console
 from rich.table import Table
 
 from peopleboy.bad_input import BadInput
-from peopleboy.behaviours.registry import make_behaviour
+from peopleboy.behaviours.make_behaviour import make_behaviour
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.tracker_by_name import tracker_cameras
 from peopleboy.scenarios.running.engine.task import Workers

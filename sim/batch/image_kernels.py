@@ -15,8 +15,8 @@ from peopleboy.sim.cameras.imaging.noise import look_up
 from peopleboy.sim.cameras.imaging.surfaces import MaterialTable, combine
 from peopleboy.sim.cameras.thermal import radiance_image, to_apparent_c
 from peopleboy.sim.geometry.vectors import from_each, invert
-from peopleboy.sim.rendering.canvas import Canvas, Lens, locate, shade
 from peopleboy.sim.rendering.raycast import draw
+from peopleboy.sim.rendering.render_canvas import Canvas, Lens, locate, shade
 from peopleboy.sim.shapes.joined_tables import JoinedTables, Numbers, ends, join_tables, table_of
 from peopleboy.sim.shapes.shape_table import ShapeTable
 

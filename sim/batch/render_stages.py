@@ -36,7 +36,7 @@ from peopleboy.sim.cameras.thermal import (
     mirrored,
 )
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.rendering.canvas import Lens
+from peopleboy.sim.rendering.render_canvas import Lens
 from peopleboy.sim.shapes.joined_tables import Numbers
 from peopleboy.sim.world import World, light_level
 

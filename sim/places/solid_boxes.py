@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SolidBoxes:
+class BoxSet:
     """N upright boxes.
 
     Attributes:
@@ -29,15 +29,15 @@ class SolidBoxes:
     half: Array
     heading: Array
 
-    def moved(self, stance: Stance) -> SolidBoxes:
+    def moved(self, stance: Stance) -> BoxSet:
         """Boxes given in a thing's frame, where they are when the thing is there."""
-        return SolidBoxes(stance.place(self.centre), self.half, self.heading + stance.heading_rad)
+        return BoxSet(stance.place(self.centre), self.half, self.heading + stance.heading_rad)
 
-    def between(self, low_m: float, high_m: float) -> SolidBoxes:
+    def between(self, low_m: float, high_m: float) -> BoxSet:
         """Those that reach into a span of heights."""
         bottom, top = self.centre[:, 2] - self.half[:, 2], self.centre[:, 2] + self.half[:, 2]
         kept = (bottom < high_m) & (top > low_m)
-        return SolidBoxes(self.centre[kept], self.half[kept], self.heading[kept])
+        return BoxSet(self.centre[kept], self.half[kept], self.heading[kept])
 
     def distance(self, point: tuple[float, float]) -> float:
         """How far a point on the floor [m] is from the nearest box; 0 inside, infinite without any."""
@@ -47,7 +47,7 @@ class SolidBoxes:
         return float(np.hypot(*np.maximum(gap, 0.0).T).min())
 
 
-def boxes_of(fixtures: Sequence[Fixture], origin: Stance | None = None) -> SolidBoxes:
+def boxes_of(fixtures: Sequence[Fixture], origin: Stance | None = None) -> BoxSet:
     """The boxes round all solid shapes of some fixtures, in the world or in the frame of a thing.
 
     Args:
@@ -62,10 +62,10 @@ def boxes_of(fixtures: Sequence[Fixture], origin: Stance | None = None) -> Solid
     ]
     centre = np.array([box[0] if origin else box[2].place(box[0]) for box in found]).reshape(-1, 3)
     heading = np.array([0.0 if origin else box[2].heading_rad for box in found])
-    return SolidBoxes(centre, np.array([box[1] for box in found]).reshape(-1, 3), heading)
+    return BoxSet(centre, np.array([box[1] for box in found]).reshape(-1, 3), heading)
 
 
-def overlaps(a: SolidBoxes, b: SolidBoxes, by_m: float) -> NDArray[np.bool_]:
+def overlaps(a: BoxSet, b: BoxSet, by_m: float) -> NDArray[np.bool_]:
     """(N, M) whether each box of one reaches farther into each of the other than by_m [m].
 
     Two boxes are apart where an axis of either keeps them apart (separating axis theorem).
@@ -80,7 +80,7 @@ def overlaps(a: SolidBoxes, b: SolidBoxes, by_m: float) -> NDArray[np.bool_]:
     return deep
 
 
-def _reach(boxes: SolidBoxes, angle: Array, shape: tuple[int, int]) -> Array:
+def _reach(boxes: BoxSet, angle: Array, shape: tuple[int, int]) -> Array:
     """How far boxes reach from their middle in a direction."""
     own = angle - boxes.heading.reshape(shape)
     x, y = boxes.half[:, 0].reshape(shape), boxes.half[:, 1].reshape(shape)

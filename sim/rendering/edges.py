@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose
 from peopleboy.sim.geometry.vectors import compose
-from peopleboy.sim.rendering.canvas import Lens
+from peopleboy.sim.rendering.render_canvas import Lens
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.rays import hit_shape
 from peopleboy.sim.shapes.shape_table import ShapeTable

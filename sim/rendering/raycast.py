@@ -13,7 +13,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.vectors import Point, compose, cross, dot, map_point, minus, plus, scaled
-from peopleboy.sim.rendering.canvas import (
+from peopleboy.sim.rendering.render_canvas import (
     Canvas,
     Lens,
     Rectangle,

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.vectors import Point, compose, dot, map_point, minus, plus, scaled, turn_back
-from peopleboy.sim.rendering.canvas import Canvas, Lens, Rectangle, pixels, set_shading, shade
 from peopleboy.sim.rendering.raycast import draw_shape, quick_bounds
+from peopleboy.sim.rendering.render_canvas import Canvas, Lens, Rectangle, pixels, set_shading, shade
 from peopleboy.sim.rendering.renderer import RenderPass
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.bounds import EMPTY, EVERYTHING, FAR_M, NEAR_M, Bounds, unite

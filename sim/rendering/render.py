@@ -12,8 +12,8 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose
 from peopleboy.sim.geometry.vectors import Point, cross, dot, from_each, minus
 from peopleboy.sim.physics.physics_engine import Physics, Rasteriser
-from peopleboy.sim.rendering.canvas import Lens, make_canvas, shade
 from peopleboy.sim.rendering.raycast import draw
+from peopleboy.sim.rendering.render_canvas import Lens, make_canvas, shade
 from peopleboy.sim.rendering.view import NOBODY, View, person_bits
 from peopleboy.sim.shapes.shape_table import ShapeTable
 

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 from numba import njit
 
 from peopleboy.sim.geometry.vectors import compose
-from peopleboy.sim.rendering.canvas import Lens, make_canvas
 from peopleboy.sim.rendering.raycast import draw
+from peopleboy.sim.rendering.render_canvas import Lens, make_canvas
 from peopleboy.sim.shapes.bounds import EMPTY, shape_bounds, unite
 
 # How large a person would be in the image if nothing hid it.

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.vectors import compose, map_point
-from peopleboy.sim.rendering.canvas import Canvas, Lens, pixels, shade
 from peopleboy.sim.rendering.raycast import draw_face, draw_shape, quick_bounds
+from peopleboy.sim.rendering.render_canvas import Canvas, Lens, pixels, shade
 from peopleboy.sim.shapes.bounds import FAR_M
 from peopleboy.sim.shapes.shape_table import ShapeTable
 from peopleboy.sim.shapes.shapes import ShapeKind

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.vectors import Point, fma
 from peopleboy.sim.people.person import Person
-from peopleboy.sim.rendering.canvas import Lens
+from peopleboy.sim.rendering.render_canvas import Lens
 from peopleboy.sim.truth.scenes import BYSTANDER, Records
 
 CastRays: TypeAlias = Callable[[NDArray[np.int64], Matrix, Matrix], Matrix]

@@ -13,8 +13,8 @@ from peopleboy.registration import register_environments
 if TYPE_CHECKING:
     from peopleboy.bad_input import BadInput
     from peopleboy.behaviours.behaviour import Behaviour, Command
+    from peopleboy.behaviours.make_behaviour import make_behaviour
     from peopleboy.behaviours.percept import Percept
-    from peopleboy.behaviours.registry import make_behaviour
     from peopleboy.scenarios.environments.environment import PeopleBoyEnv
     from peopleboy.scenarios.files.load import load_scenario
     from peopleboy.scenarios.loop.loop import closed_loop
@@ -49,7 +49,7 @@ _HOMES: Final = {
     "film": "scenarios.running.frame_cache",
     "frames_of": "scenarios.running.frame_cache",
     "load_scenario": "scenarios.files.load",
-    "make_behaviour": "behaviours.registry",
+    "make_behaviour": "behaviours.make_behaviour",
     "make_tracker": "tracker.trackers",
     "run": "scenarios.running.run",
 }

@@ -23,8 +23,8 @@ from peopleboy.scenarios.running.many_runs import films_of
 from peopleboy.scenarios.scores.suite_table import THESIS, Content, add_up, count
 from peopleboy.studies.reproductions.catalogue import choose
 from peopleboy.studies.reproductions.experiment import Experiment, ExperimentOutcome
-from peopleboy.studies.reproductions.page import Checked, Section, head_of, section, span, write_page
 from peopleboy.studies.reproductions.plan import REPEATS, Plan, full_plan, quick_plan
+from peopleboy.studies.reproductions.source_page import Checked, Section, head_of, section, span, write_page
 from peopleboy.studies.reproductions.statistics import mean_and_spread
 from peopleboy.studies.reproductions.units import Unfinished, Unit, open_store, run_units
 

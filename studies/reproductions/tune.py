@@ -23,7 +23,7 @@ from peopleboy.scenarios.files.suite import SuiteRun
 from peopleboy.scenarios.running.engine.store import Store
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.reproductions.experiments.tracking import add_sums, count_unit, metric, sequence_unit
-from peopleboy.studies.reproductions.page import span
+from peopleboy.studies.reproductions.source_page import span
 from peopleboy.studies.reproductions.statistics import ResultDifference, margin, paired
 from peopleboy.studies.reproductions.tuned_parameters import Parameter
 from peopleboy.studies.reproductions.units import Unit, open_store, run_units

@@ -29,8 +29,8 @@ from peopleboy.studies.training.samples import collect_missing
 from peopleboy.studies.training.specification import Specification, option, report
 from peopleboy.tracker.frame import Calibration
 from peopleboy.tracker.networks.mask_network import BLOCK, DILATIONS, INPUTS, OUTPUTS, MaskNetwork
-from peopleboy.tracker.panoramic.foreground.foreground import FILE, Foreground, ForegroundModel
 from peopleboy.tracker.panoramic.panorama_view import view_of
+from peopleboy.tracker.panoramic.people_foreground import FILE, Foreground, ForegroundModel
 
 Linear = NDArray[np.float32]
 Floats = NDArray[np.float64]

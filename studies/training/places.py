@@ -33,12 +33,12 @@ from peopleboy.studies.training.specification import Specification, option
 from peopleboy.tracker.networks.inference import DenseNetwork
 from peopleboy.tracker.networks.weights_archive import SHIPPED
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
-from peopleboy.tracker.panoramic.foreground.foreground import FILE as FOREGROUND
-from peopleboy.tracker.panoramic.foreground.foreground import Foreground
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
 from peopleboy.tracker.panoramic.people.figure_patch import PATCH, Map
 from peopleboy.tracker.panoramic.people.panorama_patches import PanoramaScene, promising_places
 from peopleboy.tracker.panoramic.people.place_model import FILE, PlaceModel, with_distance
+from peopleboy.tracker.panoramic.people_foreground import FILE as FOREGROUND
+from peopleboy.tracker.panoramic.people_foreground import Foreground
 
 Floats = NDArray[np.float64]
 

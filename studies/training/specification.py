@@ -19,15 +19,15 @@ from peopleboy.tracker.networks.weights_archive import SHIPPED
 
 MODELS: Final[Mapping[str, tuple[str, str]]] = {
     "cascade": (
-        "detector.cascade:CascadeTraining",
+        "detector.train_cascade:CascadeTraining",
         "Boosted trees of the detector: whether a window of a thermal image shows a person, and where.",
     ),
     "rescoring": (
-        "detector.rescoring:RescoringTraining",
+        "detector.train_rescoring:RescoringTraining",
         "Network that corrects scores and boxes of the cascade's detections.",
     ),
     "box-refinement": (
-        "detector.box_refinement:BoxRefinementTraining",
+        "detector.train_box_refinement:BoxRefinementTraining",
         "Network that corrects the boxes of the detector's final detections.",
     ),
     "occlusion": (

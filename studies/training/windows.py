@@ -24,10 +24,7 @@ from peopleboy.studies.training.samples import Arrays, SampleTask, collect_missi
 from peopleboy.studies.training.specification import Specification, missing_package, option
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR
 from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
-from peopleboy.tracker.rgbd.pre_detection import HumanSize, Layout, PreDetection, PreDetector
-from peopleboy.tracker.rgbd.u_depth import UDepthConfig
-from peopleboy.tracker.rgbd.verification.window_model import WindowModel, feature_length, file_name
-from peopleboy.tracker.rgbd.verification.windows import (
+from peopleboy.tracker.rgbd.human_windows import (
     Features,
     Image,
     WindowRange,
@@ -37,6 +34,9 @@ from peopleboy.tracker.rgbd.verification.windows import (
     range_of,
     window_of,
 )
+from peopleboy.tracker.rgbd.pre_detection import HumanSize, Layout, PreDetection, PreDetector
+from peopleboy.tracker.rgbd.u_depth import UDepthConfig
+from peopleboy.tracker.rgbd.window_model import WindowModel, feature_length, file_name
 from peopleboy.tracker.track import Box
 
 COST: Final = {WindowRange.FAR: 0.01, WindowRange.NEAR: 0.01}

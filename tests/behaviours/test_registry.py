@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import STOP, Command
-from peopleboy.behaviours.registry import make_behaviour
+from peopleboy.behaviours.make_behaviour import make_behaviour
 from peopleboy.behaviours.scripted import Scripted
 from tests.helpers.calls.refused import refused
 from tests.helpers.percepts.percepts import free

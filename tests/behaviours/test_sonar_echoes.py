@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.behaviours.registry import make_behaviour
+from peopleboy.behaviours.make_behaviour import make_behaviour
 from peopleboy.behaviours.sonar_echoes import EchoMemory, EchoMemoryConfig, remember
 from tests.helpers.percepts.percepts import free
 from tests.helpers.percepts.toy_world import Toy, room, straight

@@ -13,8 +13,8 @@ from examples.learning.follower import SIZE, SPEED_SIGHTS, TURN_SIGHTS, LearnedF
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import Command
 from peopleboy.behaviours.following.follow_person import FollowPerson
+from peopleboy.behaviours.make_behaviour import make_behaviour
 from peopleboy.behaviours.percept import Percept, SeenPerson
-from peopleboy.behaviours.registry import make_behaviour
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD
 
 TINY = """

@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 import yaml
 
-from peopleboy.behaviours.registry import make_behaviour
+from peopleboy.behaviours.make_behaviour import make_behaviour
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.compare_controllers import Controller, parse_controller
 from tests.helpers.calls.command_line import refusal, run_cli

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Final
 
+from peopleboy.tracker.rgbd.human_windows import WindowRange
 from peopleboy.tracker.rgbd.pre_detection import PRINTED_SIZE, HumanSize
 from peopleboy.tracker.rgbd.u_depth import UDepthConfig
-from peopleboy.tracker.rgbd.verification.windows import WindowRange
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

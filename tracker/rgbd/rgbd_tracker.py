@@ -11,13 +11,13 @@ import numpy as np
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Calibration, Floats, Frame, PinholeCalibration
 from peopleboy.tracker.rgbd.depth_view import DepthView
+from peopleboy.tracker.rgbd.human_windows import range_of, window_of
 from peopleboy.tracker.rgbd.hypothesis import Detection, Hypothesis
 from peopleboy.tracker.rgbd.observation_model import Body, RgbdView, box_at, colours_in
 from peopleboy.tracker.rgbd.pre_detection import Layout, PreDetection, PreDetector
 from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
 from peopleboy.tracker.rgbd.track_management import Management, associate, occluder_of
-from peopleboy.tracker.rgbd.verification.window_model import WindowModel
-from peopleboy.tracker.rgbd.verification.windows import range_of, window_of
+from peopleboy.tracker.rgbd.window_model import WindowModel
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
 # What the RGB-D tracker believes beyond its tracks.

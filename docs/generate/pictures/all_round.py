@@ -27,12 +27,12 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.studies.training.panorama_sequences import panorama_calibration, render_panoramas
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
-from peopleboy.tracker.panoramic.foreground.foreground import Foreground
 from peopleboy.tracker.panoramic.people.figure_patch import ACROSS, BOTTOM_M, HALF_WIDTH_M, LAYERS, TOP_M, UP
 from peopleboy.tracker.panoramic.people.panorama_patches import PanoramaScene
 from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
 from peopleboy.tracker.panoramic.people.place_model import load_places
+from peopleboy.tracker.panoramic.people_foreground import Foreground
 from peopleboy.tracker.track import FloorPlace, Status, Track
 from peopleboy.tracker.trackers import make_tracker
 

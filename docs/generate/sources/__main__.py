@@ -19,10 +19,10 @@ from docs.generate.sources.source_run import FOLDER, SourceRun
 from peopleboy.scenarios.running.engine.store import Store
 from peopleboy.studies.reproductions.catalogue import choose, of_paper
 from peopleboy.studies.reproductions.experiment import ExperimentOutcome
-from peopleboy.studies.reproductions.page import head_of
 from peopleboy.studies.reproductions.plan import full_plan
 from peopleboy.studies.reproductions.plots import draw
 from peopleboy.studies.reproductions.runner import RESULTS, finished
+from peopleboy.studies.reproductions.source_page import head_of
 
 _COMMAND = "peopleboy reproduce --paper thesis; peopleboy reproduce --paper 2005"
 

@@ -6,7 +6,7 @@ from typing import Final
 
 from docs.generate.markdown import table
 from docs.generate.sources.source_run import SourceRun
-from peopleboy.studies.reproductions.page import page_text, section
+from peopleboy.studies.reproductions.source_page import page_text, section
 
 PAGE: Final = "page.html"
 _WHO: Final = ("literal", "default")

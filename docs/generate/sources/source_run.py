@@ -21,7 +21,7 @@ from peopleboy.studies.reproductions.experiment import (
     Samples,
     Values,
 )
-from peopleboy.studies.reproductions.page import PageHead
+from peopleboy.studies.reproductions.source_page import PageHead
 
 FOLDER: Final = Path(__file__).parents[2] / "sources"
 RUN: Final = "run.json"

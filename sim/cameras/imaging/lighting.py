@@ -10,9 +10,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
-from peopleboy.sim.rendering.canvas import Lens, Rectangle
 from peopleboy.sim.rendering.full_detail import REACH_M, Contacts, gap
 from peopleboy.sim.rendering.reflections import EVERY, Reflection
+from peopleboy.sim.rendering.render_canvas import Lens, Rectangle
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.bounds import NEAR_M
 

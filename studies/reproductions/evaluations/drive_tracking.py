@@ -26,7 +26,7 @@ from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.rgbd.pre_detection import PRINTED_SIZE
 from peopleboy.tracker.rgbd.rgbd_config import PRINTED, RgbdConfig
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
-from peopleboy.tracker.rgbd.verification.window_model import people_detector, shipped_windows
+from peopleboy.tracker.rgbd.window_model import people_detector, shipped_windows
 from peopleboy.tracker.track import Status
 
 SETS: Final = (

@@ -27,11 +27,11 @@ from peopleboy.studies.reproductions.evaluations.playback import Stopwatch
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
 from peopleboy.tracker.rgbd.depth_view import DepthView
+from peopleboy.tracker.rgbd.human_windows import SIZES, Image, WindowRange, range_of, window_of
 from peopleboy.tracker.rgbd.pre_detection import HumanSize, Layout, PreDetection, PreDetector
 from peopleboy.tracker.rgbd.u_depth import UDepthConfig
 from peopleboy.tracker.rgbd.v_disparity import HeightLine
-from peopleboy.tracker.rgbd.verification.window_model import people_detector, shipped_windows
-from peopleboy.tracker.rgbd.verification.windows import SIZES, Image, WindowRange, range_of, window_of
+from peopleboy.tracker.rgbd.window_model import people_detector, shipped_windows
 from peopleboy.tracker.track import Box
 
 Floats = NDArray[np.float64]

@@ -20,11 +20,11 @@ from peopleboy.studies.reproductions.experiment import Line, Row, Samples, as_co
 from peopleboy.studies.reproductions.plan import shortened
 from peopleboy.studies.reproductions.units import Measurement, Unit
 from peopleboy.studies.training.windows import FALSE_ALARMS, VALIDATION, collect_windows, recall_at, scores_of
+from peopleboy.tracker.rgbd.human_windows import WindowRange
 from peopleboy.tracker.rgbd.pre_detection import HumanSize
 from peopleboy.tracker.rgbd.rgbd_config import FloorFilterConfig, HypothesesConfig
 from peopleboy.tracker.rgbd.u_depth import UDepthConfig
-from peopleboy.tracker.rgbd.verification.window_model import people_detector, shipped_windows
-from peopleboy.tracker.rgbd.verification.windows import WindowRange
+from peopleboy.tracker.rgbd.window_model import people_detector, shipped_windows
 
 OWN, COLOUR, OPENCV = "own machine", "own machine, colour alone", "OpenCV's detector"
 NEAR, FAR = str(WindowRange.NEAR), str(WindowRange.FAR)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.imaging.electronics import compress
-from peopleboy.studies.training.detector.sequences import HIGHEST, ThermalImage
+from peopleboy.studies.training.detector.world_sequences import HIGHEST, ThermalImage
 from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.detector.window import WindowKind
 

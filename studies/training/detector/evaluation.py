@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.studies.training.detector.augmentation import calibration_pair
-from peopleboy.studies.training.detector.sequences import ThermalImage
+from peopleboy.studies.training.detector.world_sequences import ThermalImage
 from peopleboy.studies.training.specification import missing_package
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.detector.detections import Detections

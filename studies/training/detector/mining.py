@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.studies.training.detector.augmentation import augment_for, has_people
 from peopleboy.studies.training.detector.boosting import in_threads
-from peopleboy.studies.training.detector.sequences import ThermalImage
+from peopleboy.studies.training.detector.world_sequences import ThermalImage
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.detector.box_regression import encode_boxes
 from peopleboy.tracker.detector.cascade import Cascade

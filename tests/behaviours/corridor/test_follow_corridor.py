@@ -6,7 +6,7 @@ import pytest
 from peopleboy.behaviours.corridor.corridor_from_sonar import EndConfig, open_room, wall_ahead
 from peopleboy.behaviours.corridor.corridor_geometry import Corridor, LaneConfig, best_lane
 from peopleboy.behaviours.corridor.follow_corridor import FollowCorridor, FollowCorridorConfig
-from peopleboy.behaviours.registry import make_behaviour
+from peopleboy.behaviours.make_behaviour import make_behaviour
 from tests.helpers.images.drawn_corridors import CAMERA, drawn_corridor, percept_of, sonar_in_corridor
 from tests.helpers.percepts.toy_world import SONAR_ANGLE, Toy, drive, wall
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from peopleboy.behaviours.behaviour import EMERGENCY_STOP, STOP
 from peopleboy.behaviours.following.follow_identity import recognise
 from peopleboy.behaviours.following.follow_person import FollowConfig, FollowPerson, FollowState, follow
-from peopleboy.behaviours.registry import make_behaviour
+from peopleboy.behaviours.make_behaviour import make_behaviour
 from peopleboy.behaviours.safety_limits import SafetyConfig
 from peopleboy.scenarios.scores.following_metrics import FollowingRun, score_following
 from tests.helpers.percepts.percepts import percept, person

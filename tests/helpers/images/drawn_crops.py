@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.studies.training.detector.crops import CropSamples, first_weights
+from peopleboy.studies.training.detector.crop_samples import CropSamples, first_weights
 from peopleboy.tracker.detector.box_regression import OFFSETS
 from peopleboy.tracker.detector.crops import CHANNELS, FEATURES
 from peopleboy.tracker.networks.inference import Architecture

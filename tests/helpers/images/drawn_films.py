@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from peopleboy.studies.training.detector.sequences import ThermalSequence
+from peopleboy.studies.training.detector.world_sequences import ThermalSequence
 
 ROWS, COLUMNS = 120, 160
 WIDTH_PER_HEIGHT = 0.3

@@ -6,16 +6,16 @@ import pytest
 from peopleboy.sim.places.furniture.build_thing import build_thing
 from peopleboy.sim.places.furniture.thing_config import ThingConfig
 from peopleboy.sim.places.moving import Stance
-from peopleboy.sim.places.solid_boxes import SolidBoxes, boxes_of, overlaps
+from peopleboy.sim.places.solid_boxes import BoxSet, boxes_of, overlaps
 
 
-def random_boxes(rng: np.random.Generator, count: int) -> SolidBoxes:
-    return SolidBoxes(
+def random_boxes(rng: np.random.Generator, count: int) -> BoxSet:
+    return BoxSet(
         rng.uniform(-1.0, 1.0, (count, 3)), rng.uniform(0.1, 0.6, (count, 3)), rng.uniform(-3.0, 3.0, count)
     )
 
 
-def inside(boxes: SolidBoxes, k: int, points: np.ndarray) -> np.ndarray:
+def inside(boxes: BoxSet, k: int, points: np.ndarray) -> np.ndarray:
     """Whether points are in a box: by turning them into its frame."""
     offset = points - boxes.centre[k]
     c, s = np.cos(boxes.heading[k]), np.sin(boxes.heading[k])
@@ -41,7 +41,7 @@ def test_boxes_overlap_where_some_point_is_in_both() -> None:
 
 
 def test_distances_are_to_the_nearest_side_of_the_nearest_box() -> None:
-    boxes = SolidBoxes(
+    boxes = BoxSet(
         np.array([[0.0, 0.0, 1.0], [5.0, 0.0, 1.0]]), np.full((2, 3), 0.5), np.array([0.0, np.pi / 4])
     )
     assert boxes.distance((1.5, 0.0)) == pytest.approx(1.0)

@@ -6,7 +6,7 @@ import pytest
 from peopleboy.studies.reproductions.catalogue import EXPERIMENTS
 from peopleboy.studies.reproductions.comparison import ClaimStatus, Standing, compare, judge
 from peopleboy.studies.reproductions.experiment import Claim, Experiment, ExperimentOutcome, Line
-from peopleboy.studies.reproductions.page import below_source, section
+from peopleboy.studies.reproductions.source_page import below_source, section
 from tests.helpers.made_up_results import DRIVES, MadeUp, made_up
 from tests.helpers.some_of import some_of
 from tests.studies.reproductions.test_statistics import ONE, of_means

@@ -15,9 +15,9 @@ from peopleboy.studies.reproductions.catalogue import EXPERIMENTS, choose
 from peopleboy.studies.reproductions.evaluations.sequence_scores import RECORDS
 from peopleboy.studies.reproductions.experiment import ExperimentOutcome, Jackknife, Line
 from peopleboy.studies.reproductions.experiments.tracking import count_unit, sequence_units
-from peopleboy.studies.reproductions.page import PageHead, page_text, section, write_page
 from peopleboy.studies.reproductions.plan import full_plan
 from peopleboy.studies.reproductions.runner import print_sections
+from peopleboy.studies.reproductions.source_page import PageHead, page_text, section, write_page
 from peopleboy.studies.reproductions.units import Measurement
 from tests.helpers.made_up_results import made_up, trials_of
 from tests.helpers.visible_text import assert_reads_as

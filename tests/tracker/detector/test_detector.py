@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.studies.training.detector.augmentation import mirror
 from peopleboy.studies.training.detector.evaluation import evaluate_trees
-from peopleboy.studies.training.detector.sequences import ThermalImage, load_images, render_thermal
+from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images, render_thermal
 from peopleboy.tracker.boxes import iou, shared_of_smaller
 from peopleboy.tracker.detector.detector import SMALLEST_PX, PeopleDetector, detect_with_trees
 from peopleboy.tracker.detector.people_trees import shipped_people_trees

@@ -13,7 +13,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame, Odometry
 from peopleboy.tracker.rgbd.rgbd_config import HypothesesConfig, RgbdConfig
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
-from peopleboy.tracker.rgbd.verification.window_model import shipped_windows
+from peopleboy.tracker.rgbd.window_model import shipped_windows
 from peopleboy.tracker.track import Status, Track
 from tests.helpers.depth_scene import HEIGHT, WIDTH, Block, depth_of, make_view
 

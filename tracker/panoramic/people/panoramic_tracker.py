@@ -10,7 +10,6 @@ from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.frame import PANORAMA, Calibration, Frame, Odometry
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
-from peopleboy.tracker.panoramic.foreground.foreground import Foreground
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
 from peopleboy.tracker.panoramic.people.band_colours import BandColours
 from peopleboy.tracker.panoramic.people.floor_motion import FloorMotion
@@ -19,6 +18,7 @@ from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_observation import Onlooker, PeopleExplanation, Sighting
 from peopleboy.tracker.panoramic.people.panoramic_tracks import Life, PanoramicPerson, Register
 from peopleboy.tracker.panoramic.people.place_model import PlaceModel
+from peopleboy.tracker.panoramic.people_foreground import Foreground
 from peopleboy.tracker.track import FloorPlace, Status, Track
 
 LONGEST_STEP_S = 2.0

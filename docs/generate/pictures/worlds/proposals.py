@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from docs.generate.pictures.paper import panels, show
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
-from peopleboy.studies.training.detector.sequences import ThermalSequence, render_thermal
+from peopleboy.studies.training.detector.world_sequences import ThermalSequence, render_thermal
 from peopleboy.tracker.detector.channels import BESIDE, FIRST_DIRECTION, GRADIENT, MOTION, OVER
 from peopleboy.tracker.detector.detections import NO_DETECTIONS
 from peopleboy.tracker.detector.detector import SMALLEST_PX, PeopleDetector

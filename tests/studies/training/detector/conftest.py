@@ -2,8 +2,8 @@ from pathlib import Path
 
 import pytest
 
-from peopleboy.studies.training.detector import cascade, crops
-from peopleboy.studies.training.detector.sequences import ThermalImage, load_images
+from peopleboy.studies.training.detector import crop_samples, train_cascade
+from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images
 from peopleboy.studies.training.samples import SampleTask
 from peopleboy.tracker.detector.box_refinement import BoxRefinementNetwork
 from peopleboy.tracker.detector.rescoring import RescoringNetwork
@@ -32,7 +32,7 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Drawn sequences instead of rendered ones."""
-    for module in (cascade, crops):
+    for module in (train_cascade, crop_samples):
         monkeypatch.setattr(module, "render_task", drawn_task)
 
 

@@ -21,7 +21,7 @@ from peopleboy.studies.training.detector.augmentation import (
     soften,
     take_rows,
 )
-from peopleboy.studies.training.detector.sequences import ThermalImage, load_images
+from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images
 from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.detector.window import WindowKind
 from tests.helpers.images.drawn_films import drawn_film

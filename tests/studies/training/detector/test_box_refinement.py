@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from peopleboy.studies.training.detector.augmentation import versions
-from peopleboy.studies.training.detector.box_refinement import BoxRefinementTraining, sample_version
-from peopleboy.studies.training.detector.crops import CropSamples
-from peopleboy.studies.training.detector.sequences import ThermalImage, load_images
+from peopleboy.studies.training.detector.crop_samples import CropSamples
+from peopleboy.studies.training.detector.train_box_refinement import BoxRefinementTraining, sample_version
+from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.detector.box_refinement import SCALES, BoxRefinementNetwork
 from peopleboy.tracker.detector.box_regression import decode_boxes

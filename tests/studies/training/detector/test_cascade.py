@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from peopleboy.studies.training.detector import augmentation, cascade
+from peopleboy.studies.training.detector import augmentation, train_cascade
 from peopleboy.studies.training.detector.boosting import Boosting
-from peopleboy.studies.training.detector.cascade import fit_boxes, fit_cascade
 from peopleboy.studies.training.detector.evaluation import evaluate_trees
 from peopleboy.studies.training.detector.mining import CELLS, patch_pool
-from peopleboy.studies.training.detector.sequences import ThermalImage
+from peopleboy.studies.training.detector.train_cascade import fit_boxes, fit_cascade
+from peopleboy.studies.training.detector.world_sequences import ThermalImage
 from peopleboy.studies.training.detector.worlds import KINDS
 from peopleboy.studies.training.samples import SampleTask
 from peopleboy.tracker.detector.box_regression import encode_boxes
@@ -27,9 +27,9 @@ from tests.helpers.images.drawn_films import drawn_film
 def quick(drawn: None, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: ARG001
     """A short training on drawn sequences, of few trees."""
     rounds = (Boosting(3, 0.5, features=20), Boosting(4, 0.5, features=20))
-    monkeypatch.setattr(cascade, "ROUNDS", dict.fromkeys(WindowKind, rounds))
-    monkeypatch.setattr(cascade, "REGRESSION", Boosting(20, 0.3, features=60))
-    monkeypatch.setattr(cascade, "VALIDATION", 2)
+    monkeypatch.setattr(train_cascade, "ROUNDS", dict.fromkeys(WindowKind, rounds))
+    monkeypatch.setattr(train_cascade, "REGRESSION", Boosting(20, 0.3, features=60))
+    monkeypatch.setattr(train_cascade, "VALIDATION", 2)
     monkeypatch.setattr(augmentation, "_CUT_TALL_PX", 40.0)
 
 
@@ -37,13 +37,13 @@ def quick(drawn: None, monkeypatch: pytest.MonkeyPatch) -> None:  # noqa: ARG001
 def few_patches(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = patch_pool()
     some = Patches(whole.channel[::8], whole.first[::8], whole.second[::8])
-    monkeypatch.setattr(cascade, "patch_pool", lambda: some)
+    monkeypatch.setattr(train_cascade, "patch_pool", lambda: some)
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("quick", "few_patches")
 def test_drawn_people_are_learned_and_found_in_other_images(shots: list[ThermalImage]) -> None:
-    model = PeopleModel(cascade.fit_trees(shots[:30], shots[30:36], [WindowKind.WHOLE]))
+    model = PeopleModel(train_cascade.fit_trees(shots[:30], shots[30:36], [WindowKind.WHOLE]))
     found = evaluate_trees(model, shots[36:], knows_mount=False)
     assert (found.people, found.images) == (12, 12)
     assert found.recall(1.0) > 0.7
@@ -56,7 +56,7 @@ def test_the_lesson_leaves_films_and_trees_and_says_how_good_they_are(tmp_path: 
     assert run_cli("train", "cascade", "--sequences", 5, "--out", tmp_path, "--workers", 1) == 0
     names = {path.name for path in (tmp_path / "sequences").iterdir()}
     assert names == {f"world_{seed}.npz" for seed in (0, 1, 1000, 1001, 2000, 3000, 3001, 4000, 5000)}
-    about = PeopleModel.load(tmp_path / "cascade.npz").about
+    about = PeopleModel.load(tmp_path / "train_cascade.npz").about
     trained_on = (
         "2 random worlds from seed 1000, 1 crowds from seed 2000, 2 worlds in the robot's own span "
         "from seed 3000, 1 plain worlds as warm as people from seed 4000, 1 crowds in the robot's own span "
@@ -71,7 +71,7 @@ def test_the_lesson_leaves_films_and_trees_and_says_how_good_they_are(tmp_path: 
 def test_trees_that_are_not_taught_stay_as_they_are(tmp_path: Path) -> None:
     chosen = ("--sequences", 5, "--windows", "cut", "--workers", 1)
     assert run_cli("train", "cascade", *chosen, "--out", tmp_path) == 0
-    taught, shipped = PeopleModel.load(tmp_path / "cascade.npz"), shipped_people_trees()
+    taught, shipped = PeopleModel.load(tmp_path / "train_cascade.npz"), shipped_people_trees()
     before, after = (model.trees[WindowKind.WHOLE].cascade for model in (shipped, taught))
     np.testing.assert_array_equal(after.leaf, before.leaf, strict=True)
     assert len(taught.trees[WindowKind.CUT].cascade.leaf) == 4
@@ -84,7 +84,7 @@ def test_trees_that_are_not_taught_stay_as_they_are(tmp_path: Path) -> None:
 def test_places_alone_are_taught_for_the_trees_that_are_there(tmp_path: Path) -> None:
     chosen = ("--sequences", 5, "--windows", "whole", "--only-boxes", "--workers", 1)
     assert run_cli("train", "cascade", *chosen, "--out", tmp_path) == 0
-    taught, shipped = PeopleModel.load(tmp_path / "cascade.npz"), shipped_people_trees()
+    taught, shipped = PeopleModel.load(tmp_path / "train_cascade.npz"), shipped_people_trees()
     before, after = (model.trees[WindowKind.WHOLE] for model in (shipped, taught))
     np.testing.assert_array_equal(after.cascade.leaf, before.cascade.leaf, strict=True)
     assert not np.array_equal(after.regression.leaf, before.regression.leaf)
@@ -113,8 +113,8 @@ def test_a_tenth_of_the_worlds_is_held_back_and_at_least_one(
         split.extend((len(shots), len(others_of)))
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(cascade, "render_task", one_image)
-    monkeypatch.setattr(cascade, "fit_trees", stop)
+    monkeypatch.setattr(train_cascade, "render_task", one_image)
+    monkeypatch.setattr(train_cascade, "fit_trees", stop)
     run_cli("train", "cascade", "--sequences", worlds, "--out", tmp_path, "--workers", 1)
     assert split == [sum(len(kind.seeds(worlds)) for kind in KINDS) - held, held]
 
@@ -139,10 +139,10 @@ def test_most_people_come_through() -> None:
     rng = np.random.default_rng(0)
     people, others = (rng.normal(size=(200, CELLS)).astype(np.float16) for _ in range(2))
     people[:, :50] += 1
-    cascade = fit_cascade(people, others, patch_pool(50), Boosting(20, 0.3))
-    running = cascade.running(integrate_windows(people))
-    assert (running >= cascade.least).all(axis=1).mean() > 0.8
-    assert np.isfinite(cascade.least).all()
+    trees = fit_cascade(people, others, patch_pool(50), Boosting(20, 0.3))
+    running = trees.running(integrate_windows(people))
+    assert (running >= trees.least).all(axis=1).mean() > 0.8
+    assert np.isfinite(trees.least).all()
 
 
 @pytest.mark.slow

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from peopleboy.scenarios.running.engine.task import Workers
-from peopleboy.studies.training.detector import box_refinement, crops
-from peopleboy.studies.training.detector.box_refinement import BoxRefinementTraining
-from peopleboy.studies.training.detector.crops import (
+from peopleboy.studies.training.detector import crop_samples, train_box_refinement
+from peopleboy.studies.training.detector.crop_samples import (
     CropSamples,
     augment_crops,
     fit_crops,
@@ -20,7 +19,8 @@ from peopleboy.studies.training.detector.crops import (
     network_outputs,
     seed_of,
 )
-from peopleboy.studies.training.detector.rescoring import RescoringTraining
+from peopleboy.studies.training.detector.train_box_refinement import BoxRefinementTraining
+from peopleboy.studies.training.detector.train_rescoring import RescoringTraining
 from peopleboy.studies.training.detector.worlds import KINDS, LATER, seeds_of, world_of
 from peopleboy.studies.training.samples import SampleTask
 from peopleboy.tracker.boxes import iou
@@ -165,7 +165,7 @@ def test_one_of_ten_is_held_back_and_sequences_that_are_there_are_used(
         return SampleTask(folder / f"world_{seed}.npz", render, (seed,))  # type: ignore[arg-type]
 
     none = CropSamples.join([], BoxRefinementNetwork.ARCHITECTURE.crop)
-    monkeypatch.setattr(crops, "render_task", task)
+    monkeypatch.setattr(crop_samples, "render_task", task)
     monkeypatch.setattr(BoxRefinementTraining, "sample", lambda *_, **__: none)
     monkeypatch.setattr(BoxRefinementTraining, "check", lambda *_: None)
     first, again = (BoxRefinementTraining(sequences=100).collect(tmp_path, Workers(1)) for _ in range(2))
@@ -186,14 +186,14 @@ def test_one_of_ten_is_held_back_and_sequences_that_are_there_are_used(
 )
 def test_training_leaves_a_network_that_says_how_good_it_is(
     model: str,
-    training: type[crops.CropTraining],
+    training: type[crop_samples.CropTraining],
     network: type[RescoringNetwork | BoxRefinementNetwork],
     result: str,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(training, "EPOCHS", 1)
-    monkeypatch.setattr(crops, "BATCH", 8)
+    monkeypatch.setattr(crop_samples, "BATCH", 8)
     assert run_cli("train", model, "--sequences", 10, "--out", tmp_path, "--workers", 1) == 0
     about = network.load(tmp_path / f"{model}.npz").about
     assert about["trained on"].startswith("9 sequences, ")
@@ -205,7 +205,7 @@ def test_training_that_cannot_be_evaluated_is_refused_before_it_begins(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     none = CropSamples.join([], BoxRefinementNetwork.ARCHITECTURE.crop)
-    monkeypatch.setattr(box_refinement, "sample_version", lambda _: none)
+    monkeypatch.setattr(train_box_refinement, "sample_version", lambda _: none)
     chosen = ("--sequences", 10, "--out", tmp_path, "--workers", 1)
     assert run_cli("train", "box-refinement", *chosen) == 2
     assert "no people are visible in the validation sequences" in capsys.readouterr().err

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from peopleboy.studies.training.detector import mining
 from peopleboy.studies.training.detector.mining import CELLS, patch_pool
-from peopleboy.studies.training.detector.sequences import ThermalImage
+from peopleboy.studies.training.detector.world_sequences import ThermalImage
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.detector.box_regression import decode_boxes
 from peopleboy.tracker.detector.cascade import Cascade

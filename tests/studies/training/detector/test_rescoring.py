@@ -7,9 +7,13 @@ import numpy as np
 import pytest
 
 from peopleboy.studies.training.detector.augmentation import versions
-from peopleboy.studies.training.detector.crops import CropSamples, first_weights
-from peopleboy.studies.training.detector.rescoring import RescoringTraining, sample_version, with_log_odds
-from peopleboy.studies.training.detector.sequences import ThermalImage, load_images
+from peopleboy.studies.training.detector.crop_samples import CropSamples, first_weights
+from peopleboy.studies.training.detector.train_rescoring import (
+    RescoringTraining,
+    sample_version,
+    with_log_odds,
+)
+from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images
 from peopleboy.tracker.detector.crops import CHANNELS, FEATURES, SCORES, normalise_crops
 from peopleboy.tracker.detector.people_trees import shipped_people_trees
 from peopleboy.tracker.detector.rescoring import SCALES, RescoringNetwork

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
-from peopleboy.studies.training.detector.sequences import ThermalSequence, render_thermal
+from peopleboy.studies.training.detector.world_sequences import ThermalSequence, render_thermal
 from peopleboy.tracker.camera_mount import Mount
 
 

@@ -7,10 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from peopleboy.tracker.rgbd.pre_detection import PreDetection
-from peopleboy.tracker.rgbd.v_disparity import HeightLine
-from peopleboy.tracker.rgbd.verification.window_model import feature_length
-from peopleboy.tracker.rgbd.verification.windows import (
+from peopleboy.tracker.rgbd.human_windows import (
     SIZES,
     WindowRange,
     cut,
@@ -20,6 +17,9 @@ from peopleboy.tracker.rgbd.verification.windows import (
     range_of,
     window_of,
 )
+from peopleboy.tracker.rgbd.pre_detection import PreDetection
+from peopleboy.tracker.rgbd.v_disparity import HeightLine
+from peopleboy.tracker.rgbd.window_model import feature_length
 from tests.helpers.depth_scene import HEIGHT, make_view
 
 FLOOR = HeightLine(0.0, 1.2)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from peopleboy.tracker.elementary import logarithm
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.networks.mask_network import BLOCK
-from peopleboy.tracker.panoramic.foreground.floor_rows import FloorRows
+from peopleboy.tracker.panoramic.floor_rows import FloorRows
 
 Linear = NDArray[np.float32]
 Pair = tuple[float, float]

@@ -6,7 +6,7 @@ import pytest
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.networks.mask_network import BLOCK
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
-from peopleboy.tracker.panoramic.foreground.background_memory import (
+from peopleboy.tracker.panoramic.background_memory import (
     AGE,
     DOUBT,
     compare,
@@ -14,7 +14,7 @@ from peopleboy.tracker.panoramic.foreground.background_memory import (
     learn,
     move_along,
 )
-from peopleboy.tracker.panoramic.foreground.floor_rows import floor_rows
+from peopleboy.tracker.panoramic.floor_rows import floor_rows
 from tests.helpers.images.as_taken import as_taken
 
 CAMERA = PanoramaCalibration(

@@ -11,7 +11,7 @@ from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.studies.training.foreground import MaskScores, score_masks, segment
 from peopleboy.studies.training.panorama_sequences import render_panoramas
 from peopleboy.tracker.frame import Odometry
-from peopleboy.tracker.panoramic.foreground.foreground import Foreground, shipped_foreground
+from peopleboy.tracker.panoramic.people_foreground import Foreground, shipped_foreground
 from tests.helpers.calls.refused import refused
 
 ROOM = {

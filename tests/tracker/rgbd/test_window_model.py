@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.rgbd.verification.window_model import WindowModel, feature_length, shipped_windows
-from peopleboy.tracker.rgbd.verification.windows import WindowRange, depth_features, features
+from peopleboy.tracker.rgbd.human_windows import WindowRange, depth_features, features
+from peopleboy.tracker.rgbd.window_model import WindowModel, feature_length, shipped_windows
 
 
 def make_model(extra: int = 0) -> WindowModel:

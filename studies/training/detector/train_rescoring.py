@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from peopleboy.studies.training.detector.augmentation import Version, versions
 from peopleboy.studies.training.detector.boosting import in_threads
-from peopleboy.studies.training.detector.crops import (
+from peopleboy.studies.training.detector.crop_samples import (
     Array,
     CropData,
     CropSamples,
@@ -25,7 +25,7 @@ from peopleboy.studies.training.detector.crops import (
     seed_of,
 )
 from peopleboy.studies.training.detector.evaluation import check_labels, log_odds_line
-from peopleboy.studies.training.detector.sequences import load_images
+from peopleboy.studies.training.detector.world_sequences import load_images
 from peopleboy.studies.training.optimiser import Weights, huber
 from peopleboy.studies.training.samples import SampleTask
 from peopleboy.studies.training.specification import option

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.running.engine.task import Workers
-from peopleboy.studies.training.detector.sequences import render_task
+from peopleboy.studies.training.detector.world_sequences import render_task
 from peopleboy.studies.training.detector.worlds import LATER, seeds_of
 from peopleboy.studies.training.optimiser import Optimiser, Weights, he_weights
 from peopleboy.studies.training.samples import SampleTask, collect_missing

@@ -7,8 +7,8 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.networks.mask_network import BLOCK, DILATIONS, INPUTS, OUTPUTS, MaskNetwork
-from peopleboy.tracker.panoramic.foreground.foreground import ForegroundModel
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView
+from peopleboy.tracker.panoramic.people_foreground import ForegroundModel
 from tests.helpers.calls.refused import refused
 
 ROWS, COLUMNS, UNITS = 10, 24, 12

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.studies.training.detector.augmentation import Version, versions
-from peopleboy.studies.training.detector.crops import (
+from peopleboy.studies.training.detector.crop_samples import (
     Array,
     CropData,
     CropSamples,
@@ -23,7 +23,7 @@ from peopleboy.studies.training.detector.crops import (
     predictions,
     seed_of,
 )
-from peopleboy.studies.training.detector.sequences import ThermalImage, load_images
+from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images
 from peopleboy.studies.training.optimiser import Weights, huber
 from peopleboy.studies.training.samples import SampleTask
 from peopleboy.studies.training.specification import option

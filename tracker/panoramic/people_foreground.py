@@ -16,8 +16,8 @@ from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.frame import Calibration, Odometry
 from peopleboy.tracker.networks.mask_network import BLOCK, DILATIONS, INPUTS, OUTPUTS, TOGETHER, MaskNetwork
 from peopleboy.tracker.networks.weights_archive import SHIPPED, ArraySpec, WeightsArchive
-from peopleboy.tracker.panoramic.foreground.background_memory import compare, first_memory, learn, move_along
-from peopleboy.tracker.panoramic.foreground.floor_rows import FloorRows, floor_rows
+from peopleboy.tracker.panoramic.background_memory import compare, first_memory, learn, move_along
+from peopleboy.tracker.panoramic.floor_rows import FloorRows, floor_rows
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
 
 Linear = NDArray[np.float32]

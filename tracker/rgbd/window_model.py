@@ -13,7 +13,7 @@ import numpy as np
 
 from peopleboy.tracker.networks.weights_archive import SHIPPED, ArraySpec, WeightsArchive
 from peopleboy.tracker.rgbd.depth_view import Depth
-from peopleboy.tracker.rgbd.verification.windows import (
+from peopleboy.tracker.rgbd.human_windows import (
     SIZES,
     Features,
     Image,

@@ -21,7 +21,7 @@ from peopleboy.studies.training.detector.mining import (
     windows_anywhere,
     windows_with_people,
 )
-from peopleboy.studies.training.detector.sequences import ThermalImage, load_images, render_task
+from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images, render_task
 from peopleboy.studies.training.detector.worlds import KINDS, seeds_of
 from peopleboy.studies.training.samples import collect_missing
 from peopleboy.studies.training.specification import Specification, option, report

@@ -1,1 +1,0 @@
-"""Whether what has the size of a human looks like one."""
