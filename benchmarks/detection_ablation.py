@@ -17,8 +17,8 @@ import click
 import numpy as np
 
 from benchmarks import call
-from benchmarks.clips import CHOSEN_BY, RealClip, open_clips
 from benchmarks.peers.detectors import Blobs
+from benchmarks.real_clips import CHOSEN_BY, RealClip, open_clips
 from benchmarks.sequences import Recording, print_head, print_row, record
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.views import open_views

@@ -22,7 +22,15 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks import call
-from benchmarks.clips import CHOSEN_BY, PEERS, ClipResult, ClipTask, RealClip, make_clip_tracker, open_clips
+from benchmarks.real_clips import (
+    CHOSEN_BY,
+    PEERS,
+    ClipResult,
+    ClipTask,
+    RealClip,
+    make_clip_tracker,
+    open_clips,
+)
 from benchmarks.sequences import print_head, print_row
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario_file import to_data

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
-from benchmarks.clips import ClipResult, open_clips, score_clip
 from benchmarks.footage import OUT, ClipRow, main
+from benchmarks.real_clips import ClipResult, open_clips, score_clip
 from peopleboy.bad_input import BadInput
 from tests.helpers.calls.refused import assert_names, refused
 
