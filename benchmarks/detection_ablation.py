@@ -150,23 +150,23 @@ _EVERYWHERE: Final = replace(
 
 VARIANTS: Final[Mapping[str, Variant]] = {
     "as it is": Variant(),
-    "nothing is known of the cameras": Variant(is_calibrated=False),
-    "everybody is 1.72 m tall": Variant(replace(_ALL, motion=replace(_ALL.motion, build=1e-3, posture=0.0))),
-    "the detector looks at everybody in each image": Variant(_EVERYBODY),
-    "and every third image is searched everywhere": Variant(_OFTEN),
-    "every image is searched everywhere": Variant(_EVERYWHERE),
-    "proposed by the thermal image alone": Variant(stage=DetectorStage.BOX_REFINEMENT),
-    "and without the closer look": Variant(stage=DetectorStage.RESCORING),
-    "and without the second look, by trees alone, everywhere": Variant(_EVERYWHERE, DetectorStage.TREES),
-    "by what is warmer than a grey and upright, everywhere": Variant(_EVERYWHERE, DetectorStage.THRESHOLD),
-    "nested boxes are as good": Variant(
+    "no camera calibration": Variant(is_calibrated=False),
+    "all statures are 1.72 m": Variant(replace(_ALL, motion=replace(_ALL.motion, build=1e-3, posture=0.0))),
+    "every tracked person is rescored in each image": Variant(_EVERYBODY),
+    "and every third image is searched completely": Variant(_OFTEN),
+    "every image is searched completely": Variant(_EVERYWHERE),
+    "thermal image only": Variant(stage=DetectorStage.BOX_REFINEMENT),
+    "and without box refinement": Variant(stage=DetectorStage.RESCORING),
+    "and without rescoring, by the cascade alone, every image": Variant(_EVERYWHERE, DetectorStage.TREES),
+    "upright regions above a grey threshold, every image": Variant(_EVERYWHERE, DetectorStage.THRESHOLD),
+    "no penalty for nested boxes": Variant(
         replace(
             _ALL,
             existence=_without_doubt(_ALL.existence),
             existence_uncalibrated=_without_doubt(_ALL.existence_uncalibrated),
         )
     ),
-    "no late decisions": Variant(
+    "no late re-identification": Variant(
         replace(
             _ALL,
             reidentification=_without_revision(_ALL.reidentification),

@@ -23,7 +23,7 @@ from docs.generate.pictures import (
     tracker,
 )
 from docs.generate.pictures.paper import COLOURS, save
-from docs.generate.pictures.worlds import hard_scenes, light, proposals, reactions
+from docs.generate.pictures.worlds import detections, hard_scenes, light, reactions
 from peopleboy.studies.reproductions.pictures.panoramic_figures import draw_features
 from peopleboy.studies.reproductions.pictures.situation_figures import draw_part_scores
 
@@ -54,7 +54,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "attention_parts": draw_part_scores,
     "all_round": all_round.all_round,
     "handed_over": all_round.handed_over,
-    "proposals": proposals.proposals,
+    "detections": detections.detections,
     "detector": tracker.detector,
     "contour": tracker.contour,
     "explained_away": occlusion.explained_away,

@@ -23,7 +23,7 @@ _STEP = 24  # of greys, so that the file is small
 _CHANNELS = {GRADIENT: "gradient", FIRST_DIRECTION: "gradient to the right", MOTION: "motion"}
 
 
-def proposals() -> Figure:
+def detections() -> Figure:
     """Three images with what is found in them; below, channels of the first."""
     figure, axes = panels(
         [f"world {seed}" for seed in WORLDS]
