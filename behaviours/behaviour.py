@@ -70,7 +70,7 @@ class Behaviour(Protocol):
         ...
 
     def command(self, percept: Percept) -> Command:
-        """Give the command for this sight; called once for every image, in order of time."""
+        """Return the command for this sight; called once for every image, in order of time."""
         ...
 
 
@@ -128,7 +128,7 @@ def checked_behaviour(behaviour: object, name: str) -> CheckedBehaviour:
 def _faults(
     command: object, mode: object, reason: object, following: object, tracks: Set[int]
 ) -> Iterator[str]:
-    """Tell what is wrong with what a behaviour gave, who was told of tracks, and what would be right."""
+    """Return what is wrong with what a behaviour gave, who was told of tracks, and what would be right."""
     if not isinstance(command, Command):
         yield f"command(percept) must give a Command, got {command!r}"
     if not (isinstance(mode, str) and mode and mode.isprintable()):

@@ -76,7 +76,7 @@ class Patrol:
         return None if self._follower is None else self._follower.following
 
     def command(self, percept: Percept) -> Command:
-        """Give the command of the part whose turn it is."""
+        """Return the command of the part whose turn it is."""
         step_s = 0.0 if self._time_s is None else max(percept.time_s - self._time_s, 0.0)
         self._time_s = percept.time_s
         self._away_rad = math.remainder(self._away_rad + percept.angular_rad_s * step_s, math.tau)
@@ -94,7 +94,7 @@ class Patrol:
         return self._round.command(percept)
 
     def _notices(self, percept: Percept) -> bool:
-        """Tell whether there is somebody whom the robot has not followed yet."""
+        """Return whether there is a person whom the robot has not followed yet."""
         return any(self._is_new(person) for person in percept.people)
 
     def _is_new(self, person: SeenPerson) -> bool:

@@ -57,8 +57,8 @@ class Percept:
         images: of the cameras that took one now, by name, such as `colour`, (H, W, 3) uint8 sRGB; each may be
             made only when it is asked for.
         image_age_s: [s] since the newest image came in; `people` are those of that image.
-        knows_again: whether somebody who comes back has the old number, however long it was away, so that
-            whoever has a new one is somebody else.
+        knows_again: whether a person who comes back has the old number, however long it was away, so that
+            whoever has a new one is another person.
         fault: why nobody can be seen just now, such as a tracker's error; empty if all is well.
 
     Raises:

@@ -67,7 +67,7 @@ class SonarFailure:
         return self._is_deaf
 
     def _is_person_near(self, percept: Percept) -> bool:
-        """Tell whether somebody stands so near in front that there must be an echo."""
+        """Return whether a person stands so near in front that there must be an echo."""
         return any(
             person.is_visible
             and person.height >= self._config.sure_height
@@ -117,7 +117,7 @@ class Guarded:
         return None if self._fault else self._behaviour.following
 
     def command(self, percept: Percept) -> Command:
-        """Give the behaviour's command, as far as it is safe."""
+        """Return the behaviour's command, as far as it is safe."""
         self._fault = self._blindness(percept)
         if self._fault:
             self.is_limited = True
@@ -142,7 +142,7 @@ class Guarded:
         return replace(config, max_linear_m_s=min(config.max_linear_m_s, config.unproven_m_s))
 
     def _blindness(self, percept: Percept) -> str:
-        """Tell why the images are of no use; empty if they are."""
+        """Return why the images are of no use; empty if they are."""
         if percept.fault:
             return percept.fault
         is_late = not percept.image_age_s <= self._config.latest_image_s

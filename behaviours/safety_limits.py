@@ -103,7 +103,7 @@ def limit(
 
 
 def safe_speed(room_m: float, config: SafetyConfig) -> float:
-    """Give the highest speed [m/s] from which the robot stops within a way of room_m [m].
+    """Return the highest speed [m/s] from which the robot stops within a way of room_m [m].
 
     The larger root of reaction * v + v^2 / (2 a) = room, at most the drive's limit.
     """
@@ -114,7 +114,7 @@ def safe_speed(room_m: float, config: SafetyConfig) -> float:
 
 
 def _free_way(points: Points, config: SafetyConfig) -> tuple[float, float]:
-    """Give the room [m] ahead and behind, in the lane of the hull, less the margin."""
+    """Return the room [m] ahead and behind, in the lane of the hull, less the margin."""
     x = points[np.abs(points[:, 1]) < config.half_width_m, 0]
     ahead = np.min(x[x > 0.0], initial=np.inf) - config.front_m
     behind = np.min(-x[x <= 0.0], initial=np.inf) - config.rear_m
@@ -122,7 +122,7 @@ def _free_way(points: Points, config: SafetyConfig) -> tuple[float, float]:
 
 
 def _free_arc(command: Command, points: Points, config: SafetyConfig) -> float:
-    """Give the way [m] along the commanded arc until the hull comes too near to something, or inf.
+    """Return the way [m] along the commanded arc until the hull comes too near to something, or inf.
 
     Too near is nearer than the margin, and nearer than it is now.
     """
@@ -156,7 +156,7 @@ def _side_margin(points: Points, config: SafetyConfig) -> float:
 
 
 def _gaps(points: Points, config: SafetyConfig) -> Points:
-    """Give the distance [m] of points (..., 2) from the hull."""
+    """Return the distance [m] of points (..., 2) from the hull."""
     x, y = points[..., 0], points[..., 1]
     along = np.maximum(np.maximum(x - config.front_m, -config.rear_m - x), 0.0)
     gaps: Points = np.hypot(along, np.maximum(np.abs(y) - config.hull_m, 0.0))
@@ -164,7 +164,7 @@ def _gaps(points: Points, config: SafetyConfig) -> Points:
 
 
 def _safe_turn(wanted_rad_s: float, points: Points, config: SafetyConfig) -> float:
-    """Give the highest turn rate [rad/s] in the wanted direction, with obstacles beside the hull."""
+    """Return the highest turn rate [rad/s] in the wanted direction, with obstacles beside the hull."""
     distance = np.hypot(points[:, 0], points[:, 1])
     room_m = float(np.min(distance)) - config.corner_m
     if room_m > 0.0:

@@ -30,7 +30,7 @@ class Scripted:
             raise BadInput(f"script: times must be finite and rise, got {self._from_s}")
 
     def command(self, percept: Percept) -> Command:
-        """Give the last command whose time has come; before the first the robot stands."""
+        """Return the last command whose time has come; before the first the robot stands."""
         index = bisect.bisect_right(self._from_s, percept.time_s)
         return self._commands[index - 1] if index else STOP
 

@@ -123,7 +123,7 @@ def _tracker() -> Iterator[BenchFigure]:
 
 
 def _where_time_goes(found: ContourTimes) -> str:
-    """Say what a further person's time goes into, the most first."""
+    """Describe what a further person's time goes into, the most first."""
     parts = sorted(found.parts_ms.items(), key=lambda part: -part[1])
     rest = found.person_ms - sum(found.parts_ms.values())
     shares = [f"{name} {time_ms:.2f}" for name, time_ms in [*parts, ("all that is between", rest)]]

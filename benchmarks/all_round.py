@@ -229,7 +229,7 @@ class _Watch:
         self.has_contour.append(track is not None and track.id in contours)
 
     def times_s(self, has: Sequence[bool]) -> Iterator[float]:
-        """Give how long it takes each time that the person comes into the image until it has something."""
+        """Return how long it takes each time that the person comes into the image until it has something."""
         came_s = None
         for k, (time_s, is_in) in enumerate(self.seen):
             if is_in and came_s is None and k > 0 and not self.seen[k - 1][1]:
@@ -254,7 +254,7 @@ def _track_of(tick: Tick, person: PersonTruth, before: int) -> Track | None:
 
 
 def _distance_error(rows: _Rows) -> tuple[float, int]:
-    """Give the mean error of distances of people who have a track within half a metre."""
+    """Return the mean error of distances of people who have a track within half a metre."""
     tracks: dict[float, list[tuple[float, float]]] = {}
     for frame, _, x, y, *_ in rows.tracks:
         tracks.setdefault(frame, []).append((x, y))
@@ -325,7 +325,7 @@ def _figures(runs: Sequence[Played]) -> Iterable[str]:
 
 
 def time_beside_hog(scenario: str, tracker: str, seed: int) -> tuple[float, float]:
-    """Give the median times of a tracker's updates with a new panorama and of HOG, in turns [ms]."""
+    """Return the median times of a tracker's updates with a new panorama and of HOG, in turns [ms]."""
     timed, hog = _Timed(_make(tracker, seed)), Hog(uses_colour=True)
     loaded = load_scenario(scenario).mounting((*timed.cameras, COLOUR, THERMAL))
     calibrations = calibrations_of(loaded.world(seed).robot.cameras)

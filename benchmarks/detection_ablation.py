@@ -94,7 +94,7 @@ class DetectorOfStage(PeopleDetector):
 
 
 class WarmFinder:
-    """Takes whatever is upright and warmer than a grey for somebody: evidence that is not relative."""
+    """Takes whatever is upright and warmer than a grey for a person: evidence that is not relative."""
 
     def __call__(self, frame: Frame, expected: Detections, *, everywhere: bool) -> Detections:  # noqa: ARG002
         """Find people in a frame, whoever is expected."""
@@ -188,7 +188,7 @@ def clip_recording(clip: RealClip) -> Recording:
 
 
 def score_recordings(scenes: Sequence[Recording], worlds: Sequence[Recording], variant: Variant) -> list[str]:
-    """Give a row's figures, as `COLUMNS` names them."""
+    """Return a row's figures, as `COLUMNS` names them."""
     library = combine([recording.score(variant.tracked(recording)) for recording in scenes])
     tracked = [(recording, variant.tracked(recording)) for recording in worlds]
     everybody = combine([recording.score(tracks) for recording, tracks in tracked])
@@ -204,7 +204,7 @@ def score_recordings(scenes: Sequence[Recording], worlds: Sequence[Recording], v
 
 
 def score_clips(clips: Sequence[Recording], variant: Variant) -> list[str]:
-    """Give a row's figures, as `COLUMNS_OF_CLIPS` names them."""
+    """Return a row's figures, as `COLUMNS_OF_CLIPS` names them."""
     scores = combine([recording.score(variant.tracked(recording)) for recording in clips])
     return [f"{scores.mot.hota.hota:.1f}", _false_per_1000(scores)]
 

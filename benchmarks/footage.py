@@ -1,6 +1,6 @@
 """How well people are kept in footage of unknown temperatures: `python -m benchmarks.footage`.
 
-Scenes of the library are played, and their 16-bit pictures tracked as somebody else's would be: without a
+Scenes of the library are played, and their 16-bit pictures tracked as another person's would be: without a
 scale, without the robot's motion, anywhere in the image. In a hot room clothes are colder than the walls.
 `--clips DIR` measures on real clips instead, beside OpenCV's HOG with ByteTrack.
 """

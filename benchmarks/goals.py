@@ -23,7 +23,7 @@ class Goal:
     unit: str = ""
 
     def is_met(self, value: float) -> bool:
-        """Tell whether a figure is good enough."""
+        """Return whether a figure is good enough."""
         return self.least <= value <= self.most
 
     def __str__(self) -> str:

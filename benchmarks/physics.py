@@ -135,7 +135,7 @@ def drive(
 
 
 def summary(cases: Sequence[PhysicsCase]) -> dict[str, float]:
-    """Tell what all came to."""
+    """Return what all came to."""
     off = [case.off_mm for case in cases]
     changes = [
         abs(ours - theirs)

@@ -101,7 +101,7 @@ def as_yaml(tables: ResultTables) -> str:
 
 
 def take_in(table: ResultTable) -> ResultTable:
-    """Give a table the figures that now lie where its rows say, and today's date.
+    """Return a table the figures that now lie where its rows say, and today's date.
 
     Cells without a figure stay without one.
 

@@ -42,7 +42,7 @@ class Recording:
     boxes_whole: bool = False
 
     def uncalibrated(self) -> Recording:
-        """Give the same, with nothing known of the cameras."""
+        """Return the same, with nothing known of the cameras."""
         return replace(self, frames=tuple(replace(frame, calibrations={}) for frame in self.frames))
 
     def score(self, tracks: Iterable[Sequence[Track]], min_visible: float = 0.0) -> Scores:
@@ -69,7 +69,7 @@ def record(scenario: str | Scenario, seed: int) -> Recording:
 
 
 def truth_rows(frame: int, truth: Truth) -> list[TruthRow]:
-    """Give frame, id, box, whether it counts, and visible share of everybody who has a box."""
+    """Return frame, id, box, whether it counts, and visible share of everybody who has a box."""
     return [
         (frame, person.id, person.box, person.is_counted, person.visible_fraction)
         for person in truth.people

@@ -116,7 +116,7 @@ def differing(one: Any, other: Any, path: str = "") -> Iterator[str]:
 
 
 def _of_kind(record: Any, model: Any) -> Any:
-    """Give a record as it is if it is of the model's kind, and the defaults of that kind if it is not."""
+    """Return a record as it is if it is of the model's kind, and the defaults of that kind if it is not."""
     return record if type(record) is type(model) else type(model)()
 
 
@@ -141,7 +141,7 @@ def adopt(base: Any, source: Any, names: Sequence[str]) -> Any:
 
 
 def variants() -> Iterator[tuple[str, TrackerConfig]]:
-    """Give the sources' trackers, then one step after the other, then the best without each step."""
+    """Return the sources' trackers, then one step after the other, then the best without each step."""
     yield "paper, literal", PAPER
     yield "thesis, literal, with colour and occlusions", THESIS_OCCLUSION
     yield "thesis, literal, thermal alone", THESIS
@@ -156,7 +156,7 @@ def variants() -> Iterator[tuple[str, TrackerConfig]]:
 
 
 def score(runs: dict[str, list[Recording]], config: TrackerConfig) -> list[str]:
-    """Give one row of figures, as `COLUMNS` names them; false alarms are per 100 frames."""
+    """Return one row of figures, as `COLUMNS` names them; false alarms are per 100 frames."""
     one, several, nobody = (scores_of(runs, names, config) for names in (ONE, SEVERAL, (EMPTY,)))
     percents = [getattr(scores.thesis, name) for scores in (one, several) for name in ("cp", "cr", "aa")]
     percents += [several.mot.identity.idf1, several.mot.hota.hota]

@@ -18,7 +18,7 @@ class Show(Protocol):
     """Moves a bar."""
 
     def __call__(self, finished: int, total: int, note: str = "") -> None:
-        """Tell how much is finished, of how much, and what is going on."""
+        """Return how much is finished, of how much, and what is going on."""
         ...
 
 
@@ -33,7 +33,7 @@ def no_progress() -> Iterator[None]:
 
 
 def progress_console() -> Console:
-    """Give the console on which progress is told; it is silent where nobody wants to be told."""
+    """Return the console on which progress is told; it is silent where nobody wants to be told."""
     return _console(_IS_HIDDEN.get())
 
 

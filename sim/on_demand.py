@@ -1,4 +1,4 @@
-"""Values by name, each made when somebody first asks for it."""
+"""Values by name, each made when a person first asks for it."""
 
 from __future__ import annotations
 

@@ -154,7 +154,7 @@ class World:
         )
 
     def take_images(self) -> Mapping[str, NDArray[Any]]:
-        """Give the images of this instant, as `observe` does; there must be images."""
+        """Return the images of this instant, as `observe` does; there must be images."""
         return self._rig.read(self._tick)
 
     def sense(self) -> Senses:
@@ -167,11 +167,11 @@ class World:
         )
 
     def scene(self) -> ImageFreeTruth:
-        """Tell what is true at this instant as far as no image is needed for it."""
+        """Return what is true at this instant as far as no image is needed for it."""
         return self.scenes().truths()[0]
 
     def scenes(self) -> Scenes:
-        """Tell what `scene` does as arrays, of one world."""
+        """Return what `scene` does as arrays, of one world."""
         pose, world_from_robot = self._robot.pose(), self._robot.world_from_robot()
         robot = np.array([pose.x, pose.y, pose.heading])
         worlds, people = np.zeros(1, SCENE), self._bystanders(robot, world_from_robot)
@@ -198,7 +198,7 @@ class World:
         return found
 
     def truth(self, camera: str = "thermal") -> Truth:
-        """Tell all that is true at this instant, boxes and masks in the image of a camera.
+        """Return all that is true at this instant, boxes and masks in the image of a camera.
 
         Raises:
             BadInput: there is no camera of that name, or this is a world without images.
@@ -231,7 +231,7 @@ class World:
         return self._truth_maker.box(person, self._see(self.config.robot.cameras["thermal"]))
 
     def truths(self) -> Mapping[str, Truth]:
-        """Give the truth by camera that takes an image now: that of `thermal`, the rest when asked for.
+        """Return the truth by camera that takes an image now: that of `thermal`, the rest when asked for.
 
         Raises:
             BadInput: this is a world without images; or, when one is asked for, the instant is over.
@@ -241,7 +241,7 @@ class World:
         return OnDemand(self._rig.due(self._tick), partial(self._truth_at, self._tick), at_once)
 
     def robot_state(self) -> PlanarState:
-        """Tell where the robot is, how it moves, and how wide it is, as people see it."""
+        """Return where the robot is, how it moves, and how wide it is, as people see it."""
         pose, (speed, _) = self._robot.pose(), self._robot.velocity()
         heading = np.array([np.cos(pose.heading), np.sin(pose.heading)])
         place = np.array([pose.x, pose.y])
@@ -381,7 +381,7 @@ class World:
         return self._seen[renderer, camera]
 
     def _camera_view(self, config: CameraConfig) -> CameraView:
-        """Tell a sensor what it sees, and all that forms its images from that."""
+        """Return a sensor what it sees, and all that forms its images from that."""
         seen = self._see(config)
         return CameraView(
             view=seen.view,
@@ -423,7 +423,7 @@ def _check_names(config: WorldConfig) -> None:
 
 
 def _add_fixtures(physics: Physics, place: Place) -> dict[str, Material]:
-    """Put everything that stands still into the physics world; returns the looks by body name."""
+    """Put everything that stands still into the physics world; returns the appearance by body name."""
     materials = {}
     for fixture in place.fixtures:
         position, orientation = fixture.position, fixture.orientation

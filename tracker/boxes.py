@@ -29,7 +29,7 @@ class ImageShares(NamedTuple):
 
 
 def corners(box: Box) -> Box:
-    """Give left, top, right, bottom [px] of a box."""
+    """Return left, top, right, bottom [px] of a box."""
     left, top, width, height = box
     return left, top, left + width, top + height
 
@@ -46,7 +46,7 @@ def image_shares(box: Box, width_px: int, height_px: int) -> ImageShares:
 
 
 def outline(image: NDArray[Any]) -> Floats:
-    """Give the box (4,) that an image (H, W, ...) fills."""
+    """Return the box (4,) that an image (H, W, ...) fills."""
     rows, columns = image.shape[:2]
     return np.array([-0.5, -0.5, columns, rows])
 
@@ -66,12 +66,12 @@ def within_image(box: Floats, width_px: int, height_px: int) -> Floats:
 
 
 def area(box: Floats) -> Floats:
-    """Give the areas (...) [px^2] of boxes (..., 4)."""
+    """Return the areas (...) [px^2] of boxes (..., 4)."""
     return np.asarray(box[..., 2] * box[..., 3])
 
 
 def intersection(a: Floats, b: Floats, around_px: float = math.inf) -> Floats:
-    """Give the areas (...) [px^2] that boxes a (..., 4) and b (..., 4) share; leading axes broadcast.
+    """Return the areas (...) [px^2] that boxes a (..., 4) and b (..., 4) share; leading axes broadcast.
 
     Args:
         a: some boxes.
@@ -95,7 +95,7 @@ def _flat_intersection(a: Floats, b: Floats) -> Floats:
 
 
 def iou(a: Floats, b: Floats, around_px: float = math.inf) -> Floats:
-    """Give intersection over union (...) of boxes a (..., 4) and b (..., 4); leading axes broadcast.
+    """Return intersection over union (...) of boxes a (..., 4) and b (..., 4); leading axes broadcast.
 
     Symmetric, in 0..1; 1 for a box with itself, 0 where either box has no area. Arguments as of
     `intersection`.
@@ -105,7 +105,7 @@ def iou(a: Floats, b: Floats, around_px: float = math.inf) -> Floats:
 
 
 def cover(shared: Floats, whole: Floats) -> Floats:
-    """Give the shares (...) shared / whole, at most 1, and 0 where there is no whole to cover."""
+    """Return the shares (...) shared / whole, at most 1, and 0 where there is no whole to cover."""
     ratio = np.divide(shared, whole, out=np.zeros_like(shared), where=whole > 0.0)
     return np.minimum(ratio, 1.0)
 

@@ -38,7 +38,7 @@ class Mount:
 
 
 def mount_of(calibration: Calibration | None, rows: int) -> Mount:
-    """Tell how a camera sits; one of which nothing is known is level, and as the robot's own.
+    """Return how a camera sits; one of which nothing is known is level, and as the robot's own.
 
     Args:
         calibration: of the camera; None if nobody knows it.

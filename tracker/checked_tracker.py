@@ -66,7 +66,7 @@ class CheckedTracker:
 
 
 def _faults(tracks: object, cameras: Collection[str]) -> Iterator[str]:
-    """Tell what is wrong with what `update` gave, and what would be right."""
+    """Return what is wrong with what `update` gave, and what would be right."""
     if not isinstance(tracks, tuple):
         yield f"update(frame) must give a tuple of Track, got {type(tracks).__name__}"
         return
@@ -138,12 +138,12 @@ def _is_id(value: object) -> bool:
 
 
 def _is_covariance(xx: float, xy: float, yy: float) -> bool:
-    """Tell whether it is that of any error, rounding aside."""
+    """Return whether it is that of any error, rounding aside."""
     return xx >= 0.0 and yy >= 0.0 and xy * xy <= xx * yy * (1.0 + 1e-6) + 1e-12
 
 
 def _are_numbers(values: Any, count: int) -> bool:
-    """Tell whether it is a tuple of so many finite numbers."""
+    """Return whether it is a tuple of so many finite numbers."""
     if not isinstance(values, tuple) or len(values) != count:
         return False
     return all(isinstance(one, Real) and math.isfinite(one) for one in values)

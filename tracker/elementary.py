@@ -25,7 +25,7 @@ _MOST: Final = np.float32(87.0)  # whose exponential a float32 holds
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=False)
 def logarithm(x: np.float32) -> np.float32:
-    """Give the natural logarithm of a positive number, not subnormal, to 3e-7 of it and 1e-7.
+    """Return the natural logarithm of a positive number, not subnormal, to 3e-7 of it and 1e-7.
 
     Of x = 2**e m, with m about 1, that of m is twice the inverse hyperbolic tangent of (m - 1) / (m + 1).
     """
@@ -43,7 +43,7 @@ def logarithm(x: np.float32) -> np.float32:
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=False)
 def exponential(x: np.float32) -> np.float32:
-    """Give e**x to a relative 1.5e-7, for x from -87 to 87; beyond, that of the nearer limit.
+    """Return e**x to a relative 1.5e-7, for x from -87 to 87; beyond, that of the nearer limit.
 
     It is 2**n, which is only an exponent, times the exponential of what is left, by its series.
     """
@@ -60,7 +60,7 @@ def exponential(x: np.float32) -> np.float32:
 
 @njit(cache=True, nogil=True, fastmath=False)
 def exponentials(x: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Give the exponential (N,) of each number (N,)."""
+    """Return the exponential (N,) of each number (N,)."""
     result = np.empty_like(x)
     for i in range(len(x)):
         result[i] = exponential(x[i])

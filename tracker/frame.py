@@ -40,7 +40,7 @@ class Calibration(Protocol):
         ...
 
     def rays(self, pixels: Floats) -> Floats:
-        """Give the directions (N, 3) in the robot's frame in which pixels (N, 2) look, of any length."""
+        """Return the directions (N, 3) in the robot's frame in which pixels (N, 2) look, of any length."""
         ...
 
 
@@ -83,7 +83,7 @@ class PinholeCalibration:
         return np.asarray(seen[:, :2] / depth, np.float64)
 
     def rays(self, pixels: Floats) -> Floats:
-        """Give the directions (N, 3) in the robot's frame in which pixels (N, 2) look; their depth is 1."""
+        """Return the directions (N, 3) in the robot's frame in which pixels (N, 2) look; their depth is 1."""
         columns = self._robot_from_pixel.T
         return np.asarray(pixels @ columns[:2] + columns[2], np.float64)
 
@@ -248,7 +248,7 @@ class FreshImages:
         self._way: Odometry | None = Odometry()
 
     def of(self, frame: Frame) -> Frame | None:
-        """Give a frame whose odometry counts from the camera's last image on; None without a new image.
+        """Return a frame whose odometry counts from the camera's last image on; None without a new image.
 
         An image equal to the last one is no new one: the noise of a camera never repeats.
         """
@@ -261,7 +261,7 @@ class FreshImages:
 
 
 def joined(first: Odometry | None, then: Odometry | None) -> Odometry | None:
-    """Give the motion that two after each other make; None if one is unknown."""
+    """Return the motion that two after each other make; None if one is unknown."""
     if first is None or then is None:
         return None
     return Odometry.from_motion(first.motion.compose(then.motion))

@@ -31,7 +31,7 @@ _LAYERS, _FRACTION_BITS = 256, 23
 
 
 def _ziggurat() -> tuple[Floats, NDArray[np.uint32], Floats]:
-    """Give of each layer (256,) its edge, its share within the next one, and its height.
+    """Return for each layer (256,) its edge, its share within the next one, and its height.
 
     Edge and share are told for 23 bits: all layers have the same area, that of the lowest with the tail.
     """
@@ -135,7 +135,7 @@ _next_word = cast(Callable[[int, int], np.uint32], intrinsic(_next))
 
 @lru_cache(maxsize=16)
 def source_of(rng: np.random.Generator) -> tuple[int, int]:
-    """Give the addresses of the function by which a generator draws 32 bits, and of its state.
+    """Return the addresses of the function by which a generator draws 32 bits, and of its state.
 
     A kernel that takes the generator itself spends as long on finding them as on a thousand numbers. They
     are remembered with the generator, which therefore lives on.

@@ -57,7 +57,7 @@ class PanoramaCalibration:
         return np.asarray(math.tau * (turns - np.rint(turns)), np.float64)
 
     def depression(self, rows: Floats) -> Floats:
-        """Tell how far below the horizon rows (N,) look [rad]."""
+        """Return how far below the horizon rows (N,) look [rad]."""
         return np.asarray(self.axis_rad - np.arctan((self.height - 0.5 - rows) / self.focal_px), np.float64)
 
     def project(self, points_m: Floats) -> Floats:
@@ -78,7 +78,7 @@ class PanoramaCalibration:
         return self.height - 0.5 - self.focal_px * math.tan(above) if is_before else math.nan
 
     def rays(self, pixels: Floats) -> Floats:
-        """Give the unit directions (N, 3) in the robot's frame in which pixels (N, 2) look.
+        """Return the unit directions (N, 3) in the robot's frame in which pixels (N, 2) look.
 
         They start on the ring, which `ring_radius_m` says how to find from `position_m`.
         """

@@ -41,7 +41,7 @@ class Introducible(Protocol):
     """A tracker that can be told where a person is."""
 
     def introduce(self, box: Box) -> None:
-        """Tell that a person is at this box [px] of the thermal image in the next frame."""
+        """Report that a person is at this box [px] of the thermal image in the next frame."""
         ...
 
 
@@ -81,9 +81,9 @@ def explanation_of(tracker: Tracker) -> object:
 
 
 def knows_again(tracker: Tracker) -> bool:
-    """Tell whether a tracker knows people again by itself, however long they were away: its `knows_again`.
+    """Return whether a tracker knows people again by itself, however long they were away: its `knows_again`.
 
-    Then whoever has a new number is somebody else. None has it unless it says so.
+    Then whoever has a new number is another person. None has it unless it says so.
     """
     return bool(getattr(tracker, "knows_again", False))
 

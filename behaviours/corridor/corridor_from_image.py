@@ -131,7 +131,7 @@ def _lines(grey: Image, config: ImageCorridorConfig) -> Points:
 
 
 def _crossing(lines: Points, row: float) -> Points:
-    """Give the column [px] at which each line, drawn on, crosses a row [px]: (N,)."""
+    """Return the column [px] at which each line, drawn on, crosses a row [px]: (N,)."""
     u0, v0, u1, v1 = lines.T
     columns: Points = u0 + (row - v0) * (u1 - u0) / (v1 - v0)
     return columns

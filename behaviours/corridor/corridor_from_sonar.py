@@ -70,7 +70,7 @@ def without_walls(percept: Percept, walls: Points, tolerance_m: float, beam: Bea
 
 
 def side_walls(corridor: Corridor) -> Points:
-    """Give direction [rad] and distance [m] of the left and the right wall: (2, 2), robot frame."""
+    """Return direction [rad] and distance [m] of the left and the right wall: (2, 2), robot frame."""
     half = corridor.width_m / 2.0
     return np.array(
         [
@@ -156,7 +156,7 @@ def corridor_from_sonar(
 
 
 def _headings(expected: Corridor | None, config: SonarCorridorConfig) -> Points:
-    """Give the headings to try: (K,) [rad]."""
+    """Return the headings to try: (K,) [rad]."""
     middle = 0.0 if expected is None else expected.heading_rad
     reach = config.search_rad if expected is None else config.near_rad
     steps = round(reach / config.step_rad)
@@ -213,7 +213,7 @@ SIDEWAYS_M = 0.113
 
 
 def mounts(angle_rad: Points) -> Points:
-    """Give the sonars' places by their directions [rad]: (N, 2) [m], x forward, y left.
+    """Return the sonars' places by their directions [rad]: (N, 2) [m], x forward, y left.
 
     Of two units that look the same way, which only those do that look sideways, the first sits fore.
 
@@ -254,7 +254,7 @@ class EndConfig:
 
 
 def wall_ahead(percept: Percept, corridor: Corridor, config: EndConfig) -> float | None:
-    """Give the distance [m] along the corridor to a wall across it; None if there is none near."""
+    """Return the distance [m] along the corridor to a wall across it; None if there is none near."""
     distances, can_be = wall_distances(percept, np.array([-corridor.heading_rad]), config.beam)
     to_sides, can_be_side = wall_distances(percept, side_walls(corridor)[:, 0], config.side_beam)
     is_side = can_be_side & (np.abs(to_sides - side_walls(corridor)[:, 1:]) < config.agree_m)

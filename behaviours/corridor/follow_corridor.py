@@ -159,7 +159,7 @@ class FollowCorridor:
         return self.state.reason
 
     def command(self, percept: Percept) -> Command:
-        """Give the command for this sight."""
+        """Return the command for this sight."""
         self.state, command = follow_corridor(self.state, percept, self._config)
         return command
 

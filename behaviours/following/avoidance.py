@@ -37,7 +37,7 @@ WIDELY = AvoidConfig(half_width_m=0.75, reach_m=1.7, fade_m=0.5, widest_rad=math
 
 
 def swerve(bearing_rad: float, points: Points, config: AvoidConfig) -> float:
-    """Give how far beside the goal [rad, positive left] to aim, so that the lane ahead is free.
+    """Return how far beside the goal [rad, positive left] to aim, so that the lane ahead is free.
 
     An echo wants the aim off its own direction by asin(half width / distance). That aim is taken which leaves
     the least to be wanted, weighed against how far off the goal it is; between equal echoes on both sides the
@@ -60,7 +60,7 @@ def swerve(bearing_rad: float, points: Points, config: AvoidConfig) -> float:
     return float(aims[np.argmin(cost)])
 
 
-# Making room for somebody who comes back: neither in the way, nor so near that no camera shows who it is.
+# Making room for a person who comes back: neither in the way, nor so near that no camera shows who it is.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,13 +68,13 @@ class ClearanceConfig:
     """How much room is made.
 
     Attributes:
-        ahead_m: [m] way ahead that is to be free for somebody who was near when last seen ...
+        ahead_m: [m] way ahead that is to be free for a person who was near when last seen ...
         close_m: [m] ... and for anybody who was lost ...
         half_width_m: [m] ... so far to either side.
         longest_s: [s] since the person was seen, after which the robot goes on otherwise.
         speed_m_s: [m/s] of backing off, and of driving out of a narrow place.
         cramped_m: [m] from the origin within which something makes a place narrow ...
-        close_by_m: [m] ... and once the robot has gone for farthest_m: somebody may come along with it.
+        close_by_m: [m] ... and once the robot has gone for farthest_m: a person may come along with it.
         free_m: [m] way ahead that leads out of it.
         farthest_m: [m] see above.
     """
@@ -91,7 +91,7 @@ class ClearanceConfig:
 
 
 def is_person_near(around: Points, config: ClearanceConfig, *, was_near: bool) -> bool:
-    """Tell whether something is close ahead.
+    """Return whether something is close ahead.
 
     Args:
         around: (N, 2) [m] what the sonars hear, robot frame.
@@ -102,7 +102,7 @@ def is_person_near(around: Points, config: ClearanceConfig, *, was_near: bool) -
 
 
 def is_way_out(around: Points, config: ClearanceConfig, gone_m: float) -> bool:
-    """Tell whether the robot stands in a narrow place, or beside somebody, and heads for a wide one.
+    """Return whether the robot stands in a narrow place, or beside a person, and heads for a wide one.
 
     Args:
         around: (N, 2) [m] what the sonars hear, robot frame.

@@ -68,7 +68,7 @@ def recognise(
 
 
 def company(people: tuple[SeenPerson, ...], target: int, others: frozenset[int]) -> frozenset[int]:
-    """Add everybody else who is seen to those who are somebody else than the followed person.
+    """Add everybody else who is seen to those who are another person than the followed person.
 
     That is true beside the person, and also soon after it was lost, of those who are where it cannot be.
     """
@@ -78,7 +78,7 @@ def company(people: tuple[SeenPerson, ...], target: int, others: frozenset[int])
 def _fits(
     person: SeenPerson, target: Target, gap_s: float, config: FollowIdentityConfig, view: TargetConfig
 ) -> bool:
-    """Tell whether somebody is where the target should be by now, and about as tall."""
+    """Return whether a person is where the target should be by now, and about as tall."""
     size = abs(math.log(person.height / target.height))
     return (
         _off(person, target, view) < config.off_rad + config.off_rad_s * gap_s

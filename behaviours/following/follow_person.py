@@ -130,7 +130,7 @@ class FollowState:
         reason: why it is in this mode.
         time_s: [s] of the last sound sight.
         target: the followed person, None before anybody was seen and after it was given up.
-        others: tracks that were seen beside the followed person, and so are somebody else.
+        others: tracks that were seen beside the followed person, and so are another person.
         walking_m_s: [m/s] learnt speed at which the person walks away.
         side: +1 (left) or -1, to which to search: where the person was last seen to go.
         has_left: whether the person was leaving the image sideways when it was last seen.
@@ -180,7 +180,7 @@ class FollowPerson:
         return None if target is None or self.state.mode != "follow" else target.id
 
     def command(self, percept: Percept) -> Command:
-        """Give the command for this sight."""
+        """Return the command for this sight."""
         self.state, command = follow(self.state, percept, self._config)
         return command
 
@@ -215,7 +215,7 @@ def follow(state: FollowState, percept: Percept, config: FollowConfig) -> tuple[
 
 
 def distance_error(height: float, config: FollowConfig) -> float:
-    """Give how much too far the person is, as a share of the distance to keep; below 0 is too near."""
+    """Return how much too far the person is, as a share of the distance to keep; below 0 is too near."""
     return config.keep_height / height - 1.0
 
 
@@ -278,7 +278,7 @@ def _seen_at(
 def _patience(
     state: FollowState, target: Target, percept: Percept, config: FollowConfig
 ) -> tuple[str, float]:
-    """Tell how the person was lost, and how long [s] to wait for it where the robot is."""
+    """Return how the person was lost, and how long [s] to wait for it where the robot is."""
     if state.has_left:
         return f"track {target.id} left the image", config.wait_s
     front = hider(percept.people, target, config.hidden, config.target)
@@ -315,7 +315,7 @@ def _wait(state: FollowState, target: Target, why: str, config: FollowConfig) ->
 
 
 def _is_too_near(target: Target, gap_s: float, percept: Percept, config: FollowConfig) -> bool:
-    """Tell whether the person came too near to be seen: something is close ahead now."""
+    """Return whether the person came too near to be seen: something is close ahead now."""
     was_near = target.height >= config.near_height
     return gap_s <= config.room.longest_s and is_person_near(echoes(percept), config.room, was_near=was_near)
 
@@ -356,7 +356,7 @@ def _go_after(
 
 
 def _turn(target: Target, speed: float, percept: Percept, config: FollowConfig) -> float:
-    """Give the turn rate [rad/s] that faces the person, or past what stands beside the way there."""
+    """Return the turn rate [rad/s] that faces the person, or past what stands beside the way there."""
     # A robot that stands need not avoid anything, and looks straight at the person.
     share = min(max(speed, 0.0) / config.swerve_from_m_s, 1.0)
     aside = share * swerve(target.bearing_rad, echoes(percept), config.avoid)
@@ -364,12 +364,12 @@ def _turn(target: Target, speed: float, percept: Percept, config: FollowConfig) 
 
 
 def _facing_turn(target: Target, config: FollowConfig) -> float:
-    """Give the turn rate [rad/s] that brings the person to the middle of the image and keeps it there."""
+    """Return the turn rate [rad/s] that brings the person to the middle of the image and keeps it there."""
     return config.facing_gain * target.bearing_rad + config.drift_share * target.drift_rad_s
 
 
 def _speed(target: Target, walking_m_s: float, config: FollowConfig) -> float:
-    """Give the speed [m/s]: forwards when too far, none in between, slowly backwards when much too near."""
+    """Return the speed [m/s]: forwards when too far, none in between, slowly backwards when much too near."""
     if target.height >= config.near_height:
         beyond = target.height / config.near_height - 1.0
         return -min(config.back_off_gain * beyond, config.back_off_m_s)
@@ -380,7 +380,7 @@ def _speed(target: Target, walking_m_s: float, config: FollowConfig) -> float:
 
 
 def _facing_share(bearing_rad: float, config: FollowConfig) -> float:
-    """Give the share of the speed that the bearing allows: 1 ahead, 0 where the robot should only turn."""
+    """Return the share of the speed that the bearing allows: 1 ahead, 0 where the robot should only turn."""
     left = config.turn_only_rad - abs(bearing_rad)
     return min(max(left / (config.turn_only_rad - config.full_speed_rad), 0.0), 1.0)
 

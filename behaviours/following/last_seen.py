@@ -87,7 +87,7 @@ def on_the_way(place: LastPlace, percept: Percept, step_s: float) -> LastPlace:
 
 
 def end_of_way(place: LastPlace, around: Points, config: PlaceConfig) -> str:
-    """Tell why the robot goes no farther; empty while it does.
+    """Return why the robot goes no farther; empty while it does.
 
     Args:
         place: where it goes.
@@ -106,7 +106,7 @@ def end_of_way(place: LastPlace, around: Points, config: PlaceConfig) -> str:
 
 
 def _is_narrow(around: Points, config: PlaceConfig) -> bool:
-    """Tell whether a way leads on ahead, and is narrow."""
+    """Return whether a way leads on ahead, and is narrow."""
     x, y = around[(around[:, 0] > 0.0) & (around[:, 0] < config.narrow_to_m)].T
     if np.any(np.abs(y) < config.lane_m):
         return False

@@ -98,9 +98,9 @@ class OccluderConfig:
     """Who can hide whom.
 
     Attributes:
-        behind_rad: [rad] farthest off the person that somebody who hides it can be.
+        behind_rad: [rad] farthest off the person that a person who hides it can be.
         nearer: least ratio of that one's apparent height to the person's.
-        half_width: [rad per image height] half the angle that somebody covers, by the apparent height.
+        half_width: [rad per image height] half the angle that a person covers, by the apparent height.
     """
 
     behind_rad: float = math.radians(9.0)

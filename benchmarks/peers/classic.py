@@ -119,20 +119,20 @@ class _Parts:
             yield Detection(place, timestamp=time, measurement_model=self._measure)
 
     def jpda(self) -> Any:
-        """Give the joint probabilistic data association, with an efficient tree of hypotheses."""
+        """Return the joint probabilistic data association, with an efficient tree of hypotheses."""
         from stonesoup.dataassociator.probability import JPDAwithEHM
 
         return JPDAwithEHM(self._chances())
 
     def mht(self) -> Any:
-        """Give the multi-frame assignment."""
+        """Return the multi-frame assignment."""
         from stonesoup.dataassociator.mfa import MFADataAssociator
         from stonesoup.hypothesiser.mfa import MFAHypothesiser
 
         return MFADataAssociator(MFAHypothesiser(self._chances()), slide_window=_WINDOW)
 
     def initiator(self) -> Any:
-        """Give what begins tracks: as many detections as it takes, each the nearest to the one before."""
+        """Return what begins tracks: as many detections as it takes, each the nearest to the one before."""
         from stonesoup.dataassociator.neighbour import GNNWith2DAssignment
         from stonesoup.deleter.time import UpdateTimeStepsDeleter
         from stonesoup.hypothesiser.distance import DistanceHypothesiser
@@ -165,7 +165,7 @@ class _Parts:
         return Track([GaussianMixture([one])])
 
     def posterior(self, hypotheses: Any, time: datetime, *, is_joint: bool) -> Any:
-        """Give a track's state: one Gaussian of all hypotheses, or the mixture of those that are left."""
+        """Return a track's state: one Gaussian of all hypotheses, or the mixture of those that are left."""
         from stonesoup.functions import gm_reduce_single
         from stonesoup.types.array import StateVectors
         from stonesoup.types.update import GaussianMixtureUpdate, GaussianStateUpdate
@@ -188,7 +188,7 @@ class _Parts:
 
 
 def _mean(state: Any) -> NDArray[np.float64]:
-    """Give the mean (6,) of a Gaussian, or of the likeliest of several."""
+    """Return the mean (6,) of a Gaussian, or of the likeliest of several."""
     components = getattr(state, "components", None)
     best = state if components is None else max(components, key=lambda one: one.weight)
     return np.asarray(best.state_vector, np.float64).reshape(-1)

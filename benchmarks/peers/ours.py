@@ -18,7 +18,7 @@ class Contestant(Protocol):
     """Whatever turns frames into boxes with ids."""
 
     def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
-        """Give the boxes (N, 4) of the next frame, left, top, width, height [px], and their ids."""
+        """Return the boxes (N, 4) of the next frame, left, top, width, height [px], and their ids."""
         ...
 
 

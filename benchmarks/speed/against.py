@@ -79,7 +79,7 @@ def _speeds(checkout: Path) -> list[float]:
 )
 @click.option("--rounds", default=3, show_default=True, help="How often both are timed.")
 def main(other: Path, rounds: int) -> None:
-    """Tell how many times as fast as in OTHER_CHECKOUT two people are run here."""
+    """Return how many times as fast as in OTHER_CHECKOUT two people are run here."""
     gain = gain_over(other, rounds)
     print(f"closed loop, two people: {gain.loop:.2f} times as fast")
     print(f"with tables, contact sheet and recording: {gain.run:.2f} times as fast")

@@ -144,7 +144,7 @@ def _crowd_time(film: Sequence[Frame], people: int) -> CrowdTime:
 
 
 def people_in(tracker: ContourTracker) -> list[int]:
-    """Give the ids of the people who have a filter."""
+    """Return the ids of the people who have a filter."""
     return [key for key in tracker.explanation.particles if key != DETECTOR_KEY]
 
 

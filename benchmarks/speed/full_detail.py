@@ -111,7 +111,7 @@ def in_detail(name: str, detail: str) -> Scenario:
 
 
 def _commands(scenario: Scenario, instants: int | None) -> list[Command]:
-    """Give the robot's commands in a scenario, so that both worlds are seen from the same places."""
+    """Return the robot's commands in a scenario, so that both worlds are seen from the same places."""
     config = scenario.world(SEED)
     frames = round(scenario.duration_s * config.control_hz) if instants is None else instants + COMPILED
     with World(config) as world:

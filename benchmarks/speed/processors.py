@@ -72,7 +72,7 @@ def _row(track: Track) -> tuple[object, ...]:
 @click.option("--trackers", default=",".join(TRACKERS), show_default=True, help="Which, by name.")
 @click.option("--film", "shot", type=click.Path(path_type=Path), hidden=True)
 def main(trackers: str, shot: Path | None) -> None:
-    """Tell whether tracks are the same, but for their places on the floor; exit with 1 if not."""
+    """Return whether tracks are the same, but for their places on the floor; exit with 1 if not."""
     if shot is not None:
         click.echo(json.dumps(_track(frames_of(open_film(shot)), trackers)))
         return

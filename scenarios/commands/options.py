@@ -145,7 +145,7 @@ class FieldsCommand(click.Command):
 def options_of(
     target: str, *fields: str, into: str = "given", is_optional: bool = False, **meanings: str
 ) -> Callable[[Command], Command]:
-    """Give a `FieldsCommand` one option for each of these fields of a dataclass.
+    """Return a `FieldsCommand` one option for each of these fields of a dataclass.
 
     The command takes them as one `GivenOptions`.
 

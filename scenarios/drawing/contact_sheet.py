@@ -71,7 +71,7 @@ def cut(draw: ImageDraw.ImageDraw, text: str, letters: ImageFont.FreeTypeFont, r
 
 @cache
 def font(size: int, *, is_bold: bool = False) -> ImageFont.FreeTypeFont:
-    """Give the letters of all sheets."""
+    """Return the letters of all sheets."""
     name = "DejaVuSans-Bold.ttf" if is_bold else "DejaVuSans.ttf"
     return ImageFont.truetype(Path(matplotlib.get_data_path(), "fonts", "ttf", name), size)
 

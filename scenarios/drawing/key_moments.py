@@ -202,7 +202,7 @@ def _always(text: str, moment: KeyMoment) -> str:  # noqa: ARG001
 
 
 def _hidden(person: PersonTruth, other: str, moment: KeyMoment) -> str:
-    """Say how much one hides of another at a moment, which may be shown instead of the worst one."""
+    """Return how much one hides of another at a moment, which may be shown instead of the worst one."""
     shown = next((one for one in moment.people if one.name == person.name), person)
     hidden = shown.hidden_inside(other)
     if hidden > TOTAL_STARTS:
@@ -211,7 +211,7 @@ def _hidden(person: PersonTruth, other: str, moment: KeyMoment) -> str:
 
 
 def _further(tick: Tick, cameras: Mapping[str, CameraConfig]) -> Iterator[Shot]:
-    """Give what cameras took beside the two whose images everybody has."""
+    """Return what cameras took beside the two whose images everybody has."""
     for name in (name for name in tick.truths if name not in ("thermal", "colour")):
         senses, truth = tick.observation, tick.truths[name]
         image = shown_to_people(senses.images, name, cameras[name])
@@ -234,7 +234,7 @@ def _moment(tick: Tick, further: tuple[Shot, ...]) -> KeyMoment:
 
 
 def _with_words(moment: KeyMoment, words: tuple[str, ...]) -> KeyMoment:
-    """Say what happened, or else who is there."""
+    """Describe what happened, or else who is there."""
     if not words:
         seen = sum(person.visible_px > 0 for person in moment.people)
         sure = sum(track.status is not Status.TENTATIVE for track in moment.tracks)

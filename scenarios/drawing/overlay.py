@@ -37,7 +37,7 @@ Line = NDArray[np.float64]  # (K, 2) [px] in the thermal image
 
 @singledispatch
 def lines_of(explanation: object, points: int = 48) -> Mapping[int, tuple[Line, ...]]:  # noqa: ARG001
-    """Give lines of so many points around people, by track id; none for a kind that nobody can draw.
+    """Return lines of so many points around people, by track id; none for a kind that nobody can draw.
 
     A new kind of explanation registers here how it is drawn on still pictures.
     """
@@ -248,7 +248,7 @@ def box_parts(box: Box, camera: CameraGeometry) -> tuple[Box, ...]:
 
 
 def people_parts(people: Iterable[PersonTruth], camera: CameraGeometry) -> list[PersonTruth]:
-    """Give people as they are drawn: who stands across the seam twice, with a part of the box each time."""
+    """Return people as they are drawn: who stands across the seam twice, with a part of the box each time."""
     return [
         replace(person, box=part)
         for person in people
@@ -258,7 +258,7 @@ def people_parts(people: Iterable[PersonTruth], camera: CameraGeometry) -> list[
 
 
 def track_parts(tracks: Iterable[Track], name: str, camera: CameraGeometry) -> list[Track]:
-    """Give tracks with a box in the camera of a name as they are drawn, as in `people_parts`."""
+    """Return tracks with a box in the camera of a name as they are drawn, as in `people_parts`."""
     return [
         replace(track, boxes={**track.boxes, name: part})
         for track in tracks
@@ -268,7 +268,7 @@ def track_parts(tracks: Iterable[Track], name: str, camera: CameraGeometry) -> l
 
 
 def box_corners(box: Box) -> NDArray[np.float64]:
-    """Give the closed line (5, 2) around a box."""
+    """Return the closed line (5, 2) around a box."""
     left, top, right, bottom = corners(box)
     return np.array([[left, top], [right, top], [right, bottom], [left, bottom], [left, top]])
 

@@ -28,7 +28,7 @@ _ARRIVED_M = 0.05
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Way:
-    """Where somebody undisturbed is: times (T,) [s], places (T, 2) [m]; and whether that one then leaves."""
+    """Where a person undisturbed is: times (T,) [s], places (T, 2) [m]; and whether that one then leaves."""
 
     times: NDArray[np.float64]
     places: NDArray[np.float64]
@@ -57,7 +57,7 @@ def draw_person(axes: Axes, labels: Labels, person: PersonConfig, end_s: float, 
 
 
 def _presence(person: PersonConfig, way: _Way) -> str:
-    """Say when somebody comes; of who walks, it stands at the end of the way when the person leaves."""
+    """Return when a person comes; of who walks, it stands at the end of the way when the person leaves."""
     enters = f"from {person.enter_s:.1f}" if person.enter_s > 0.0 else ""
     leaves = f"until {person.leave_s:.1f}" if way.leaves and not way.walks else ""
     return f", {' '.join(filter(None, (enters, leaves)))} s" if enters or leaves else ""

@@ -48,7 +48,7 @@ def check_size(size: tuple[int, int]) -> None:
 
 
 def shown_cameras(cameras: Sequence[str] | None, observation: str, robot: RobotConfig) -> tuple[str, ...]:
-    """Give the names of the cameras whose images are shown; None for all.
+    """Return the names of the cameras whose images are shown; None for all.
 
     Raises:
         BadInput: a robot has no such cameras, or the observation has no images.
@@ -65,7 +65,7 @@ def shown_cameras(cameras: Sequence[str] | None, observation: str, robot: RobotC
 
 
 def check_actions(actions: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
-    """Give the two shares of each of some actions, clipped: (G, 2).
+    """Return the two shares of each of some actions, clipped: (G, 2).
 
     Raises:
         BadInput: they have not that shape, or not all numbers are finite.

@@ -271,7 +271,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         return self._draw() if self.render_mode == "rgb_array" else None
 
     def metrics(self) -> Metrics:
-        """Give the figures of the episode so far, see `EpisodeMetrics`.
+        """Return the figures of the episode so far, see `EpisodeMetrics`.
 
         They are over the snapshot at which a run has frames; that at which the time is over is none.
 

@@ -56,7 +56,7 @@ class EpisodeMetrics:
         self._noted.append((scenes, row, track))
 
     def metrics(self) -> Metrics:
-        """Give the groups `following`, `corridor` and `comfort` of a run's metrics.json, or NaN."""
+        """Return the groups `following`, `corridor` and `comfort` of a run's metrics.json, or NaN."""
         worlds = np.concatenate([scenes.worlds[row : row + 1] for scenes, row, _ in self._noted])
         borders = zip(worlds["first"].tolist(), worlds["end"].tolist(), strict=True)
         people = np.concatenate(
@@ -82,7 +82,7 @@ class EpisodeMetrics:
 
 
 def track_in(scenes: Scenes, row: int, tracks: Iterable[Track], box: Box | None, before: int) -> int:
-    """Give the number of the track that lies on the person to follow in one world, 0 for none.
+    """Return the number of the track that lies on the person to follow in one world, 0 for none.
 
     Args:
         scenes: of many worlds.
@@ -219,7 +219,7 @@ class LiveEpisodes:
     def _compare(
         self, numbers: Numbers, scenes: Scenes, before: NDArray[np.uint64], now: NDArray[np.uint64]
     ) -> list[Events]:
-        """Give what is new since the snapshot before; `before` and `now` are who was and is seen."""
+        """Return what is new since the snapshot before; `before` and `now` are who was and is seen."""
         touching = self.records["is_touching"]
         is_new = (before != now) | touching[numbers] | scenes.worlds["is_touching"]
         touching[numbers] = scenes.worlds["is_touching"]

@@ -57,7 +57,7 @@ class Normaliser:
         )
 
     def space(self, raw: spaces.Space[Arrays]) -> spaces.Space[Arrays]:
-        """Give the space of what comes out for that of what goes in."""
+        """Return the space of what comes out for that of what goes in."""
         lowest = {
             "sonar": np.zeros(raw["sonar"].shape, np.float32),  # type: ignore[index]  # it is a Dict
             "odometry": -np.ones(len(self._odometry), np.float32),

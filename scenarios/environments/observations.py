@@ -114,7 +114,7 @@ _FASTEST: Final = 10.0
 
 
 def observation_space(kind: str, robot: RobotConfig, shown: Sequence[str]) -> spaces.Space[Arrays]:
-    """Give the space of one of `KINDS`.
+    """Return the space of one of `KINDS`.
 
     `sonar` is (16,) [m], counted from the left to the front and round; `odometry` is (6,): x, y [m] from the
     start in its frame, cosine and sine of the heading since the start, forward speed [m/s], turn rate
@@ -140,7 +140,7 @@ def observation_space(kind: str, robot: RobotConfig, shown: Sequence[str]) -> sp
 
 
 def read_sensors(snapshot: Snapshot, starts: Array) -> Arrays:
-    """Give what every observation has, of G worlds: sonar (G, 16) and odometry (G, 6).
+    """Return what every observation has, of G worlds: sonar (G, 16) and odometry (G, 6).
 
     Args:
         snapshot: of the worlds.
@@ -152,7 +152,7 @@ def read_sensors(snapshot: Snapshot, starts: Array) -> Arrays:
 
 
 def observe_tracks(tracks: Iterable[Track], robot: RobotConfig) -> NDArray[np.float32]:
-    """Give what the tracker is sure of in one world: (35,)."""
+    """Return what the tracker is sure of in one world: (35,)."""
     thermal = calibrations_of(robot.cameras)[THERMAL]
     rows = [
         (track.id, *box, track.confidence, track.status is not Status.TOTALLY_OCCLUDED)
@@ -164,7 +164,7 @@ def observe_tracks(tracks: Iterable[Track], robot: RobotConfig) -> NDArray[np.fl
 
 
 def observe_truth(scenes: Scenes, robot: RobotConfig) -> NDArray[np.float32]:
-    """Give what a perfect tracker would say in G worlds, everybody within the image: (G, 35)."""
+    """Return what a perfect tracker would say in G worlds, everybody within the image: (G, 35)."""
     people = scenes.people
     seen, sure = people["free_ray_share"] > SEEN, np.ones(len(people))
     rows = np.column_stack([people["id"], people["box"], sure, seen])

@@ -80,7 +80,7 @@ def check_options(options: Mapping[str, Any], *, draws_worlds: bool = False) -> 
 
 
 def world_of(options: Mapping[str, Any]) -> Distribution | None:
-    """Give what random worlds are drawn from by these options; None for what they are always drawn from.
+    """Return what random worlds are drawn from by these options; None for what they are always drawn from.
 
     Raises:
         BadInput: there is no such name, or its value is beyond the limits.

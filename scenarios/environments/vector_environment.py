@@ -147,7 +147,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
             raise BadInput("environment: is closed; make another one")
 
     def _seeds(self, seed: int | Sequence[int | None] | None) -> list[int | None]:
-        """Give each world's seed."""
+        """Return each world's seed."""
         if seed is None:
             return [None] * self.num_envs
         if isinstance(seed, int | np.integer):

@@ -31,7 +31,7 @@ class WrittenController:
         self._time_s = 0.0
 
     def __call__(self, observation: Arrays) -> NDArray[np.float32]:
-        """Give the action (2,) for an observation with `tracks`; called once for every step."""
+        """Return the action (2,) for an observation with `tracks`; called once for every step."""
         rows = observation["tracks"].reshape(-1, len(COLUMNS)).tolist()
         speed, turn_rate = observation["odometry"][4:].tolist()
         percept = Percept(

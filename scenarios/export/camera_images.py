@@ -148,7 +148,7 @@ def from_corner(box: Box | None) -> list[float] | None:
 def keypoints_from_corner(
     joints_px: Sequence[Sequence[float]], is_visible: Sequence[bool], size: tuple[int, int]
 ) -> list[Keypoint]:
-    """Give u, v and 2 for a joint that is seen, 1 for a hidden one, and zeros for one outside the image.
+    """Return u, v and 2 for a joint that is seen, 1 for a hidden one, and zeros for one outside the image.
 
     Args:
         joints_px: (17, 2) u, v from the middle of the first pixel; NaN behind the camera.
@@ -188,7 +188,7 @@ def write_label_images(runs: Sequence[FinishedRun], folder: Path, play: Play) ->
 
 
 def label_images(truth: Truth) -> dict[str, Stored]:
-    """Give what is true of each pixel (H, W), by kind: numbers of 8 bits, and depth of 16 [mm]."""
+    """Return what is true of each pixel (H, W), by kind: numbers of 8 bits, and depth of 16 [mm]."""
     return dict(zip(KINDS, (truth.instance, truth.body_part, millimetres(truth.depth_m)), strict=True))
 
 

@@ -123,7 +123,7 @@ def _content(runs: Sequence[FinishedRun], camera: str, own: _Annotations) -> dic
 
 
 def annotation(person: PersonTruth, instance: NDArray[np.uint8]) -> dict[str, Any]:
-    """Describe somebody of whom at least one pixel is visible.
+    """Describe a person of whom at least one pixel is visible.
 
     Args:
         person: who.
@@ -214,7 +214,7 @@ def _video(number: int, run: FinishedRun, camera: str) -> dict[str, Any]:
 
 
 def _camera(camera: CameraGeometry) -> dict[str, Any]:
-    """Give size, what pixels see, and where a camera sits.
+    """Return size, what pixels see, and where a camera sits.
 
     Pixels of a pinhole's matrix are counted from the corner. A panorama has what `PanoramaCalibration` wants.
     """

@@ -89,7 +89,7 @@ def _check_images(run: Path) -> list[str]:
 
 
 def _look_into(folder: Path) -> _Look:
-    """Tell the shape of each image in a folder, None if it is unreadable, and whether it has one value."""
+    """Return the shape of each image in a folder, None if it is unreadable, and whether it has one value."""
     return {path.name: _look_at(path) for path in sorted(folder.glob("*.png"))}
 
 
@@ -103,7 +103,7 @@ def _plain(look: _Look) -> set[str]:
 
 
 def _faults(look: _Look, frames: Sequence[int]) -> Iterator[str]:
-    """Say what is wrong with a folder that should have the images of these frames."""
+    """Describe what is wrong with a folder that should have the images of these frames."""
     if list(look) != [image_file(frame) for frame in frames]:
         yield f"{len(look)} images for {len(frames)} frames"
     shapes = {shape for shape, _ in look.values()}

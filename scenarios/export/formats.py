@@ -39,7 +39,7 @@ FORMATS: Final = Registry(
 
 
 def takes(name: str, option: str) -> bool:
-    """Tell whether a format has an option: `camera`, `least_px` or `boxes`."""
+    """Return whether a format has an option: `camera`, `least_px` or `boxes`."""
     return option in signature(FORMATS[name]).parameters
 
 

@@ -83,13 +83,13 @@ def _write_set(name: str, sequences: _Sequences, folder: Path, play: Play, boxes
 
 
 def tracks_text(shots: OneCamera) -> str:
-    """Give the boxes of the tracker in a camera's images."""
+    """Return the boxes of the tracker in a camera's images."""
     lines = shots.tracks_file.read_text(encoding="utf-8").splitlines()
     return "".join(f"{','.join(cells)}\n" for cells in _numbered(shots, lines))
 
 
 def gt_text(shots: OneCamera, boxes: BoxKind = BoxKind.TORSO) -> str:
-    """Give the truth in a camera's images, whomever our own scores leave out marked as a distractor.
+    """Return the truth in a camera's images, whomever our own scores leave out marked as a distractor.
 
     These are people nearer than 3 m or farther than 10 m, and those of whom nothing is visible.
     """
@@ -98,7 +98,7 @@ def gt_text(shots: OneCamera, boxes: BoxKind = BoxKind.TORSO) -> str:
 
 
 def _truth_lines(shots: OneCamera, boxes: BoxKind) -> list[str]:
-    """Give a line for each person in each frame of the run, as its truth/gt.txt has them."""
+    """Return a line for each person in each frame of the run, as its truth/gt.txt has them."""
     text, table = truth_files(shots.run.folder, shots.name)
     if boxes is BoxKind.TORSO:
         return text.read_text(encoding="utf-8").splitlines()

@@ -59,7 +59,7 @@ def replay(run: FinishedRun) -> Iterator[Tick]:
 
 
 def counted(report: Callable[[int], None]) -> Play:
-    """Give a `replay` that reports each tick by its number, counted on over all runs."""
+    """Return a `replay` that reports each tick by its number, counted on over all runs."""
     number = count(1)
 
     def play(run: FinishedRun) -> Iterator[Tick]:
@@ -93,7 +93,7 @@ def _compare(tick: Tick, robot: Row, people: Sequence[Row], run: FinishedRun) ->
 def _aligned(
     was: NDArray[np.float64], now: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Give both with what is within the tolerance made equal."""
+    """Return both with what is within the tolerance made equal."""
     if was.shape != now.shape:
         return was, now
     is_close = np.isclose(was, now, rtol=0.0, atol=_TOLERANCE, equal_nan=True)

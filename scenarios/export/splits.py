@@ -16,7 +16,7 @@ _TURNS = ("train", "train", "train", "train", "train", "val", "test")
 
 
 def split_of(seed: int) -> str:
-    """Give the split that a seed belongs to, in every scenario: five sevenths train, one val, one test.
+    """Return the split that a seed belongs to, in every scenario: five sevenths train, one val, one test.
 
     It does not depend on how many seeds there are, so that a set that grows never moves a run.
     """
@@ -34,7 +34,7 @@ def split_file(folder: Path, split: str) -> Path:
 
 
 def lacking_splits(seeds: int) -> str:
-    """Say which splits have no run with so many seeds, and how many they need; nothing if all have one."""
+    """Return which splits have no run with so many seeds, and how many they need; nothing if all have one."""
     firsts = {split: _TURNS.index(split) for split in SPLITS if _TURNS.index(split) >= seeds}
     if not firsts:
         return ""
@@ -44,7 +44,7 @@ def lacking_splits(seeds: int) -> str:
 
 
 def read_split(run: Path) -> str | None:
-    """Tell the split of a run's folder; None if it lies in no rendered set.
+    """Return the split of a run's folder; None if it lies in no rendered set.
 
     Raises:
         BadInput: it lies in one, and in none of its splits, or in several.
@@ -81,7 +81,7 @@ def refuse_unfinished(folder: Path) -> None:
 
 
 def is_set(folder: Path) -> bool:
-    """Tell whether a folder is a rendered set, finished or not."""
+    """Return whether a folder is a rendered set, finished or not."""
     return (folder / "splits").is_dir()
 
 

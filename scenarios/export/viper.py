@@ -82,7 +82,7 @@ def write_viper(
 
 
 def whole_pixels(box: Box, width: int, height: int) -> tuple[int, int, int, int] | None:
-    """Give the pixels inside the image that a box touches: x, y, width, height; None if there are none."""
+    """Return the pixels inside the image that a box touches: x, y, width, height; None if there are none."""
     left, top, right, bottom = box[0] + 0.5, box[1] + 0.5, box[0] + box[2] + 0.5, box[1] + box[3] + 0.5
     x, y = max(int(left // 1), 0), max(int(top // 1), 0)
     w, h = min(-int(-right // 1), width) - x, min(-int(-bottom // 1), height) - y
@@ -172,7 +172,7 @@ def _object(
 
 
 def _location(attribute: ElementTree.Element, part: int, person: _Person, shots: OneCamera) -> None:
-    """Tell where in the image one part of each box is, if there is such a part."""
+    """Return where in the image one part of each box is, if there is such a part."""
     parts = {frame: box_parts(box, shots.camera) for frame, box in person.boxes.items()}
     for frame, box in ((frame, own[part]) for frame, own in parts.items() if part < len(own)):
         pixels = whole_pixels(box, *shots.size)

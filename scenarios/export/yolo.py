@@ -6,7 +6,7 @@ labels/train/RUN_000001.txt    class, and middle, width and height of the visibl
                                of poses also u, v and visibility of each keypoint
 
 Runs that lie in no rendered set have no splits: they are in images/all, which data.yaml names for training
-and for validation, as YOLO wants both. Somebody across a panorama's seam has two boxes; each keypoint goes
+and for validation, as YOLO wants both. A person across a panorama's seam has two boxes; each keypoint goes
 with the nearer one. Slivers are left out: boxes narrower or lower than 3 px, or what is asked for, as
 Ultralytics drops those up to 2 px of the images that it alters.
 """
@@ -125,7 +125,7 @@ def _eight_bits(run: FinishedRun, camera: str) -> OneCamera:
 
 
 def _settings(splits: Collection[str], has_poses: bool) -> Mapping[str, Any]:
-    """Say what data.yaml says; its folders are looked for where it lies."""
+    """Describe what data.yaml says; its folders are looked for where it lies."""
     named = {split: f"images/{split}" for split in splits}
     if EVERYTHING in named:
         named = dict.fromkeys(("train", "val"), named[EVERYTHING])
@@ -134,7 +134,7 @@ def _settings(splits: Collection[str], has_poses: bool) -> Mapping[str, Any]:
 
 
 def _mirrored() -> list[int]:
-    """Say which keypoint each one is in a mirror."""
+    """Return which keypoint each one is in a mirror."""
     swapped = str.maketrans({"<": "right_", ">": "left_"})
     marked = [name.replace("left_", "<").replace("right_", ">") for name in JOINT_NAMES]
     return [JOINT_NAMES.index(name.translate(swapped)) for name in marked]
@@ -163,7 +163,7 @@ def _lines(row: Row, shots: OneCamera, what: _Labels) -> Iterator[str]:
 
 
 def _middle(box: Box, shots: OneCamera) -> Iterator[str]:
-    """Give middle, width and height as shares of the image."""
+    """Return middle, width and height as shares of the image."""
     left, top, width, height = box
     columns, rows = shots.size
     middle = ((left + CORNER_PX + width / 2) / columns, (top + CORNER_PX + height / 2) / rows)
@@ -172,7 +172,7 @@ def _middle(box: Box, shots: OneCamera) -> Iterator[str]:
 
 
 def _poses(points: Sequence[Keypoint], part: Box, parts: Sequence[Box], shots: OneCamera) -> Iterator[str]:
-    """Give keypoints as shares of the image; of a box in two parts, those that are nearer to this one."""
+    """Return keypoints as shares of the image; of a box in two parts, those that are nearer to this one."""
     columns, rows = shots.size
     for u, v, flag in points:
         is_here = flag != OUTSIDE and min(parts, key=lambda other: _aside(u, other)) == part

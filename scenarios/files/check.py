@@ -48,7 +48,7 @@ class Ground:
     moved: MovedThings
 
     def fault(self, person: PersonSpec) -> BadInput | None:
-        """Give what is wrong with a person's path, below its key; None if it can be walked."""
+        """Return what is wrong with a person's path, below its key; None if it can be walked."""
         return self._path_fault(person.path) or self.moved.fault(person, BODY_M)
 
     def _path_fault(self, path: Sequence[Waypoint]) -> BadInput | None:

@@ -56,7 +56,7 @@ class MovedThings:
             self._boxes[mover.name] = boxes_of(own, mover.start)
 
     def fault(self, person: PersonSpec, clearance_m: float) -> BadInput | None:
-        """Give what is wrong with a person's way, below its key, because of what is moved; else None."""
+        """Return what is wrong with a person's way, below its key, because of what is moved; else None."""
         if not self.place.movers:
             return None
         for time_s, standing in _walk(person, self.duration_s):
@@ -171,7 +171,7 @@ def _check_hand(mover: Mover, action: Action, person: PersonSpec, key: Key) -> N
 
 
 def _check_free(mover: Mover, action: Action, before: list[tuple[Mover, Action]], key: Key) -> None:
-    """Refuse an action by somebody who moves another thing at that time."""
+    """Refuse an action by a person who moves another thing at that time."""
     for other, busy in before:
         if other is not mover and action.at_s < busy.ends_s and busy.at_s < action.ends_s:
             raise BadInput(

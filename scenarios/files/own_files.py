@@ -52,7 +52,7 @@ def keep_own_files(files: Mapping[str, bytes], folder: Path) -> None:
 
 
 def are_kept(files: Mapping[str, bytes], folder: Path) -> bool:
-    """Tell whether a folder has copies of these very files."""
+    """Return whether a folder has copies of these very files."""
     return all(
         (folder / name).is_file() and (folder / name).read_bytes() == content
         for name, content in files.items()

@@ -55,7 +55,7 @@ class _Variations(WalkConfig):
 @with_config(STRICT)
 @dataclass(frozen=True, kw_only=True)
 class PersonSpec(ActorConfig, _Variations):
-    """A walking person; what is left out of its looks is drawn from the seed."""
+    """A walking person; what is left out of its appearance is drawn from the seed."""
 
     height_m: Annotated[float | None, meaning_of(PersonConfig, "height_m")] = None
     sex: Annotated[Sex | None, meaning_of(PersonConfig, "sex")] = None
@@ -118,7 +118,7 @@ def resolve_person(
     Args:
         person: as in the file.
         seed: of the run.
-        can_walk: whether somebody can walk the way that it has; one that the seed moves into a wall is drawn
+        can_walk: whether a person can walk the way that it has; one that the seed moves into a wall is drawn
             again, and after many tries the file's own path is kept.
         usual_air_c: [degC] air for which people dress as is usual; None draws from the whole catalogue.
     """
@@ -144,7 +144,7 @@ def make_config(person: PersonSpec) -> PersonConfig:
 
 
 def assign_distinct_colours(people: Sequence[PersonSpec], rng: np.random.Generator) -> tuple[PersonSpec, ...]:
-    """Give each person a top and a bottom of colours that no other one wears, as far as there are colours.
+    """Return each person a top and a bottom of colours that no other one wears, as far as there are colours.
 
     Colours that a person has already stay, and are not avoided by others. With more than eight people the
     colours begin again.

@@ -37,7 +37,7 @@ class Repeat:
         self._left = iter(drive)
 
     def command(self, percept: Percept) -> Command:  # noqa: ARG002
-        """Give the next command."""
+        """Return the next command."""
         return next(self._left, STOP)
 
 
@@ -47,7 +47,7 @@ def write_drive(path: Path, drive: Sequence[Command]) -> None:
 
 
 def pack_drive(drive: Sequence[Command]) -> bytes:
-    """Give the file that holds these commands."""
+    """Return the file that holds these commands."""
     packed = BytesIO()
     rows = [asdict(command) for command in drive]
     pq.write_table(pa.Table.from_pylist(rows, schema=_STEPS), packed, compression="zstd")

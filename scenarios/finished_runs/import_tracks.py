@@ -143,7 +143,7 @@ def _about(what: TrackImport, run: FinishedRun) -> dict[str, Any]:
 
 
 def imports_by_sequence(what: TrackImport) -> list[TrackImport]:
-    """Give one import for each sequence of a folder of results, `SEQUENCE.txt` or `data/SEQUENCE.txt`.
+    """Return one import for each sequence of a folder of results, `SEQUENCE.txt` or `data/SEQUENCE.txt`.
 
     Sequences are called SCENARIO-SEED, as exports of runs call them. Each is to be left in a folder of that
     name in `what.out`.

@@ -78,7 +78,7 @@ BODY_M: Final = 0.3
 """[m] on the floor from the middle of a person, within which nothing stands by itself."""
 
 BEFORE_S: Final = 2.0
-"""[s] before something vanished, in which somebody may have stood there."""
+"""[s] before something vanished, in which a person may have stood there."""
 
 TOLD_S: Final = 60.0
 """[s] from when something vanished until it is told, at most: it may be hidden long before it is missed."""
@@ -97,7 +97,7 @@ class PersonPositions:
             self._places.popleft()
 
     def explain(self, happening: Happening) -> bool:
-        """Tell whether what is said now to have vanished was where somebody stood."""
+        """Return whether what is said now to have vanished was where a person stood."""
         if happening.change is not Change.VANISHED or happening.from_m is None:
             return False
         place = happening.from_m[:2]

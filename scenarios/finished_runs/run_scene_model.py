@@ -36,7 +36,7 @@ _DIGITS = 3
 
 
 def scene_line(scene: VistaScene) -> str:
-    """Give a frame as a line of JSON: time, who and what is there, and what happened."""
+    """Return a frame as a line of JSON: time, who and what is there, and what happened."""
     told = {
         "time_s": scene.time_s,
         "vista": scene.vista,
@@ -187,7 +187,7 @@ def true_events(run: FinishedRun) -> list[TrueEvent]:
 
 
 def _next(places: Sequence[tuple[int, Spot]], frame: int) -> Spot:
-    """Give the place of a frame, or of the next one with an image; of the last one when there is none."""
+    """Return the place of a frame, or of the next one with an image; of the last one when there is none."""
     at = bisect_left(places, frame, key=lambda one: one[0])
     return places[min(at, len(places) - 1)][1]
 

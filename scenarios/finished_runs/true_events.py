@@ -64,7 +64,7 @@ class TrueEvent:
 def matching(
     happenings: Sequence[Happening], events: Sequence[TrueEvent], first: Pose2
 ) -> Mapping[int, tuple[int, ...]]:
-    """Tell which events each happening may tell of, by their numbers; those that tell of none are left out.
+    """Return which events each happening may tell of, by their numbers; those that tell of none are left out.
 
     Args:
         happenings: in the frame of the robot's first place.
@@ -81,7 +81,7 @@ def matching(
 
 
 def _apart_m(happening: Happening, event: TrueEvent, first: Pose2) -> float:
-    """Give the distance of the nearest ends; infinity if it was at another time."""
+    """Return the distance of the nearest ends; infinity if it was at another time."""
     if not event.is_about(happening.time_s):
         return math.inf
     ends = [end[:2] for end in (happening.from_m, happening.to_m) if end is not None]
@@ -110,7 +110,7 @@ class PersonNames:
                 votes[name] = votes.get(name, 0) + 1
 
     def name(self, number: int | None) -> str | None:
-        """Give the name of a person; None for nobody, and for who was never near anybody."""
+        """Return the name of a person; None for nobody, and for who was never near anybody."""
         votes = self._votes.get(number, {}) if number is not None else {}
         return max(votes, key=lambda name: votes[name]) if votes else None
 

@@ -93,7 +93,7 @@ class Sheet:
         self._step = 1
 
     def wants(self, frame: int) -> bool:
-        """Tell whether this frame, from 1, is one to be drawn."""
+        """Return whether this frame, from 1, is one to be drawn."""
         return (frame - 1) % self._step == 0
 
     def add(self, frame: int, picture: Picture) -> None:

@@ -119,7 +119,7 @@ def _check_inside(box: Box, width: int, height: int) -> None:
 
 
 def colour_picture(picture: NDArray[Any], where: str) -> NDArray[np.uint8]:
-    """Give a picture (H, W) or (H, W, 3) in colours, (H, W, 3).
+    """Return a picture (H, W) or (H, W, 3) in colours, (H, W, 3).
 
     Raises:
         BadInput: it is not of 8 bits; `where` says which pictures those are.

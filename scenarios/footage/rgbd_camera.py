@@ -54,7 +54,7 @@ class RgbdCamera:
         ]
 
     def geometry(self, width: int, height: int) -> Pinhole:
-        """Give its geometry for pictures of a size [px]; x and y begin below its lens."""
+        """Return its geometry for pictures of a size [px]; x and y begin below its lens."""
         return Pinhole(
             width=width,
             height=height,

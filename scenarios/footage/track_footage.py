@@ -89,7 +89,7 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
 
 
 def pictures_a_second(times_s: Sequence[float]) -> float:
-    """Give the pictures a second of the later half: kernels are compiled at the first ones.
+    """Return the pictures a second of the later half: kernels are compiled at the first ones.
 
     Args:
         times_s: when the first one was begun, and when each was done.
@@ -115,7 +115,7 @@ def _truth_of(options: TrackOptions, views: Views) -> GivenTruth | None:
 
 
 def _notes_on(truth: GivenTruth | None, size: tuple[int, int]) -> list[str]:
-    """Say how truth was taken, and what looks wrong about it beside pictures of a size (H, W)."""
+    """Return how truth was taken, and what looks wrong about it beside pictures of a size (H, W)."""
     return [] if truth is None else [*truth.notes, *doubts(truth.truth, size[1], size[0])]
 
 
@@ -178,7 +178,7 @@ _ROUND: Final = {
 
 
 def outcome_lines(tracked: Tracked, options: TrackOptions) -> tuple[str, str]:
-    """Say how much was tracked, and which files show it, or what to look at if nobody was found."""
+    """Return how much was tracked, and which files show it, or what to look at if nobody was found."""
     count = f"{counted(tracked.frames, 'frame')}, {counted(tracked.tracks, 'track')}{_ROUND[tracked.boxes]}"
     sheet = options.out / "contact_sheet.png"
     if not tracked.tracks:
@@ -211,7 +211,7 @@ def _what_depth_asks(rgbd: RgbdOptions) -> str:
 
 
 def _heights(tracker: str) -> str:
-    """Say which people this tracker looks for; one who fills more than the picture is not seen whole."""
+    """Return which people this tracker looks for; one who fills more than the picture is not seen whole."""
     config = VARIANTS[tracker]
     low, high = (config.box.height_per_h * share for share in config.detector.limits.h)
     return f"at least {low:.0%}" if high >= 1 else f"{low:.0%} to {high:.0%}"

@@ -93,7 +93,7 @@ class RgbdViews:
         return frame.rgb(DEPTH_COLOUR)
 
     def about(self) -> dict[str, Any]:
-        """Say how counts became metres, and where the camera stood."""
+        """Return how counts became metres, and where the camera stood."""
         rgbd = self._rgbd
         return {
             "depth": rgbd.depth.name,
@@ -117,7 +117,7 @@ def _check_kind(options: TrackOptions) -> None:
 
 
 def _folders(options: TrackOptions, rgbd: RgbdOptions) -> tuple[tuple[Path, str], tuple[Path, str]]:
-    """Give both folders, each with what a run calls it."""
+    """Return both folders, each with what a run calls it."""
     return (options.footage, DEPTH_COLOUR), (rgbd.depth, DEPTH)
 
 
@@ -217,7 +217,7 @@ class ThermalViews:
         return show_thermal(frame.grey(THERMAL))
 
     def about(self) -> dict[str, Any]:
-        """Say what is known of the pixels."""
+        """Describe what is known of the pixels."""
         colour, radiometry = self._options.colour, self._options.radiometry
         return {
             "colour": None if colour is None else colour.name,
@@ -263,7 +263,7 @@ class Views(Protocol):
         ...
 
     def about(self) -> dict[str, Any]:
-        """Say what the pictures are, for run.json."""
+        """Describe what the pictures are, for run.json."""
         ...
 
 

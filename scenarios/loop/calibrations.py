@@ -13,14 +13,14 @@ from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 
 
 def calibrations_of(cameras: Mapping[str, CameraConfig]) -> Mapping[str, Calibration]:
-    """Give the calibration of each camera by its name; geometries without one are left out."""
+    """Return the calibration of each camera by its name; geometries without one are left out."""
     found = {name: calibration_of(config.camera) for name, config in cameras.items()}
     return {name: calibration for name, calibration in found.items() if calibration is not None}
 
 
 @singledispatch
 def calibration_of(geometry: object) -> Calibration | None:  # noqa: ARG001
-    """Tell a tracker of a camera's geometry; a new kind of geometry registers here."""
+    """Return a tracker of a camera's geometry; a new kind of geometry registers here."""
     return None
 
 

@@ -56,7 +56,7 @@ class FaultySensors:
         return self._world.cameras
 
     def truths(self) -> Mapping[str, Truth]:
-        """Tell what is true at this instant, by camera that takes an image."""
+        """Return what is true at this instant, by camera that takes an image."""
         return self._world.truths()
 
     def step(self, linear_m_s: float, angular_rad_s: float, *, is_emergency: bool = False) -> None:
@@ -64,7 +64,7 @@ class FaultySensors:
         self._world.step(linear_m_s, angular_rad_s, is_emergency=is_emergency)
 
     def _freeze(self, images: Mapping[str, NDArray[Any]], *, is_frozen: bool) -> Mapping[str, NDArray[Any]]:
-        """Give the images of now, or those that each camera gave last; these must all be read in time."""
+        """Return the images of now, or those that each camera gave last; these must all be read in time."""
         old = self._last if is_frozen else {}
         now = {name: old[name] if name in old else images[name] for name in images}
         self._last = {**self._last, **now}
@@ -105,7 +105,7 @@ class FaultyTracker:
 
 
 def active(faults: Sequence[FaultSpec], time_s: float) -> dict[str, float]:
-    """Tell which faults there are at a time, and for how long [s] each has lasted."""
+    """Return which faults there are at a time, and for how long [s] each has lasted."""
     return {
         fault.kind: time_s - fault.from_s
         for fault in faults
@@ -122,7 +122,7 @@ def _blackened(image: NDArray[Any]) -> NDArray[Any]:
 
 
 def _jumped(pose: Pose2, lasted_s: float) -> Pose2:
-    """Give an odometry that has jumped once, and again every second."""
+    """Return an odometry that has jumped once, and again every second."""
     jumps = 1 + int(lasted_s / JUMP_EVERY_S)
     return Pose2(
         pose.x + jumps * JUMP.x,

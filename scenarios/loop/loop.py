@@ -28,7 +28,7 @@ from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again
 
 
 def thermal_box(track: Track, calibration: Calibration) -> Box | None:
-    """Give a track's own box, or that of somebody who stands at its place; None for one without a place.
+    """Return a track's own box, or that of a person who stands at its place; None for one without a place.
 
     Args:
         track: whose.
@@ -95,7 +95,7 @@ class Stage(Protocol):
         ...
 
     def truths(self) -> Mapping[str, Truth]:
-        """Tell what is true at this instant, by camera that takes an image."""
+        """Return what is true at this instant, by camera that takes an image."""
         ...
 
     def step(self, linear_m_s: float, angular_rad_s: float, *, is_emergency: bool = False) -> None:
@@ -179,7 +179,7 @@ def closed_loop(world: Stage, tracker: Tracker, behaviour: Behaviour, frames: in
 def make_frame(
     observation: Observation, calibrations: Mapping[str, Calibration], before: Pose2 | None
 ) -> Frame:
-    """Give the tracker its images, and how the odometry moved since the pose before (None: unknown)."""
+    """Return the tracker its images, and how the odometry moved since the pose before (None: unknown)."""
     return Frame(
         images=observation.images,
         calibrations=calibrations,
@@ -189,7 +189,7 @@ def make_frame(
 
 
 def odometry_way(before: Pose2, now: Pose2) -> Odometry | None:
-    """Tell how the odometry moved; a jump that no wheels can make is unknown."""
+    """Return how the odometry moved; a jump that no wheels can make is unknown."""
     motion = now.relative_to(before)
     if abs(motion.heading) > FARTHEST_TURN_RAD or math.hypot(motion.x, motion.y) > FARTHEST_WAY_M:
         return None
@@ -205,7 +205,7 @@ def make_percept(
     knows_again: bool = False,
     fault: str = "",
 ) -> Percept:
-    """Give the behaviour what it steers by: confirmed tracks, sonar and the wheels' speed."""
+    """Return the behaviour what it steers by: confirmed tracks, sonar and the wheels' speed."""
     height, width = observation.images[THERMAL].shape
     people = tuple(
         see_person(track, box, width, height)

@@ -31,8 +31,8 @@ class TrackEvent:
 
     Attributes:
         kind: "detected", "occluded", "hidden", "lost" or "re-identified".
-        track: its id; of somebody who was known again under another one, the one until then.
-        by: id of the track that occludes or hides it, or under which it goes on as somebody known again; None
+        track: its id; of a person who was known again under another one, the one until then.
+        by: id of the track that occludes or hides it, or under which it goes on as a person known again; None
             if there is none, or none known.
         why: of "lost", the reason as the tracker sees it; of "re-identified", for how long it was gone.
     """
@@ -154,7 +154,7 @@ class LogLine:
             "mode", "fault starts" and "fault ends".
         who: a person, a thing, "robot", "track 3", or a kind of fault.
         other: who or what else takes part: an occluder, what is touched, who moves it, the new mode, or under
-            which number a track goes on that is somebody known again.
+            which number a track goes on that is a person known again.
         why: of a change of mode and of a lost track, the reason; of a re-identified one, since when.
         move: of a thing that was moved, from where to where.
     """
@@ -168,7 +168,7 @@ class LogLine:
     move: Move | None = None
 
     def to_json(self) -> dict[str, Any]:
-        """Give the line as a JSON object; `why` and `move` are left out where there is none."""
+        """Return the line as a JSON object; `why` and `move` are left out where there is none."""
         line = asdict(self)
         if not self.why:
             del line["why"]
@@ -240,7 +240,7 @@ _WORTH_DEG = 10.0
 
 
 def describe(line: LogLine) -> str:
-    """Say what happened in a few words, such as "anna: total occlusion by ben starts"."""
+    """Describe what happened in a few words, such as "anna: total occlusion by ben starts"."""
     if line.kind == "mode":
         return f"{line.who}: {line.other}"
     if line.kind.startswith("fault "):
@@ -258,7 +258,7 @@ def describe(line: LogLine) -> str:
 
 
 def _describe_thing(line: LogLine) -> str:
-    """Say what became of a thing, such as "chair_1: moved 1.10 m by anna"."""
+    """Describe what became of a thing, such as "chair_1: moved 1.10 m by anna"."""
     what = line.kind.removeprefix("thing ")
     how = "" if line.move is None else f" {describe_move(line.move)}"
     by = {"appeared": ", brought by", "vanished": ", taken by"}.get(what, " by")
@@ -266,11 +266,11 @@ def _describe_thing(line: LogLine) -> str:
 
 
 def describe_move(move: Move) -> str:
-    """Say how far something was moved, such as "1.10 m" or "0.66 m, turned 90°"."""
+    """Return how far something was moved, such as "1.10 m" or "0.66 m, turned 90°"."""
     turn = f", turned {abs(move.turned_deg):.0f}°" if abs(move.turned_deg) >= _WORTH_DEG else ""
     return f"{move.distance_m:.2f} m{turn}"
 
 
 def describe_fully(line: LogLine) -> str:
-    """Say what happened and why, such as "track 2: lost (left the image on the left)"."""
+    """Describe what happened and why, such as "track 2: lost (left the image on the left)"."""
     return f"{describe(line)} ({line.why})" if line.why else describe(line)

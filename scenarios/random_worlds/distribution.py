@@ -162,7 +162,7 @@ class Draws:
 
 
 def narrowed(given: object) -> Distribution:
-    """Give the distribution of random worlds with what is given in the place of its own.
+    """Return the distribution of random worlds with what is given in the place of its own.
 
     Args:
         given: by name of `RANGES` a number, or a pair within its limits; by name of `SHARES` one of its
@@ -211,7 +211,7 @@ def _odds(value: Any) -> float:
 
 
 def is_number(value: object, *, is_whole: bool) -> bool:
-    """Tell whether a value is a finite number, or a whole one."""
+    """Return whether a value is a finite number, or a whole one."""
     if isinstance(value, bool):
         return False
     if isinstance(value, int | np.integer):

@@ -44,7 +44,7 @@ def with_one_more(scene: Data, key: str, draw: Callable[[], Data], tries: int = 
 
 
 def is_valid(scene: Data) -> bool:
-    """Tell whether a scene can be played."""
+    """Return whether a scene can be played."""
     try:
         parse_scenario(scene, source=scene["name"], folder=Path())
     except BadInput:
@@ -134,7 +134,7 @@ def plan_of(place: Data) -> FloorPlan:
 
 
 def air_of(place: Data) -> float:
-    """Tell the temperature [degC] of the air."""
+    """Return the temperature [degC] of the air."""
     return float(place["temperatures"]["surroundings_c"])
 
 
@@ -213,7 +213,7 @@ def _draw_gain(draws: Draws) -> Data:
 
 
 def is_before(robot: Data, at: list[float]) -> bool:
-    """Tell whether a point is so near before the robot that a thing there would fill its view."""
+    """Return whether a point is so near before the robot that a thing there would fill its view."""
     ahead, aside = at[0] - robot["at_m"][0], at[1] - robot["at_m"][1]
     off = math.remainder(math.atan2(aside, ahead) - math.radians(robot["heading_deg"]), math.tau)
     return math.hypot(ahead, aside) < _FREE_M and abs(off) < _FREE_RAD

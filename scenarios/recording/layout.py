@@ -55,12 +55,12 @@ BACKGROUND: Final = "explained/background"
 
 
 def camera_path(name: str) -> str:
-    """Give the entity of a camera."""
+    """Return the entity of a camera."""
     return f"world/robot/{name}"
 
 
 def points_path(camera: str) -> str:
-    """Give the entity of the points that a depth camera sees."""
+    """Return the entity of the points that a depth camera sees."""
     return f"world/points/{camera}"
 
 
@@ -70,7 +70,7 @@ def thing_path(name: str) -> str:
 
 
 def person_path(name: str) -> str:
-    """Give the entity of a person."""
+    """Return the entity of a person."""
     return f"world/people/{rr.escape_entity_path_part(name)}"
 
 
@@ -82,7 +82,7 @@ def lay_out(
     Args:
         config: of the world.
         watched: cameras that the tracker asks for.
-        attends: whether it explains where in colour images it looks for somebody.
+        attends: whether it explains where in colour images it looks for a person.
         follows: whether the newest frame is shown as it comes; else it stands at the first one when opened.
     """
     cameras = {name: camera.camera for name, camera in config.robot.cameras.items()}

@@ -92,7 +92,7 @@ class Ellipses:
 
 
 def places(tracks: Iterable[Track], sightings: Mapping[int, Sequence[str]]) -> Ellipses:
-    """Give where tracks stand on the floor, as ellipses that hold 95 % of what their covariance allows.
+    """Return where tracks stand on the floor, as ellipses that hold 95 % of what their covariance allows.
 
     Their labels tell in which cameras they are seen, as `Sightings` found.
     """
@@ -109,7 +109,7 @@ def places(tracks: Iterable[Track], sightings: Mapping[int, Sequence[str]]) -> E
 
 
 def _ellipse(xx: float, xy: float, yy: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Give semi-axes [m] and quaternion of a covariance's 95 % ellipse."""
+    """Return semi-axes [m] and quaternion of a covariance's 95 % ellipse."""
     variance, axes = np.linalg.eigh(np.array([[xx, xy], [xy, yy]]))
     along, across = CHI_95 * np.sqrt(np.maximum(variance[::-1], FLAT_M**2))
     half_turn = math.atan2(axes[1, 1], axes[0, 1]) / 2.0
@@ -117,7 +117,7 @@ def _ellipse(xx: float, xy: float, yy: float) -> tuple[tuple[float, ...], tuple[
 
 
 def track_boxes(tracks: Sequence[Track], camera: str = THERMAL, affine: Matrix | None = None) -> Boxes:
-    """Give the boxes of tracks in a camera's image, mapped to another's if (2, 3) `affine` says how."""
+    """Return the boxes of tracks in a camera's image, mapped to another's if (2, 3) `affine` says how."""
     placed = [track for track in tracks if camera in track.boxes]
     own = [track.boxes[camera] for track in placed]
     boxes = own if affine is None else [map_box(box, affine) for box in own]
@@ -137,7 +137,7 @@ def track_label(track: Track) -> str:
 
 
 def truth_boxes(people: Iterable[PersonTruth]) -> Boxes:
-    """Give the true boxes of people in one camera's image, with name and visible share.
+    """Return the true boxes of people in one camera's image, with name and visible share.
 
     Those behind the camera are left out.
     """
@@ -176,7 +176,7 @@ class Sightings:
         self._seen: dict[int, set[str]] = {}
 
     def update(self, tick: Tick) -> Mapping[int, Sequence[str]]:
-        """Give the cameras by track; of one that takes no image at this tick its last image tells."""
+        """Return the cameras by track; of one that takes no image at this tick its last image tells."""
         older = {*self._cameras} - {*tick.observation.images}
         self._seen = {t.id: {*t.boxes} | (older & self._seen.get(t.id, set())) for t in tick.tracks}
         return {number: [c for c in self._cameras if c in seen] for number, seen in self._seen.items()}
@@ -199,13 +199,13 @@ class Trails:
 
 
 def visible_fractions(tick: Tick, names: Iterable[str]) -> list[float]:
-    """Give each person's visible fraction in the order of names; who is not there is not visible."""
+    """Return each person's visible fraction in the order of names; who is not there is not visible."""
     visible = {person.name: person.visible_fraction for person in tick.truth.people}
     return [visible.get(name, 0.0) for name in names]
 
 
 def box_offset(box: Box, width_px: int) -> float:
-    """Give how far the middle of a box lies right of the thermal image's [half image widths]."""
+    """Return how far the middle of a box lies right of the thermal image's [half image widths]."""
     return image_shares(box, width_px, 1).x
 
 

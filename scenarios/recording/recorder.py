@@ -67,7 +67,7 @@ class Recorder(RecordingWriter):
         title: name of the recording; the same title gives the same recording id.
         viewer: address of a viewer that is to show it at once; None for none.
         watched: cameras that the tracker asks for.
-        attends: whether it explains where in colour images it looks for somebody.
+        attends: whether it explains where in colour images it looks for a person.
         is_lossless: whether images are kept as they are, not as JPEG.
     """
 

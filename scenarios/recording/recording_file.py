@@ -45,7 +45,7 @@ def layers_in(folder: Path) -> list[Path]:
 
 
 def is_whole(recording: Path) -> bool:
-    """Tell whether a recording was closed; one that was cut off opens too, and lacks its end."""
+    """Return whether a recording was closed; one that was cut off opens too, and lacks its end."""
     with recording.open("rb") as file:
         file.seek(-min(_FOOT_BYTES, recording.stat().st_size), os.SEEK_END)
         return _FOOT in file.read()

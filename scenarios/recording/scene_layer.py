@@ -70,7 +70,7 @@ class SceneRecording(RecordingWriter):
 
 
 def _coloured(scene: VistaScene, depth_m: Metres, geometry: Geometry) -> tuple[Floats, Colours]:
-    """Give the points (N, 3) of all things in the robot's frame, and their colours (N, 3)."""
+    """Return the points (N, 3) of all things in the robot's frame, and their colours (N, 3)."""
     pixels = np.flatnonzero((scene.things > 0) & (depth_m > 0.0))
     pixels = pixels[:: max(math.ceil(len(pixels) / _MOST), 1)]
     numbers = scene.things.ravel()[pixels].tolist()

@@ -49,7 +49,7 @@ def group_fixtures(fixtures: Iterable[Fixture]) -> dict[str, list[Fixture]]:
 
 
 def fixture_solids(fixture: Fixture) -> Iterator[Solid]:
-    """Give a fixture's solids in the world frame; a URDF and a mesh become the boxes around them."""
+    """Return a fixture's solids in the world frame; a URDF and a mesh become the boxes around them."""
     if fixture.part is None:
         (low, high), material = fixture_extent(fixture), fixture.material
         yield _box((low + high) / 2.0, high - low, _srgb(material))
@@ -69,7 +69,7 @@ def fixture_solids(fixture: Fixture) -> Iterator[Solid]:
 
 
 def urdf_solids(path: Path) -> list[Solid]:
-    """Give what is to be seen of a URDF, in the frame of its root link, all joints at zero."""
+    """Return what is to be seen of a URDF, in the frame of its root link, all joints at zero."""
     return [
         Solid(
             kind=kind,
@@ -162,7 +162,7 @@ NOBODY: Final = Capsules(np.zeros((0, 3)), np.zeros((0, 4)), np.zeros(0), np.zer
 
 
 def body_capsules(joints: Floats) -> Capsules:
-    """Give limbs, trunk and head of a person as capsules, from its joints (17, 3) [m]."""
+    """Return limbs, trunk and head of a person as capsules, from its joints (17, 3) [m]."""
     ends = [
         (joints[a], joints[b], radius)
         for one, other, radius in _LIMBS

@@ -121,7 +121,7 @@ class Still:
 
 
 def _picture(config: CameraConfig, packing: str) -> rr.AsComponents:
-    """Say how images of a camera are packed, and coloured if they are of depth [mm]."""
+    """Return how images of a camera are packed, and coloured if they are of depth [mm]."""
     if not isinstance(config, DepthConfig):
         return rr.EncodedImage.from_fields(media_type=packing)
     reach_mm = 1000.0 * np.array([config.nearest_m, config.farthest_m])

@@ -31,7 +31,7 @@ _QUIET = {"RUST_LOG": "error", "CI": "true"}
 
 
 def has_screen() -> bool:
-    """Tell whether there is a screen to open a window on."""
+    """Return whether there is a screen to open a window on."""
     if sys.platform in ("win32", "darwin"):
         return True
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
@@ -161,7 +161,7 @@ def _complaint(viewer: subprocess.Popen[bytes]) -> str:
 
 
 def _ports(first: int | None) -> tuple[int, int]:
-    """Give a port and the next, or any two, at which nothing listens."""
+    """Return a port and the next, or any two, at which nothing listens."""
     wanted = (0, 0) if first is None else (first, first + 1)
     with ExitStack() as held:
         try:

@@ -54,7 +54,7 @@ class Column:
         return headline(self.runs)
 
     def by_badness(self) -> list[tuple[RunFindings, Scores]]:
-        """Its runs with their scores: most numbers on somebody else first, then most lost identities."""
+        """Its runs with their scores: most numbers on another person first, then most lost identities."""
         pairs = zip(self.runs, self.scores, strict=True)
         return sorted(
             pairs, key=lambda pair: (-len(pair[0].transfers), -len(pair[0].lost), pair[1].mot.identity.idf1)
@@ -88,7 +88,7 @@ def read_columns(paths: Sequence[Path]) -> list[Column]:
 
 
 def are_same_scene(columns: Sequence[Column]) -> bool:
-    """Tell whether all are single runs of one scenario and seed."""
+    """Return whether all are single runs of one scenario and seed."""
     titles = {column.found.run.title for column in columns}
     return all(column.is_single for column in columns) and len(titles) == 1
 

@@ -99,7 +99,7 @@ def _of_many(column: Column, is_beside: bool) -> list[PicturedMoment]:
 
 
 def _pictured(moment: BadMoment, whose: str, stills: _Stills, is_beside: bool) -> PicturedMoment:
-    """Give a moment its pictures; where columns stand beside each other, they are told apart."""
+    """Return a moment its pictures; where columns stand beside each other, they are told apart."""
     seen = [(label, of[frame]) for frame in moment.frames for label, of in stills.items() if frame in of]
     pictures = []
     for label, still in seen:
@@ -111,7 +111,7 @@ def _pictured(moment: BadMoment, whose: str, stills: _Stills, is_beside: bool) -
 
 
 def page_jpeg(image: NDArray[np.uint8], quality: int) -> str:
-    """Give an image as an address for a page."""
+    """Return an image as an address for a page."""
     return f"data:image/jpeg;base64,{base64.b64encode(encode_jpeg(image, quality)).decode()}"
 
 

@@ -192,12 +192,12 @@ def _render(page: ReportPage) -> str:
 
 
 def _notes(columns: Sequence[Column]) -> list[str]:
-    """Say what must be known of the figures, a line a tracker."""
+    """Describe what must be known of the figures, a line a tracker."""
     return [f"{column.found.run.about.tracker}: {note}" for column in columns for note in column.notes]
 
 
 def _unknown(columns: Sequence[Column]) -> list[str]:
-    """Say what tracks that were made elsewhere do not tell, a line a tracker."""
+    """Describe what tracks that were made elsewhere do not tell, a line a tracker."""
     adopted = {f.run.about.tracker: f.run.about.adopted for column in columns for f in column.runs}
     return [
         f"the tracks of {name} were made elsewhere: their {listed(told.unknown)} are unknown"

@@ -22,7 +22,7 @@ from peopleboy.own_code import Terminated
 def left_by_sigterm() -> Iterator[None]:
     """Let SIGTERM, as `timeout` and a shutdown send it, leave the block by way of all that cleans up.
 
-    The process then ends with the code by which shells know that signal. A handler that somebody else has
+    The process then ends with the code by which shells know that signal. A handler that another person has
     set stays, and so does everything outside the main thread, where none can be set.
     """
     is_main = threading.current_thread() is threading.main_thread()
@@ -45,7 +45,7 @@ def _leave(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
 
 @contextmanager
 def atomic(path: Path, stays: Callable[[], bool] = lambda: False) -> Iterator[Path]:
-    """Give a path beside the one asked for, at which to make a file or folder that then takes its place.
+    """Return a path beside the one asked for, at which to make a file or folder that then takes its place.
 
     It does so when the block ends well and has made something. Nothing of it is left if the block ends
     otherwise, by a signal too, and what a process that was killed has left is removed by the next one.
@@ -89,7 +89,7 @@ def _sweep(path: Path) -> None:
 
 
 def _is_running(process: int) -> bool:
-    """Tell whether another process has this number."""
+    """Return whether another process has this number."""
     try:
         os.kill(process, 0)
     except (ProcessLookupError, OverflowError):
@@ -152,7 +152,7 @@ def writing_to(path: Path, option: str = "--out") -> Iterator[None]:
 def atomic_folder(
     path: Path, about: dict[str, Any], *, overwrite: bool, kind: str = "export"
 ) -> Iterator[Path]:
-    """Give a folder to write to, which takes its place when the block ends well, see `atomic`.
+    """Return a folder to write to, which takes its place when the block ends well, see `atomic`.
 
     A file KIND.json says what the folder is.
 

@@ -27,7 +27,7 @@ BELIEFS: Final = ("frame", "id", "confidence", "status", "left_px", *PLACE)
 
 
 def places_of_people(people: pa.Table, robot: pa.Table) -> Places:
-    """Tell where people stood.
+    """Return where people stood.
 
     Raises:
         BadInput: the robot's place is not known in every frame.
@@ -43,7 +43,7 @@ def places_of_people(people: pa.Table, robot: pa.Table) -> Places:
 
 
 def places_of_tracks(beliefs: pa.Table) -> Places:
-    """Tell where confirmed tracks are said to stand; those of which it is not said are left out."""
+    """Return where confirmed tracks are said to stand; those of which it is not said are left out."""
     placed = _placed(beliefs)
     columns = _columns(placed, PLACE)
     return Places(
@@ -55,7 +55,7 @@ def places_of_tracks(beliefs: pa.Table) -> Places:
 
 
 def is_on_floor_alone(beliefs: pa.Table) -> bool:
-    """Tell whether a tracker gave places of people, but of nobody a box in the thermal image."""
+    """Return whether a tracker gave places of people, but of nobody a box in the thermal image."""
     return bool(len(beliefs)) and beliefs["left_px"].null_count == len(beliefs) and len(_placed(beliefs)) > 0
 
 
@@ -110,5 +110,5 @@ def _placed(beliefs: pa.Table) -> pa.Table:
 
 
 def _columns(table: pa.Table, names: Sequence[str]) -> Floats:
-    """Give columns as one array (N, K)."""
+    """Return columns as one array (N, K)."""
     return np.stack([table[name].to_numpy().astype(np.float64) for name in names], axis=-1)

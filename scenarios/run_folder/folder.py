@@ -168,7 +168,7 @@ class RunFolder:
 
 
 def _told(error: Exception) -> dict[str, str]:
-    """Say what ended a run; bad input is explained in one line, and has no traceback."""
+    """Describe what ended a run; bad input is explained in one line, and has no traceback."""
     if isinstance(error, BadInput):
         return {"message": str(error)}
     message = str(error) if isinstance(error, OwnCodeFailed) else in_one_line(error)

@@ -38,7 +38,7 @@ def write_images(folder: Path, frame: int, senses: Observation, cameras: Mapping
 def images_to_write(
     folder: Path, frame: int, senses: Observation, cameras: Mapping[str, CameraConfig]
 ) -> Iterator[tuple[Path, Stored]]:
-    """Give a frame's images as they are stored, and where."""
+    """Return a frame's images as they are stored, and where."""
     for name, image, layer in image_folders(cameras):
         if image in senses.images:
             yield folder / name / image_file(frame), layer.encode(senses.images[image])
@@ -61,7 +61,7 @@ def write_png(path: Path, image: Stored) -> None:
 
 
 def millimetres(depth_m: NDArray[np.floating]) -> NDArray[np.uint16]:
-    """Give depth (H, W) [m] in whole millimetres; 0 where nothing is, and beyond 65 m."""
+    """Return depth (H, W) [m] in whole millimetres; 0 where nothing is, and beyond 65 m."""
     whole = np.rint(1000.0 * np.where(np.isfinite(depth_m), depth_m, 0.0))
     return np.where(whole < 65536.0, whole, 0.0).astype(np.uint16)
 
@@ -74,7 +74,7 @@ _KEYS: Mapping[str, tuple[str, ...]] = {
 
 
 def about_gains(cameras: Mapping[str, CameraConfig]) -> dict[str, dict[str, Any]]:
-    """Tell by which gain each thermal camera comes to its grey, and with which settings."""
+    """Return by which gain each thermal camera comes to its grey, and with which settings."""
     return {
         name: {"gain": config.gain} | {key: getattr(config, key) for key in _KEYS[config.gain]}
         for name, config in cameras.items()
@@ -83,7 +83,7 @@ def about_gains(cameras: Mapping[str, CameraConfig]) -> dict[str, dict[str, Any]
 
 
 def thermal_span_c(config: ThermalConfig) -> list[float] | None:
-    """Give the span [degC] of 8-bit images; None where it changes from image to image."""
+    """Return the span [degC] of 8-bit images; None where it changes from image to image."""
     return [config.lowest_c, config.highest_c] if config.gain == "fixed" else None
 
 
@@ -118,7 +118,7 @@ class BackgroundQueue:
 
 
 def describe_images(outfits: Iterable[Mapping[str, CameraConfig]]) -> str:
-    """Say how large cameras' images are, how many a second, and of which cameras if they differ.
+    """Return how large cameras' images are, how many a second, and of which cameras if they differ.
 
     Args:
         outfits: the cameras of each robot.

@@ -54,11 +54,11 @@ class RunFiles:
     robot: pa.Table
 
     def people_by_frame(self) -> dict[int, list[Row]]:
-        """Give the rows of truth.parquet."""
+        """Return the rows of truth.parquet."""
         return _by_frame(self.people)
 
     def tracks_by_frame(self) -> dict[int, list[Track]]:
-        """Give what the tracker said, tentative tracks too."""
+        """Return what the tracker said, tentative tracks too."""
         found = _by_frame(self.beliefs).items()
         boxes = self._further_boxes()
         return defaultdict(
@@ -70,7 +70,7 @@ class RunFiles:
         )
 
     def _further_boxes(self) -> dict[tuple[int, int], dict[str, Box]]:
-        """Give the boxes in further cameras' images, by frame and id."""
+        """Return the boxes in further cameras' images, by frame and id."""
         found: dict[tuple[int, int], dict[str, Box]] = defaultdict(dict)
         for camera, rows in self.further.items():
             columns = (rows.frame.tolist(), rows.id.tolist(), rows.box.tolist())

@@ -117,7 +117,7 @@ def _options(options: RunOptions, controller: Controller, seed: int) -> RunOptio
 
 
 def intervals(runs: Sequence[Figures], rng: np.random.Generator) -> dict[str, Interval]:
-    """Give every figure's mean over some runs, with its interval."""
+    """Return every figure's mean over some runs, with its interval."""
     names = list(dict.fromkeys(name for figures in runs for name in figures))
     return {name: bootstrap([figures.get(name, math.nan) for figures in runs], rng) for name in names}
 

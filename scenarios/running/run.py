@@ -192,7 +192,7 @@ def run(
 
 
 def is_finished(scenario: Scenario, options: RunOptions) -> bool:
-    """Tell whether the folder holds this very run, complete, with its images if they are wanted.
+    """Return whether the folder holds this very run, complete, with its images if they are wanted.
 
     Never, if it is to be replaced.
 

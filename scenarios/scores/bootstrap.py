@@ -29,12 +29,12 @@ class Interval:
         return not math.isnan(self.low)
 
     def to_json(self) -> list[float | None]:
-        """Give mean and ends, None for those that there are not."""
+        """Return mean and ends, None for those that there are not."""
         return [None if math.isnan(value) else value for value in (self.mean, self.low, self.high)]
 
 
 def bootstrap(values: Sequence[float], rng: np.random.Generator) -> Interval:
-    """Give the mean of some values and its percentile interval; NaN are left out.
+    """Return the mean of some values and its percentile interval; NaN are left out.
 
     Source: B. Efron, Bootstrap methods: another look at the jackknife, Annals of Statistics 7, 1979.
     """

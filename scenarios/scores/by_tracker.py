@@ -79,7 +79,7 @@ def _scene(path: Path) -> Mapping[str, Any]:
 
 
 def _changes(before: Any, after: Any, where: str) -> Iterator[str]:
-    """Tell key by key what differs."""
+    """Return key by key what differs."""
     if isinstance(before, dict) and isinstance(after, dict):
         for key in dict.fromkeys((*before, *after)):
             yield from _changes(before.get(key), after.get(key), f"{where}.{key}" if where else str(key))
@@ -176,7 +176,7 @@ def differences(groups: Groups) -> list[Difference]:
 
 
 def figures_of_all(groups: Groups) -> dict[str, Any]:
-    """Give all figures as JSON can hold them: of each run, of each tracker, and how trackers differ."""
+    """Return all figures as JSON can hold them: of each run, of each tracker, and how trackers differ."""
     return {
         "trackers": {tracker: _together(runs) for tracker, runs in groups.items()},
         "differences": [
@@ -228,7 +228,7 @@ def _difference(
 
 
 def _once(runs: Sequence[ScoredRun]) -> Mapping[Scene, Scores]:
-    """Give the scores by scene, of those scenes that there is one run of."""
+    """Return the scores by scene, of those scenes that there is one run of."""
     found: dict[Scene, list[Scores]] = {}
     for run in runs:
         if run.scene is not None:
@@ -240,7 +240,7 @@ _NAMES = tuple(ComfortScore.metrics())
 
 
 def comfort_by_tracker(groups: Groups) -> Mapping[str, ComfortScore]:
-    """Give the means over the runs of each tracker; trackers whose runs tell nothing of it are left out.
+    """Return the means over the runs of each tracker; trackers whose runs tell nothing of it are left out.
 
     What is undefined in a run is left out of the mean.
 

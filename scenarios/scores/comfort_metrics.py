@@ -95,7 +95,7 @@ def score_comfort(run: ComfortRun) -> ComfortScore:
 
 
 def times_to_collision(gaps: Floats, velocities: Floats, reach_m: float) -> Floats:
-    """Tell after what times pairs of discs touch that go on as they are.
+    """Return after what times pairs of discs touch that go on as they are.
 
     Args:
         gaps: (Q, 2) [m] from one middle to the other.
@@ -121,7 +121,7 @@ def _products(one: Floats, other: Floats) -> Floats:
 
 
 def _jerk(run: ComfortRun) -> Floats:
-    """Give the second derivative of the forward speed [m/s3] by differences: (T - 3,)."""
+    """Return the second derivative of the forward speed [m/s3] by differences: (T - 3,)."""
     if len(run.time_s) < 4:
         return np.zeros(0)
     steps, heading = np.diff(run.robot[:, :2], axis=0), run.robot[:-1, 2]

@@ -83,7 +83,7 @@ def score_corridor(*, time_s: Floats, robot: Floats, is_contact: Flags, legs: Se
 
 
 def _errors(robot: Floats, leg: Leg, legs: Sequence[Leg]) -> tuple[Floats, Floats]:
-    """Give lateral [m] and heading error [rad] of the frames on a leg, away from its ends: (M,) each."""
+    """Return lateral [m] and heading error [rad] of the frames on a leg, away from its ends: (M,) each."""
     way = np.subtract(leg.end_m, leg.start_m)
     place = _along_and_beside(robot[:, :2], leg)
     ends = _along_and_beside(np.array([end for other in legs for end in (other.start_m, other.end_m)]), leg)

@@ -73,7 +73,7 @@ class FollowingRun:
         is_tracked: (T,) whether a track lay on this person.
         is_contact: (T,) whether the robot touched anything or anyone.
         track: (T,) number of the track that lay on this person, 0 for none; None to leave that out.
-        is_wrong: (T,) whether the robot went after somebody else; None if nobody knows.
+        is_wrong: (T,) whether the robot went after another person; None if nobody knows.
 
     Raises:
         BadInput: the arrays do not have these shapes, or time does not rise.
@@ -147,7 +147,7 @@ def score_following(run: FollowingRun, task: FollowingTask | None = None) -> Fol
 
 
 def _is_at_end(run: FollowingRun, last_s: float) -> bool:
-    """Tell whether the person was tracked for most of the last part, and nobody else followed."""
+    """Return whether the person was tracked for most of the last part, and nobody else followed."""
     last = run.time_s >= run.time_s[-1] - last_s
     is_there = last & np.isfinite(run.person[:, 0])
     is_wrong = run.is_wrong is not None and bool(run.is_wrong[last].any())
@@ -169,7 +169,7 @@ def _changes(track: NDArray[np.int64]) -> int:
 
 
 def _person_from_robot(robot: Floats, person: Floats) -> tuple[Floats, Floats]:
-    """Give distance [m] and bearing [rad, -pi..pi, positive left], (T,) each."""
+    """Return distance [m] and bearing [rad, -pi..pi, positive left], (T,) each."""
     x, y = (person - robot[:, :2]).T
     bearing = np.arctan2(y, x) - robot[:, 2]
     return np.hypot(x, y), np.arctan2(np.sin(bearing), np.cos(bearing))
@@ -180,7 +180,7 @@ def _mean(values: Floats | Flags) -> float:
 
 
 def _periods(time_s: Floats, flags: Flags) -> Floats:
-    """Give the length [s] of each run of true values, up to the next frame or the end: (N,)."""
+    """Return the length [s] of each run of true values, up to the next frame or the end: (N,)."""
     edges = np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     return time_s[np.minimum(ends, len(time_s) - 1)] - time_s[starts]

@@ -42,7 +42,7 @@ class FollowingLog:
         Args:
             truth: of the instant.
             track: number of the track that lies on the person to follow, 0 for none.
-            is_wrong: whether the robot goes after somebody else; None if nobody knows.
+            is_wrong: whether the robot goes after another person; None if nobody knows.
         """
         robot = truth.robot
         target = next((person for person in truth.people if person.id == TARGET), None)
@@ -66,7 +66,7 @@ def score_instants(table: NDArray[np.float64], task: FollowingTask) -> Following
     Args:
         table: (T, 9) of each instant the time [s], the robot's x, y [m] and heading [rad], x, y [m] of the
             person to follow, NaN while away, whether the robot touched anything, the number of the track on
-            the person, 0 for none, and whether it went after somebody else, NaN if nobody knows.
+            the person, 0 for none, and whether it went after another person, NaN if nobody knows.
         task: what was asked.
     """
     wrong = table[:, 8]
@@ -95,7 +95,7 @@ class Spot(NamedTuple):
 
 
 def tracks_on_target(tick: Tick, boxes: BoxKind = BoxKind.TORSO, before: int = 0) -> tuple[int, bool]:
-    """Give the number of the track on the person to follow, 0 for none; and whether another is followed.
+    """Return the number of the track on the person to follow, 0 for none; and whether another is followed.
 
     Args:
         tick: the instant.
@@ -112,7 +112,7 @@ def tracks_on_target(tick: Tick, boxes: BoxKind = BoxKind.TORSO, before: int = 0
 
 
 def track_on(spot: Spot | None, tracks: Iterable[Track], before: int = 0) -> int:
-    """Give the number of the track that lies on a person, 0 if none does well enough.
+    """Return the number of the track that lies on a person, 0 if none does well enough.
 
     Args:
         spot: where the person is.
@@ -131,7 +131,7 @@ def track_on(spot: Spot | None, tracks: Iterable[Track], before: int = 0) -> int
 
 
 def _is_wrong(spots: dict[int, Spot], tick: Tick) -> bool:
-    """Tell whether the track that the robot follows lies on somebody else than the person to follow."""
+    """Return whether the track that the robot follows lies on another person than the person to follow."""
     for track in _sure(tick.tracks):
         if track.id == tick.following:
             overlaps = [(_overlap(track, spot), number) for number, spot in spots.items()]
@@ -145,7 +145,7 @@ def _sure(tracks: Iterable[Track]) -> Iterable[Track]:
 
 
 def _overlap(track: Track, spot: Spot) -> float:
-    """Tell how well a track lies on a person, in 0..1: in the thermal image, or else on the floor."""
+    """Return how well a track lies on a person, in 0..1: in the thermal image, or else on the floor."""
     if THERMAL in track.boxes:
         return float(iou(np.array(track.boxes[THERMAL]), np.array(spot.box)))
     if track.place is None:

@@ -45,7 +45,7 @@ class BoxReference:
         return f"{CALLED[self.boxes]} in {self.camera} images"
 
     def to_json(self) -> dict[str, str]:
-        """Give it as metrics.json has it."""
+        """Return it as metrics.json has it."""
         return {"camera": self.camera, "boxes": str(self.boxes)}
 
 
@@ -69,7 +69,7 @@ def read_reference_boxes(folder: Path, by: BoxReference) -> tuple[TrueBoxes, Tra
 
 
 def kind_of_boxes(folder: Path, camera: str, tracker: str | None, said: BoxKind) -> BoxKind:
-    """Tell what a tracker's boxes in a camera's images are drawn round: as it was said of the run.
+    """Return what a tracker's boxes in a camera's images are drawn round: as it was said of the run.
 
     Ours are said to be round torsos, and are so in flat images; in panoramas they are round whole people.
 
@@ -106,7 +106,7 @@ def boxed_cameras(folder: Path) -> tuple[str, ...]:
 
 
 def notes_on(folder: Path, by: BoxReference, truth: TrueBoxes, tracks: TrackBoxes) -> tuple[str, ...]:
-    """Say where the boxes are if not where they are looked for, and whether they are of another kind."""
+    """Return where the boxes are if not where they are looked for, and whether they are of another kind."""
     cameras = boxed_cameras(folder)
     if not cameras:
         return ()

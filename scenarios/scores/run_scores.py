@@ -52,7 +52,7 @@ class RunScores:
     notes: tuple[str, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
-        """Give all figures as JSON can hold them: None for what is undefined."""
+        """Return all figures as JSON can hold them: None for what is undefined."""
         groups: dict[str, Any] = {} if self.by is None else {"scored_by": self.by.to_json()}
         groups |= to_json(self.people)
         drives = {"following": self.following, "corridor": self.corridor, "comfort": self.comfort}
@@ -102,7 +102,7 @@ _NEAR: Final = (
 
 
 def headline(scores: RunScores) -> str:
-    """Say how well people were found, and how well the robot did what it was to do."""
+    """Return how well people were found, and how well the robot did what it was to do."""
     parts = [_people(scores.people)]
     if scores.following is not None:
         parts.append(_following(scores.following))

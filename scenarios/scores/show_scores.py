@@ -117,7 +117,7 @@ def _how_they_differ(compared: Sequence[Difference]) -> str:
 
 
 def _by_what(groups: Groups) -> str:
-    """Say what each tracker's boxes are held against, if it is not the same for all."""
+    """Describe what each tracker's boxes are held against, if it is not the same for all."""
     held = {tracker: {str(run.by) for run in runs if run.by} for tracker, runs in groups.items()}
     if len(set().union(*held.values())) < 2:
         return ""
@@ -133,7 +133,7 @@ def _interval(interval: Interval, unit: str) -> str:
 
 
 def _single_person(scores: Scores) -> str:
-    """Say how one person was kept who alone is annotated."""
+    """Return how one person was kept who alone is annotated."""
     mot, counts = scores.mot, scores.counts
     ids = f"{counts.true_tracks} {'id is' if counts.true_tracks == 1 else 'ids are'}"
     return (

@@ -106,7 +106,7 @@ def _homes(folder: Path) -> list[Path]:
 
 
 def _pictures_of(folder: Path) -> Path | None:
-    """Give the folder inside that has the pictures; its own ones only where it is no run."""
+    """Return the folder inside that has the pictures; its own ones only where it is no run."""
     inner = [folder / name for name in reversed(INNER) if (folder / name).is_dir()]
     if not (folder / "run.json").is_file():
         inner.append(folder)

@@ -130,7 +130,7 @@ def _table(scene: Sequence[Grey]) -> Floats:
 
 
 def _deal(scenes: int, folds: int, rng: np.random.Generator) -> NDArray[np.int64]:
-    """Give every scene a fold, so that each fold has one at least."""
+    """Return every scene a fold, so that each fold has one at least."""
     return np.asarray(rng.permutation(np.arange(scenes) % folds))
 
 

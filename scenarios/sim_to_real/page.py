@@ -159,7 +159,7 @@ def render_comparison(comparison: Comparison) -> str:
 
 
 def headline(comparison: Comparison) -> str:
-    """Say how well patches are told apart."""
+    """Return how well patches are told apart."""
     told, people = comparison.told, comparison.told_people
     said = f"Rendered and real patches are told apart with an AUC of {describe_auc(told)}"
     return f"{said}, people with {describe_auc(people)}." if people is not None else f"{said}."

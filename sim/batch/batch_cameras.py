@@ -117,11 +117,11 @@ class Exposure:
             self._begun[1].finish()
 
     def images(self) -> NDArray[Any]:
-        """Give those of the camera's own name, of all of its worlds."""
+        """Return those of the camera's own name, of all of its worlds."""
         return self._finish()[0]
 
     def image(self, name: str, place: int) -> NDArray[Any]:
-        """Give an image of that name, of the world at some place among its own."""
+        """Return an image of that name, of the world at some place among its own."""
         images = self._finish()
         if name == self.name:
             return np.asarray(images[0][place])
@@ -160,7 +160,7 @@ class Exposures:
             shot.end()
 
     def of_world(self, row: int) -> Mapping[str, NDArray[Any]]:
-        """Give the images of one of the worlds by their names."""
+        """Return the images of one of the worlds by their names."""
         owners = {
             image: (shot, shot.rows.index(row))
             for shot in self._shots
@@ -175,7 +175,7 @@ class Exposures:
         return OnDemand(owners, make)
 
     def of_camera(self, camera: str) -> tuple[Sequence[int], Sequence[NDArray[Any]] | NDArray[Any]]:
-        """Give the images of a camera's own name: in which of the worlds it takes one, and these."""
+        """Return the images of a camera's own name: in which of the worlds it takes one, and these."""
         return next(((shot.rows, shot.images()) for shot in self._shots if shot.name == camera), ((), ()))
 
 

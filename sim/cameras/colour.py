@@ -209,7 +209,7 @@ def _light_plain_row(
 
 @njit(cache=True, fastmath=True)
 def shade_of(normal: NDArray[np.float32], light: NDArray[np.float64], level: float) -> float:
-    """Give what a surface of this normal (3,) gets of a light of some level from this direction (3,)."""
+    """Return what a surface of this normal (3,) gets of a light of some level from this direction (3,)."""
     facing = normal[0] * light[0] + normal[1] * light[1] + normal[2] * light[2]
     shade: float = level * (_AMBIENT + (1.0 - _AMBIENT) * max(facing, 0.0))
     return shade

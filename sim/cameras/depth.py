@@ -101,7 +101,7 @@ AMPLITUDE_SD: Final = AMPLITUDE_AT_1_M * TOF_SD_M * 0.5 / 2.0**2 / _METRES_A_SHA
 
 
 def hole_share(depth_m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give the share of a surface at some depths [m] that structured light cannot read: patches of 8 px."""
+    """Return the share of a surface at some depths [m] that structured light cannot read: patches of 8 px."""
     return 0.005 + 0.115 * np.minimum(np.asarray(depth_m) / 10.0, 1.0) ** 2
 
 

@@ -70,7 +70,7 @@ class Layer:
 
 
 def _thermal_images(config: ThermalConfig) -> tuple[Layer, ...]:
-    """Grey as the robot sees it; temperatures; and a grey for people, made when somebody asks for it."""
+    """Grey as the robot sees it; temperatures; and a grey for people, made when a person asks for it."""
     if config.gain == "fixed":
         what = f"8-bit, {config.lowest_c:g}..{config.highest_c:g} degC, as the robot sees it"
     else:
@@ -207,7 +207,7 @@ def kind_of(config: CameraConfig) -> CameraKind:
 
 
 def flat_geometry(cameras: Mapping[str, CameraConfig], name: str) -> Pinhole:
-    """Give the geometry of a camera whose image must be flat.
+    """Return the geometry of a camera whose image must be flat.
 
     Raises:
         BadInput: there is none of that name, or it is no pinhole camera.
@@ -219,13 +219,13 @@ def flat_geometry(cameras: Mapping[str, CameraConfig], name: str) -> Pinhole:
 
 
 def layers_of(config: CameraConfig) -> tuple[Layer, ...]:
-    """Tell which images a camera of these settings gives at an instant."""
+    """Return which images a camera of these settings gives at an instant."""
     kind = kind_of(config)
     return (*kind.layers, *kind.more_layers(config))
 
 
 def shown_to_people(images: Mapping[str, Image], name: str, config: CameraConfig) -> NDArray[np.uint8]:
-    """Give what people are shown of a camera's images: (H, W) grey or (H, W, 3) RGB, of 8 bits."""
+    """Return what people are shown of a camera's images: (H, W) grey or (H, W, 3) RGB, of 8 bits."""
     suffix = kind_of(config).shown
     layer = next(layer for layer in layers_of(config) if layer.suffix == suffix)
     return layer.show(images[f"{name}{suffix}"])

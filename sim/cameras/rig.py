@@ -44,7 +44,7 @@ class Rig:
         return tuple(name for name, every in self._every.items() if tick % every == 0)
 
     def read(self, tick: int) -> Mapping[str, Image]:
-        """Give the images of the cameras that are due, each made when first asked for, until the next call.
+        """Return the images of the cameras that are due, each made when first asked for, until the next call.
 
         One of a camera that remembers is made now.
 
@@ -60,7 +60,7 @@ class Rig:
         return OnDemand(owner, lambda image: shots[owner[image]][image])
 
     def expect(self, tick: int) -> tuple[str, ...]:
-        """Name the cameras that are due, of which somebody may take the image until the next call."""
+        """Name the cameras that are due, of which a person may take the image until the next call."""
         self.forget()
         due = self.due(tick)
         for name in due:
@@ -68,7 +68,7 @@ class Rig:
         return due
 
     def take_over(self, name: str) -> Sensor:
-        """Give the sensor of a camera to who takes its image of this instant now."""
+        """Return the sensor of a camera to who takes its image of this instant now."""
         sensor = self._sensors[name]
         for _ in range(self._unread[name] - 1):
             sensor.skip()

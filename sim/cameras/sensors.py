@@ -112,7 +112,7 @@ class ThermalSensor:
         skip_gaussian(self._detector.dead.shape, self._noise)
 
     def _read_out(self, seen: CameraView) -> NDArray[np.float32]:
-        """Give what the detector makes of the scene [degC]."""
+        """Return what the detector makes of the scene [degC]."""
         config = self._config
         apparent = surface_image(
             seen.view, seen.materials, config, seen.world_from_camera, seen.world_from_part,

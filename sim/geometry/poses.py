@@ -43,7 +43,7 @@ def _poses(positions: Array, orientations: Array) -> Array:
 
 @njit(cache=True)
 def quaternions(poses: Array) -> Array:
-    """Give the unit quaternions x, y, z, w (N, 4) of rigid poses (N, 4, 4).
+    """Return the unit quaternions x, y, z, w (N, 4) of rigid poses (N, 4, 4).
 
     Each starts from the largest of its four numbers, so that nothing is divided by almost zero.
 

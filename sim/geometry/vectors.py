@@ -117,7 +117,7 @@ def invert(pose: Array, inverse: Array) -> None:
 
 @njit(cache=True, nogil=True)
 def from_each(a_from_world: Array, world_from_part: Array) -> Array:
-    """Give a from part, (P, 4, 4), by a from world and (P, 4, 4) world from part."""
+    """Return a from part, (P, 4, 4), by a from world and (P, 4, 4) world from part."""
     found = np.empty_like(world_from_part)
     for part in range(len(world_from_part)):
         multiply(a_from_world, world_from_part[part], found[part])

@@ -101,7 +101,7 @@ class Conduct(Protocol):
     """What a person does during one encounter with the robot."""
 
     def wish(self, dt_s: float, now: ConductSituation) -> Wish:
-        """Tell what the person would rather do than its script."""
+        """Return what the person would rather do than its script."""
         ...
 
 
@@ -109,7 +109,7 @@ class Ignoring:
     """Neither looks nor makes way; stops only where it would walk into the robot."""
 
     def wish(self, dt_s: float, now: ConductSituation) -> Wish:  # noqa: ARG002
-        """Tell what the person would rather do than its script."""
+        """Return what the person would rather do than its script."""
         return Wish(heeds_robot=False)
 
 
@@ -121,7 +121,7 @@ class MakingWay:
         self._aside: Array | None = None
 
     def wish(self, dt_s: float, now: ConductSituation) -> Wish:  # noqa: ARG002
-        """Tell what the person would rather do than its script."""
+        """Return what the person would rather do than its script."""
         robot = now.robot.position
         if now.is_walking or now.is_seated:
             return Wish(clear_m=self._keep_m, gaze_at=robot)
@@ -157,7 +157,7 @@ class Wary:
         self._refuge: Array | None = None
 
     def wish(self, dt_s: float, now: ConductSituation) -> Wish:  # noqa: ARG002
-        """Tell what the person would rather do than its script."""
+        """Return what the person would rather do than its script."""
         robot = now.robot.position
         if now.is_seated or (now.is_walking and now.gap_m > self._keep_m):
             self._refuge = None
@@ -193,7 +193,7 @@ class Curious:
         self._chases_s = _CHASE_S
 
     def wish(self, dt_s: float, now: ConductSituation) -> Wish:
-        """Tell what the person would rather do than its script."""
+        """Return what the person would rather do than its script."""
         if self._gaze_s <= 0.0 or self._chases_s <= 0.0:
             return Wish(clear_m=_PASSES_M)
         robot = now.robot.position
@@ -216,7 +216,7 @@ class Blocking:
         self._chases_s = _CHASE_S
 
     def wish(self, dt_s: float, now: ConductSituation) -> Wish:
-        """Tell what the person would rather do than its script."""
+        """Return what the person would rather do than its script."""
         if self._stands_s <= 0.0 or self._chases_s <= 0.0:
             return Wish(clear_m=_PASSES_M)
         robot = now.robot
@@ -240,7 +240,7 @@ class Surprised:
         self._stands_s = reaction.duration_s
 
     def wish(self, dt_s: float, now: ConductSituation) -> Wish:
-        """Tell what the person would rather do than its script."""
+        """Return what the person would rather do than its script."""
         if self._stands_s <= 0.0:
             return Wish(clear_m=_PASSES_M)
         self._stands_s -= dt_s
@@ -276,7 +276,7 @@ class Leading:
         self._walked_s = 0.0
 
     def wish(self, dt_s: float, now: ConductSituation) -> Wish:
-        """Tell what the person would rather do than its script, once a control step of dt_s [s]."""
+        """Return what the person would rather do than its script, once a control step of dt_s [s]."""
         robot, gap_m, lead = now.robot.position, now.gap_m, self._lead
         if gap_m <= lead.goes_on_within_m:
             self._waited_s, self._has_given_up = None, False

@@ -200,7 +200,7 @@ class Crowd:
             self._physics.set_hidden(f"{person.name}/{_SOLID}", True)
 
     def _make_solid(self, person: Person, gap_to_robot: Callable[[float, float], float]) -> None:
-        """Give a person who has just appeared its solid capsule, as soon as the robot is not in it."""
+        """Return a person who has just appeared its solid capsule, as soon as the robot is not in it."""
         if person.name not in self._solid and gap_to_robot(*person.position.tolist()) > person.radius_m:
             self._solid.add(person.name)
             self._physics.set_hidden(f"{person.name}/{_SOLID}", False)
@@ -214,7 +214,7 @@ class Crowd:
 
 
 def those_present(people: Sequence[Person]) -> Present:
-    """Tell where those are who are in the world now, and how they move."""
+    """Return where those are who are in the world now, and how they move."""
     there = [person for person in people if person.present]
     motion = np.array([(*person.position, *person.velocity) for person in there], np.float64)
     return Present({person.name: row for row, person in enumerate(there)}, motion.reshape(-1, 4))

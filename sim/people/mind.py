@@ -30,7 +30,7 @@ _WAITS_M: Final = 1.5  # ahead of the last of the group, where one waits
 
 
 def pace_among(points: Sequence[Point], progress: float, company: Iterable[float]) -> float:
-    """Tell what share of its planned speed a person walks at, so as not to leave its group behind.
+    """Return what share of its planned speed a person walks at, so as not to leave its group behind.
 
     Args:
         points: [m] of the person's own path.
@@ -83,7 +83,7 @@ class Mind:
     def wish(
         self, dt_s: float, now: ConductSituation | None, progress: float, company: Iterable[float]
     ) -> Wish:
-        """Tell what the person would rather do than its script.
+        """Return what the person would rather do than its script.
 
         Args:
             dt_s: [s] length of the control step.

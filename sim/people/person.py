@@ -81,7 +81,7 @@ class _Grasp:
 
 
 class Person:
-    """A person that follows its script; a finisher refines its looks.
+    """A person that follows its script; a finisher refines its appearance.
 
     Attributes:
         config: as given.

@@ -150,7 +150,7 @@ class BulletBodies:
 
 
 def as_unit(orientation: Quaternion) -> Quaternion:
-    """Give a quaternion its length of 1, as PyBullet does."""
+    """Return a quaternion its length of 1, as PyBullet does."""
     x, y, z, w = orientation
     length = math.sqrt(x * x + y * y + z * z + w * w)
     return orientation if abs(length - 1.0) < _ROUNDING else (x / length, y / length, z / length, w / length)

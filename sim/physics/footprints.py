@@ -187,7 +187,7 @@ APART = (-math.inf, 0.0, 0.0, 0.0)
 
 @njit(cache=True)
 def overlap(half: Array, outline: Array, radius: float) -> tuple[float, float, float, float]:
-    """Tell depth, normal and lever of a contact.
+    """Return depth, normal and lever of a contact.
 
     Args:
         half: (2,) [m] half lengths of a rectangle about the origin, along x and y.

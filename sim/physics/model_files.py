@@ -27,7 +27,7 @@ def data_folder() -> Path:
 
 
 def is_in_data(path: Path | str) -> bool:
-    """Tell whether a file, by its name or its whole path, is one of pybullet_data."""
+    """Return whether a file, by its name or its whole path, is one of pybullet_data."""
     folder = _data_folder()
     return folder is not None and (folder / path).is_file() and (folder / path).is_relative_to(folder)
 

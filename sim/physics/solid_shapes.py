@@ -70,7 +70,7 @@ class Solids(NamedTuple):
 
 
 def make_solids(shapes: Sequence[VisualShape]) -> Solids:
-    """Give shapes, by the numbers of their parts, room for where they are, which `refresh` fills."""
+    """Return shapes, by the numbers of their parts, room for where they are, which `refresh` fills."""
     table = make_shape_table(shapes)
     count = len(table.kind)
     return Solids(table, np.zeros((count, 4, 4)), np.zeros((count, 2, 3)))

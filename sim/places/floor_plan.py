@@ -278,7 +278,7 @@ def _walls(areas: tuple[tuple[str, Rectangle], ...]) -> tuple[Wall, ...]:
 
 
 def _join_stubs(blocks: list[tuple[Wall, Rectangle]]) -> tuple[tuple[Wall, Rectangle], ...]:
-    """Give each lone corner to a block that it lengthens, so that no seam crosses a straight wall."""
+    """Return each lone corner to a block that it lengthens, so that no seam crosses a straight wall."""
     joined = list(blocks)
     for stub in [item for item in blocks if item[1].longer_side <= WALL_M + CLOSE_M]:
         if stub not in joined:

@@ -148,7 +148,7 @@ class Mover:
         return np.array(list(product(*zip(self.low_m, self.high_m, strict=True))))
 
     def at(self, time_s: float) -> ThingState:
-        """Tell where the thing is at a time [s]; it depends on nothing else."""
+        """Return where the thing is at a time [s]; it depends on nothing else."""
         stance, is_there, by = self.start, not self.is_hidden_at_start, None
         for action in self.actions:
             if time_s < action.at_s - _SAME_S:

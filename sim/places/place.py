@@ -103,12 +103,12 @@ class Place:
 
 
 def air_of(place: Place) -> float:
-    """Tell the temperature [degC] of the air of a place, which people's surfaces follow."""
+    """Return the temperature [degC] of the air of a place, which people's surfaces follow."""
     return place.surroundings_c
 
 
 def is_outdoors(place: Place) -> bool:
-    """Tell whether there is a street, over which wind blows."""
+    """Return whether there is a street, over which wind blows."""
     floors = (fixture.part.material.covering for fixture in place.fixtures if fixture.part is not None)
     return Covering.STREET in floors
 

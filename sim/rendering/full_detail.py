@@ -132,7 +132,7 @@ class FullDetail:
         self._is_shiny, self._is_mirrored = is_shiny, is_mirrored
 
     def smooth(self, image: NDArray[np.float32], contrast: float) -> None:
-        """Give the edges of an (H, W, C) image of this view no stairs, in place; see `edges.smooth`."""
+        """Return the edges of an (H, W, C) image of this view no stairs, in place; see `edges.smooth`."""
         seen = self._seen
         smooth(
             image, contrast, seen.view, seen.scene.table, self._camera, seen.world_from_camera,

@@ -84,7 +84,7 @@ class PanoramicRenderer(Renderer):
     def _outline(
         self, scene: Scene, camera: Panorama, world_from_camera: Matrix, parts: Mask
     ) -> tuple[Outline, np.uint64]:
-        """Give the outline of whoever some parts (P,) belong to, drawn once a scene, and their own bits."""
+        """Return the outline of whoever some parts (P,) belong to, drawn once a scene, and their own bits."""
         person = scene.person_of_part[parts.argmax()]
         of_one = scene.person_of_part == person
         if person == NOBODY or (parts & ~of_one).any():

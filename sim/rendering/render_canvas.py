@@ -62,7 +62,7 @@ class Canvas(NamedTuple):
 
 
 def make_canvas(lens: Lens, surfaces: int) -> Canvas:
-    """Give an empty canvas for a table of so many surfaces."""
+    """Return an empty canvas for a table of so many surfaces."""
     shape = (lens.height, lens.width)
     return Canvas(
         nearness=np.zeros(shape),

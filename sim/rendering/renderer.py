@@ -194,7 +194,7 @@ class PinholeRenderer(Renderer):
         return silhouette_area(camera, scene.table, self._before(scene, world_from_camera), parts, bounds)
 
     def _before(self, scene: Scene, world_from_camera: Matrix) -> Matrix:
-        """Give the poses (P, 4, 4) of a scene's parts in a camera's frame."""
+        """Return the poses (P, 4, 4) of a scene's parts in a camera's frame."""
         known, key = self._poses.setdefault(scene, {}), world_from_camera.tobytes()
         if key not in known:
             known[key] = invert_pose(world_from_camera) @ scene.world_from_part

@@ -74,7 +74,7 @@ class Drawing(NamedTuple):
 
 @lru_cache(maxsize=16)
 def ring_of(camera: Panorama) -> Ring:
-    """Give the cameras of a panorama's columns."""
+    """Return the cameras of a panorama's columns."""
     right = -camera.bearing(np.arange(camera.width))
     sin, cos, none = np.sin(right), np.cos(right), np.zeros(camera.width)
     low_sin, low_cos = math.sin(camera.mirror.axis_rad), math.cos(camera.mirror.axis_rad)
@@ -89,7 +89,7 @@ def ring_of(camera: Panorama) -> Ring:
 
 
 def make_drawing(camera: Panorama) -> Drawing:
-    """Give empty columns."""
+    """Return empty columns."""
     shape = (camera.width, camera.height)
     return Drawing(np.zeros(shape), np.empty(shape, np.int32), np.zeros(shape, np.uint64))
 

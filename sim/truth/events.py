@@ -11,7 +11,7 @@ from peopleboy.sim.truth.truth import BORDER, PersonTruth, ThingTruth, Truth
 
 _Reported = tuple[str, str, str]  # what, to whom, by whom
 
-# Somebody enters the view when more than this share of the whole silhouette is seen, and leaves it when less
+# A person enters the view when more than this share of the whole silhouette is seen, and leaves it when less
 # than the second lies inside the image, hidden or not.
 ENTERS_SEEN = 0.05
 LEAVES_INSIDE = 0.02
@@ -84,7 +84,7 @@ class EventLog:
         return found + self._occlusions(name, shares)
 
     def _occlusions(self, name: str, shares: Mapping[str, float]) -> list[_Reported]:
-        """Tell what is new of an occlusion by the share that each occluder hides."""
+        """Return what is new of an occlusion by the share that each occluder hides."""
         found: list[_Reported] = []
         hidden, total = self._hidden.setdefault(name, []), sum(shares.values())
         most = max(shares, key=lambda other: shares[other], default="")

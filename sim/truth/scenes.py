@@ -125,7 +125,7 @@ class Scenes(NamedTuple):
     contacts: tuple[tuple[str, ...], ...]
 
     def truths(self) -> list[ImageFreeTruth]:
-        """Tell of each world."""
+        """Return for each world."""
         worlds, people = self.worlds, self._bystanders()
         rows = zip(
             worlds["time_s"].tolist(),

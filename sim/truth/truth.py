@@ -34,7 +34,7 @@ def box_of_pixels(first_u: float, last_u: float, first_v: float, last_v: float) 
 
 
 def is_cut_off(bounds: Edges, camera: CameraGeometry) -> bool:
-    """Tell whether something with these bounds reaches beyond the image's border."""
+    """Return whether something with these bounds reaches beyond the image's border."""
     left, top, right, bottom = bounds
     return left <= -0.5 or top <= -0.5 or right >= camera.width - 0.5 or bottom >= camera.height - 0.5
 
@@ -227,7 +227,7 @@ class Truth:
         robot: true pose of the robot.
         robot_velocity: true forward speed [m/s] and turn rate [rad/s].
         contacts: names of what the robot touches, the floor aside.
-        things: all that somebody or something moves in this place, there or not.
+        things: all that a person or something moves in this place, there or not.
         owners: who or what is seen at each pixel.
         background_m: draws (H, W) [m] the depth without people and without what is moved; what it costs is
             a rendering.
@@ -249,7 +249,7 @@ class Truth:
 
 
 def counted_m(camera: CameraGeometry) -> tuple[float, float]:
-    """Give the distances [m] from a camera between which people are to be found.
+    """Return the distances [m] from a camera between which people are to be found.
 
     It is where the sources count (T 3.3). They had no panorama; there it is where trackers of
     panoramas find people.

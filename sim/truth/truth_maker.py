@@ -111,7 +111,7 @@ class TruthMaker:
         return seen.renderer.view(bare, seen.camera, seen.world_from_camera).depth
 
     def box(self, person: int, seen: RenderPass) -> Box | None:
-        """Tell the truth box of one person alone, by its number from 1; None as in `PersonTruth`."""
+        """Return the truth box of one person alone, by its number from 1; None as in `PersonTruth`."""
         k = person - 1
         if not self._people[k].present:
             return None
@@ -184,7 +184,7 @@ class TruthMaker:
         return shares | {BORDER: outside / area} if outside > 0 else shares
 
     def _joints(self, here: Sequence[int], seen: RenderPass) -> Iterator[_Joints]:
-        """Tell the joints of some people, by their numbers from 0."""
+        """Return the joints of some people, by their numbers from 0."""
         places = np.concatenate([self._people[k].joints() for k in here])
         pixels = seen.camera.project(transform(invert_pose(seen.world_from_camera), places))
         size = np.array([seen.camera.width, seen.camera.height])
@@ -206,7 +206,7 @@ class _Joints(NamedTuple):
 
 
 def _outlines(parts: Sequence[str], person_of_part: NDArray[np.int64], people: int) -> NDArray[np.bool_]:
-    """Tell which parts of each person make up what edges of the boxes, (N, 3, P): whole, height, torso."""
+    """Return which parts of each person make up what edges of the boxes, (N, 3, P): whole, height, torso."""
     is_arm, is_torso, is_body = (
         np.isin(parts, names) for names in (ARM_PARTS, TORSO_PARTS, list(PART_CLASSES))
     )
@@ -232,7 +232,7 @@ def _thesis_box(height: Edges, torso: Edges) -> Box | None:
 
 
 def _frozen(array: A) -> A:
-    """Give a view of an array that cannot be written to."""
+    """Return a view of an array that cannot be written to."""
     view = array.view()
     view.setflags(write=False)
     return view

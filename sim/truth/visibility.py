@@ -29,7 +29,7 @@ class Uprights(NamedTuple):
     """Q people before cameras, one each.
 
     Attributes:
-        boxes: (Q, 4) [px] left, top, width, height; NaN where somebody is not before the camera.
+        boxes: (Q, 4) [px] left, top, width, height; NaN where a person is not before the camera.
         reaches_in: (Q,) whether any of the box lies in the image.
         eyes: (Q, 3) [m] where each one's camera is, world frame.
         points: (Q, 5, 3) [m] up each one's middle, world frame.
@@ -127,7 +127,7 @@ def _shown(point: Point, lens: Lens) -> tuple[float, float]:
 
 
 def free_ray_shares(uprights: Uprights, fraction: Matrix, radii_m: Matrix) -> Matrix:
-    """Tell which share of the points are inside the image with nothing solid before them.
+    """Return which share of the points are inside the image with nothing solid before them.
 
     Args:
         uprights: Q people.

@@ -30,7 +30,7 @@ class BadInput(ValueError):  # noqa: N818
         return ": ".join(part for part in (self.file, dotted(self.key), self.reason) if part)
 
     def within(self, *steps: str | int, file: str = "") -> BadInput:
-        """Give the same mistake, found below these steps of a file.
+        """Return the same mistake, found below these steps of a file.
 
         One that is in a file of its own already is the reason for which this file cannot be used.
         """
@@ -47,7 +47,7 @@ def dotted(key: Key) -> str:
 
 @contextmanager
 def found_in(*steps: str | int, file: str = "") -> Iterator[None]:
-    """Tell of a mistake in the block below which steps of a file it is.
+    """Return for a mistake in the block below which steps of a file it is.
 
     Raises:
         BadInput: that mistake.

@@ -91,7 +91,7 @@ class Terminated(SystemExit):
 
 @contextmanager
 def blamed(who: str) -> Iterator[None]:
-    """Tell of an error in the block whose it is, such as "tracker 'my_module:MyTracker'".
+    """Return for an error in the block whose it is, such as "tracker 'my_module:MyTracker'".
 
     Raises:
         BadInput: it was raised in the block.
@@ -109,7 +109,7 @@ def blamed(who: str) -> Iterator[None]:
 
 @contextmanager
 def at_frame(frame: int) -> Iterator[None]:
-    """Tell of an error in the block at which frame it was.
+    """Return for an error in the block at which frame it was.
 
     Raises:
         BadInput: it was raised in the block.
@@ -125,7 +125,7 @@ def at_frame(frame: int) -> Iterator[None]:
 
 @contextmanager
 def traceback_in(path: Path) -> Iterator[None]:
-    """Tell of an error of such a class in the block where its traceback is kept.
+    """Return for an error of such a class in the block where its traceback is kept.
 
     Raises:
         OwnCodeFailed: it was raised in the block.
@@ -154,7 +154,7 @@ def traceback_to(path: Path) -> Iterator[None]:
 
 
 def in_one_line(error: BaseException) -> str:
-    """Give kind, message and place of an error: the last line of a user's in its traceback, or the last."""
+    """Return kind, message and place of an error: the last line of a user's in its traceback, or the last."""
     lines = traceback.extract_tb(error.__traceback__)
     own = [line for line in lines if not line.filename.startswith(_OF_NO_USER)]
     at = (own or lines)[-1]
@@ -165,6 +165,6 @@ def in_one_line(error: BaseException) -> str:
 
 
 def traceback_of(error: Exception) -> str:
-    """Give the traceback of an error; of one in a user's class, that of its cause."""
+    """Return the traceback of an error; of one in a user's class, that of its cause."""
     cause = error.__cause__ if isinstance(error, OwnCodeFailed) else None
     return "".join(traceback.format_exception(error if cause is None else cause))

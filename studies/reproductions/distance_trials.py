@@ -119,7 +119,7 @@ The paper says that "the estimated velocity" predicts: `KALMAN` takes the printe
 def position_trials(
     run: DistanceSamples, taught: Sequence[tuple[Rows, Floats]], *, is_noisy: bool = False
 ) -> dict[str, ImageErrors]:
-    """Tell positions with and without the filter, which sees all images in their order; 70 % of them count.
+    """Return positions with and without the filter, which sees all images in their order; 70 % of them count.
 
     Own Q and R are those of the whole film, so that they are as good as they can be.
 
@@ -156,7 +156,7 @@ def new_people_trials(
 
 
 def correlations(run: DistanceSamples, taught: Sequence[tuple[Rows, Floats]]) -> Floats:
-    """Give the linear correlation (4,) with the true distance: of each cue, and of what a network tells.
+    """Return the linear correlation (4,) with the true distance: of each cue, and of what a network tells.
 
     The first network is tested on images that it was not taught on, the cues on all.
 
@@ -168,7 +168,7 @@ def correlations(run: DistanceSamples, taught: Sequence[tuple[Rows, Floats]]) ->
 
 
 def predicted_in_turn(run: DistanceSamples, trial: SplitTrial) -> Floats:
-    """Tell the distances (N,) [m] of all images of a film, each by a network that did not learn from it."""
+    """Return the distances (N,) [m] of all images of a film, each by a network that did not learn from it."""
     predicted, repeat = np.full(len(run.cues), np.nan), 0
     while np.isnan(predicted).any():
         training, rest, rng = trial.parts(len(run.cues), repeat)

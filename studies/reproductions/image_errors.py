@@ -110,7 +110,7 @@ class ImageErrors:
         return cls(splits=tuple(map(pooled, by_split)), blocks=tuple(map(pooled, by_block)))
 
     def plain(self) -> dict[str, Any]:
-        """Give them as plain data."""
+        """Return them as plain data."""
         return {
             "splits": [list(astuple(one)) for one in self.splits],
             "blocks": [list(astuple(one)) for one in self.blocks],

@@ -114,7 +114,7 @@ class Tuned:
         return "it matters little" if is_flat else "undecided"
 
     def plain(self) -> dict[str, Any]:
-        """Give all of it as plain data; without an interval, its ends are None."""
+        """Return all of it as plain data; without an interval, its ends are None."""
         gain, printed = self.gain, self.parameter.printed
         return {
             "printed": float(printed),

@@ -36,7 +36,7 @@ class Parameter:
     values: Mapping[str, Changes]
 
     def setting(self, value: str) -> TrackerSetting:
-        """Give the tracker with this value."""
+        """Return the tracker with this value."""
         return TrackerSetting(self.base, self.values[value])
 
 

@@ -103,7 +103,7 @@ def collect_distances(scenario: str, seed: int) -> dict[str, Any]:
         Plain data: the camera's `view`, `rows` of samples, and how many images `missed` the person.
 
     Raises:
-        BadInput: an unknown scenario, somebody in the first images, or a camera that nobody can calibrate or
+        BadInput: an unknown scenario, a person in the first images, or a camera that nobody can calibrate or
             that sees no floor where people walk.
     """
     loaded = load_scenario(scenario).mounting((PANORAMA,))
@@ -368,7 +368,7 @@ class DistanceTraining(Specification[list[dict[str, Any]]]):
         return {"error on those": _error(seen), "error on the rest, by blocks": _error(unseen)}
 
     def is_replaced(self, path: Path, model: DistanceModel) -> bool:
-        """Tell whether a shipped file is of the same mirror."""
+        """Return whether a shipped file is of the same mirror."""
         return path.match(file_name("*")) and not DistanceModel.load(path).view.refusal(model.view)
 
 

@@ -109,7 +109,7 @@ class Episodes:
     over: set[frozenset[str]] = field(default_factory=set)
 
     def takes(self, one: PersonTruth, other: PersonTruth, frame: int) -> bool:
-        """Tell whether to keep this sample: not every frame, and none from a total occlusion on.
+        """Return whether to keep this sample: not every frame, and none from a total occlusion on.
 
         Source: thesis, section 7.4: only what precedes the moment of total occlusion.
         """

@@ -109,7 +109,7 @@ class Specification(ABC, Generic[Data]):
         """Measure a trained model on the validation split: results by what they were measured on."""
 
     def is_replaced(self, path: Path, model: Any) -> bool:  # noqa: ARG002
-        """Tell whether a shipped file is removed when a model is shipped under another name."""
+        """Return whether a shipped file is removed when a model is shipped under another name."""
         return False
 
 

@@ -161,7 +161,7 @@ def _windows(
 
 
 def _is_person(found: PreDetection, truth: Truth, view: DepthView) -> bool | None:
-    """Tell whether something is a person; None for what is neither clearly one nor clearly none."""
+    """Return whether something is a person; None for what is neither clearly one nor clearly none."""
     at = view.on_floor(np.array([found.x_m]), np.array([found.z_m]))[0]
     answer: bool | None = False
     for person in truth.people:
@@ -175,7 +175,7 @@ def _is_person(found: PreDetection, truth: Truth, view: DepthView) -> bool | Non
 
 
 def _has_head(person: PersonTruth) -> bool:
-    """Tell whether the head is in the image: without it no window shows enough of a person."""
+    """Return whether the head is in the image: without it no window shows enough of a person."""
     return person.whole_box is not None and person.whole_box[1] > -0.02 * person.whole_box[3]
 
 

@@ -92,7 +92,7 @@ class Focus:
 
 
 def middle_of(box: Box) -> tuple[float, float]:
-    """Give u, v [px] of the middle of the torso of a person with a box."""
+    """Return u, v [px] of the middle of the torso of a person with a box."""
     left, top, width, height = box
     return left + width / 2.0, top + (TORSO.top + TORSO.height / 2.0) * height
 
@@ -189,7 +189,7 @@ def _part_scores(
 
 
 def attention_map(sight: ImageSums, known: PartModel, config: AttentionConfig) -> Doubles:
-    """Give A (rows, columns): excitation minus inhibition, at least 0 (equations 5.9 to 5.11)."""
+    """Return A (rows, columns): excitation minus inhibition, at least 0 (equations 5.9 to 5.11)."""
     assert sight.maps is not None
     weight = known.excites - known.inhibits
     if not config.keeps_negative:

@@ -26,7 +26,7 @@ class AttentionConfig:
             outside, of which a box of any size can have the larger part.
         reward: "more" of a feature than the rest has (equations 5.9 to 5.11), or the "same" as in the box.
         is_absolute: whether R stays as it is before it is mixed with the patterns; otherwise it is given as a
-            share of its maximum in the frame, by which somebody is always found.
+            share of its maximum in the frame, by which a person is always found.
         keeps_negative: whether features that speak against the box are subtracted, as equation 5.11 says, or
             left out, as the text does.
         colour: whether the ratio of colours in the box and around it is looked at, too.

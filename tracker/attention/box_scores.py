@@ -16,7 +16,7 @@ MOST: float = 9.0
 
 @njit(cache=True, nogil=True)
 def box_means(sums: Doubles, row: int, column: int, height: int, width: int) -> Doubles:
-    """Give the means (C,) over a box of what an integral image (rows + 1, columns + 1, C) was made of."""
+    """Return the means (C,) over a box of what an integral image (rows + 1, columns + 1, C) was made of."""
     low, right = row + height, column + width
     count = np.float64(height * width)
     total = sums[low, right] - sums[row, right] - sums[low, column] + sums[row, column]
@@ -26,7 +26,7 @@ def box_means(sums: Doubles, row: int, column: int, height: int, width: int) -> 
 
 @njit(cache=True, nogil=True)
 def spreads(sums: Doubles, height: int, width: int, step: int) -> Doubles:
-    """Give the standard deviations (C,) of the means of all boxes of one size, every so many cells."""
+    """Return the standard deviations (C,) of the means of all boxes of one size, every so many cells."""
     count = 0
     first, second = np.zeros(sums.shape[2]), np.zeros(sums.shape[2])
     for row in range(0, sums.shape[0] - height, step):
@@ -105,7 +105,7 @@ def pattern_scores(
     learned: NDArray[np.float32],
     weight: NDArray[np.float32],
 ) -> Doubles:
-    """Give LA (R, C) of equation 5.13 for boxes; 0 for those that are not inside.
+    """Return LA (R, C) of equation 5.13 for boxes; 0 for those that are not inside.
 
     The source subtracts an image position; its sum goes over the bins.
     """

@@ -40,7 +40,7 @@ _DARKEST: Final = 0.1  # intensity below which colours are not raised any more
 
 
 def basic_maps(image: NDArray[np.uint8], *, inhibits: bool) -> Floats:
-    """Give the maps (H, W, 10), in the order of `BASIC_NAMES`, of an image (H, W, 3).
+    """Return the maps (H, W, 10), in the order of `BASIC_NAMES`, of an image (H, W, 3).
 
     Colours are those of the image over its intensity, those of orientation magnitudes of Gabor filters.
 
@@ -125,7 +125,7 @@ _OPPONENTS: Final = ((0, 2), (3, 1), (8, 9))  # red and green, blue and yellow, 
 
 
 def feature_maps(image: NDArray[np.uint8], config: AttentionConfig) -> Floats:
-    """Give the maps (H / 2, W / 2, 23) of an image (H, W, 3), in the order of `NAMES`.
+    """Return the maps (H / 2, W / 2, 23) of an image (H, W, 3), in the order of `NAMES`.
 
     Those with centre-surround are 0 where nobody asks for them.
 
@@ -144,7 +144,7 @@ def feature_maps(image: NDArray[np.uint8], config: AttentionConfig) -> Floats:
 
 
 def in_use(config: AttentionConfig) -> NDArray[np.bool_]:
-    """Tell which of the maps (23,) a configuration looks at."""
+    """Return which of the maps (23,) a configuration looks at."""
     used = np.zeros(len(NAMES), np.bool_)
     used[PLAIN] = config.plain
     used[SURROUND] = used[SUMS] = config.surround
@@ -169,7 +169,7 @@ def _centre_surround(basic: Floats) -> Floats:
 
 
 def _opponents(basic: Floats) -> Floats:
-    """Give the three differences of opposites, and the orientations (H, W, 7)."""
+    """Return the three differences of opposites, and the orientations (H, W, 7)."""
     pairs = [basic[:, :, one] - basic[:, :, other] for one, other in _OPPONENTS]
     return np.dstack([*pairs, basic[:, :, ORIENTATIONS]])
 

@@ -21,7 +21,7 @@ BINS: Final = 59
 
 
 def _uniform_bins() -> NDArray[np.uint8]:
-    """Give the bin of each of the 256 patterns."""
+    """Return the bin of each of the 256 patterns."""
     bins = np.full(256, BINS - 1, np.uint8)
     ring = [[(code >> k) & 1 for k in range(8)] for code in range(256)]
     uniform = [c for c in range(256) if sum(ring[c][k] != ring[c][k - 1] for k in range(8)) <= 2]
@@ -33,7 +33,7 @@ _BIN_OF: Final = _uniform_bins()
 
 
 def patterns(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Give the bin of the pattern at each pixel (H, W) of an image (H, W, 3); of even areas at the border.
+    """Return the bin of the pattern at each pixel (H, W) of an image (H, W, 3); of even areas at the border.
 
     Source: situation-awareness thesis, section 5.2, which says no more than "uniform".
     """
@@ -125,7 +125,7 @@ def check_image(image: object) -> None:
 
 @njit(cache=True, nogil=True)
 def colour_bins(image: NDArray[np.uint8]) -> NDArray[np.uint16]:
-    """Give the bin (H, W) of each colour of an image (H, W, 3)."""
+    """Return the bin (H, W) of each colour of an image (H, W, 3)."""
     bins = np.empty(image.shape[:2], np.uint16)
     for v in range(image.shape[0]):
         for u in range(image.shape[1]):

@@ -49,7 +49,7 @@ class Cells:
     width: int
 
     def is_inside(self, rows: int, columns: int) -> bool:
-        """Tell whether all of it is inside an image of so many cells."""
+        """Return whether all of it is inside an image of so many cells."""
         return (
             min(self.row, self.column) >= 0
             and self.row + self.height <= rows
@@ -58,7 +58,7 @@ class Cells:
 
 
 def cells_of(part: ModelPart, box: Box, scale: float = 1.0) -> Cells:
-    """Give the cells of a part of a person with this box [px] from head to feet.
+    """Return the cells of a part of a person with this box [px] from head to feet.
 
     Args:
         part: which one.
@@ -167,7 +167,7 @@ class PartModel:
 def _shares(
     sight: ImageSums, cells: Cells, config: AttentionConfig, near: Mask | None
 ) -> tuple[Doubles, Doubles]:
-    """Give how much of each map the box has, and the rest (equations 5.4 to 5.6).
+    """Return how much of each map the box has, and the rest (equations 5.4 to 5.6).
 
     Sums over a box that is smaller than half of the image make nearly every feature speak against it; hence
     the means.
@@ -190,7 +190,7 @@ def _shares(
 
 
 def _patterns(sums: Singles, cells: Cells) -> tuple[Singles, Singles]:
-    """Give the shares of the patterns in a box, and their ratio to those in the rest (equation 5.8)."""
+    """Return the shares of the patterns in a box, and their ratio to those in the rest (equation 5.8)."""
     low, right = cells.row + cells.height, cells.column + cells.width
     box = sums[low, right] - sums[cells.row, right] - sums[low, cells.column] + sums[cells.row, cells.column]
     rest = sums[-1, -1] - box
@@ -199,7 +199,7 @@ def _patterns(sums: Singles, cells: Cells) -> tuple[Singles, Singles]:
 
 
 def _colours(sight: ImageSums, cells: Cells, near: Mask | None) -> tuple[Doubles, Doubles]:
-    """Give the shares of the colours in a box, and the logarithm of their ratio to those in the rest."""
+    """Return the shares of the colours in a box, and the logarithm of their ratio to those in the rest."""
     rows = slice(CELL_PX * cells.row, CELL_PX * (cells.row + cells.height))
     columns = slice(CELL_PX * cells.column, CELL_PX * (cells.column + cells.width))
     found = sight.colours[rows, columns]

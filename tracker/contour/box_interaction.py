@@ -63,7 +63,7 @@ ERRORS: Final = {
 
 
 def box_of(state: NDArray[np.floating], config: BoxConfig) -> Box:
-    """Give the box left, top, width, height [px] of a contour (9,).
+    """Return the box left, top, width, height [px] of a contour (9,).
 
     Its top is the top of the head, its centre column the body's.
 
@@ -76,7 +76,7 @@ def box_of(state: NDArray[np.floating], config: BoxConfig) -> Box:
 
 
 def regions_of(states: Sequence[NDArray[np.floating]], config: TrackerConfig) -> Regions:
-    """Give the rectangles (M, 4) [px] that people with these (9,) states take."""
+    """Return the rectangles (M, 4) [px] that people with these (9,) states take."""
     state = np.asarray(states, dtype=np.float32).reshape(-1, 9)
     return _regions(state, *_proportions(config.box))
 
@@ -91,7 +91,7 @@ def overlap_shares(state: Floats, regions: Regions, config: TrackerConfig) -> Fl
 
 
 def detector_factor(state: Floats, regions: Regions, config: TrackerConfig) -> Floats:
-    """Give the factor (N,) on a detector's samples: psi_D, once, for those that overlap anybody.
+    """Return the factor (N,) on a detector's samples: psi_D, once, for those that overlap anybody.
 
     How much is told by the intersection of sample and region as a share of the smaller of the two.
 
@@ -103,7 +103,7 @@ def detector_factor(state: Floats, regions: Regions, config: TrackerConfig) -> F
 
 
 def person_factor(shares: Floats, strength: NDArray[np.floating]) -> Floats:
-    """Give the factor (N,) on a person's samples: exp(-rho_j g_ij) for the region that costs it most.
+    """Return the factor (N,) on a person's samples: exp(-rho_j g_ij) for the region that costs it most.
 
     A sample that overlaps several regions is penalised only once.
 
@@ -122,7 +122,7 @@ def person_factor(shares: Floats, strength: NDArray[np.floating]) -> Floats:
 def places_on_floor(
     boxes: Sequence[Box], statuses: Sequence[Status], calibration: Calibration
 ) -> list[FloorPlace]:
-    """Tell where K people stand, from head and feet of their boxes [px].
+    """Return where K people stand, from head and feet of their boxes [px].
 
     Args:
         boxes: left, top, width, height of each.
@@ -139,7 +139,7 @@ def places_on_floor(
 
 
 def standing_box(place: FloorPlace, calibration: Calibration) -> Box:
-    """Give left, top, width, height [px] of somebody upright at a place, which may lie outside the image.
+    """Return left, top, width, height [px] of a person upright at a place, which may lie outside the image.
 
     Who is far to the side, or behind the camera, is put at `WIDEST_RAD` of that side.
     """
@@ -177,7 +177,7 @@ def _lean(pixels: NDArray[np.float64], calibration: Calibration) -> NDArray[np.f
 def _place(
     head: Ray, foot: Ray, along_share: float, across_share: float, camera_m: tuple[float, float, float]
 ) -> FloorPlace:
-    """Tell where somebody stands whose head and feet are seen along two rays."""
+    """Return where a person stands whose head and feet are seen along two rays."""
     x, y, up = camera_m
     ahead, aside, _ = foot
     away = math.hypot(ahead, aside)
@@ -214,7 +214,7 @@ def _weights(camera_height_m: float) -> tuple[float, float]:
 
 
 def _proportions(box: BoxConfig) -> tuple[float, float, float]:
-    """Give width per w, height per h, and how many h the top lies above the centre."""
+    """Return width per w, height per h, and how many h the top lies above the centre."""
     return box.width_per_w, box.height_per_h, CROWN + box.hair_per_h
 
 
@@ -249,7 +249,7 @@ def _kept_off(samples: Regions, regions: Regions, overlap: float, penalty: float
 
 @njit(cache=True, nogil=True)
 def _dearest_factor(shares: Floats, strength: Floats) -> Floats:
-    """Give the exponential (N,) of minus the largest of shares (N, M) times strengths (M,)."""
+    """Return the exponential (N,) of minus the largest of shares (N, M) times strengths (M,)."""
     factor = np.empty(len(shares), dtype=np.float32)
     for i in range(len(shares)):
         cost = shares[i, 0] * strength[0]

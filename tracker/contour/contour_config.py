@@ -179,7 +179,7 @@ class SearchConfig:
     """
 
     scans: int = 1  # times that the detector moves its samples and weighs them in each image
-    small_h: float = 0.0  # body semi-height [px] below which somebody is small
+    small_h: float = 0.0  # body semi-height [px] below which a person is small
     small_confidence: float = 0.5  # `birth_confidence` of who is small
     # Who is not small, and has nobody known beside, is born after `clear_frames` above this; 1: never sooner.
     clear_confidence: float = 1.0

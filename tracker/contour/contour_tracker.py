@@ -90,7 +90,7 @@ class ContourTracker:
         return (THERMAL,) if self._config.colour is None else (THERMAL, COLOUR)
 
     def introduce(self, box: Box) -> None:
-        """Tell that a person is at this box [px] in the next frame, as trackers of single objects are told.
+        """Report that a person is at this box [px] in the next frame, as trackers of single objects are told.
 
         The person's filter starts there, and the detector keeps off it.
         """
@@ -151,7 +151,7 @@ class ContourTracker:
         return self._model.amid(self._clutter)
 
     def _mount_for(self, calibration: Calibration | None, rows: int) -> Mount:
-        """Tell how the camera sits, and carry the limits over to it, once for each camera."""
+        """Return how the camera sits, and carry the limits over to it, once for each camera."""
         if self._mount is None or self._mount[0] is not calibration or self._mount[1] != rows:
             mount = mount_of(calibration, rows)
             self._mount = calibration, rows, mount
@@ -236,7 +236,7 @@ class ContourTracker:
                 self._persons = tuple(sorted((*others, found), key=lambda other: other.id))
 
     def _identified(self, found: TrackedPerson, view: FrameView, time_s: float) -> TrackedPerson:
-        """Give a person the identity of the one, lost before it was found, who it is.
+        """Return a person the identity of the one, lost before it was found, who it is.
 
         Who cannot be compared yet with all of them stays new until then.
         """
@@ -282,7 +282,7 @@ class ContourTracker:
         return belief
 
     def _is_shown(self, person: TrackedPerson, view: FrameView) -> bool:
-        """Tell whether a hidden person is shown: nobody outside of the image is."""
+        """Return whether a hidden person is shown: nobody outside of the image is."""
         region = regions_of([person.shown], self._config)[0]
         is_in_image = region[0] <= view.image.shape[1] and region[0] + region[2] >= 0
         return bool(is_in_image) and self._policy.is_shown(person, region, view)
@@ -333,7 +333,7 @@ def _follow(
 
 
 def _shared_filter(config: TrackerConfig, persons: int) -> FilterConfig:
-    """Give everybody N samples, or an equal part of what all share."""
+    """Return everybody N samples, or an equal part of what all share."""
     if config.interaction.total_count == 0 or persons == 0:
         return config.person
     return replace(config.person, count=max(1, config.interaction.total_count // persons))
@@ -376,7 +376,7 @@ def _height_kept(person: TrackedPerson, state: Floats, spread: float) -> Floats:
 def _likeness(
     person: TrackedPerson, state: Floats, surroundings: OrderContext, view: FrameView, config: TrackerConfig
 ) -> Floats | None:
-    """Tell how likely samples (N,) look like the person (thesis, equation 6.4); None if nobody knows."""
+    """Return how likely samples (N,) look like the person (thesis, equation 6.4); None if nobody knows."""
     if person.appearance is None or config.colour is None:
         return None
     removes = config.depth.removes_front

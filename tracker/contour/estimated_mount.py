@@ -71,14 +71,14 @@ class MountBelief:
         )
 
     def width(self, given: LimitsConfig) -> float:
-        """Tell how many times as many samples the limits take as those of a camera that is known."""
+        """Return how many times as many samples the limits take as those of a camera that is known."""
         half = _TYPICAL * (given.y_below_horizon[1] - given.y_below_horizon[0]) / 2
         row = np.array([1.0, _TYPICAL])
         more = _REACH * math.sqrt(row @ self.covariance @ row)
         return min(1 + more / half, _MOST_SAMPLES)
 
     def rows(self, given: LimitsConfig) -> LimitsConfig:
-        """Move the limits of rows, wherever on the floor somebody is."""
+        """Move the limits of rows, wherever on the floor a person is."""
         shift = float(self.line[0]) - _MIDDLE
         more = _REACH * math.sqrt(self.covariance[0, 0])
         lower = max(float(self.line[1]), 0.0) * given.h[1] / 2
@@ -86,12 +86,12 @@ class MountBelief:
 
 
 def is_learnable(config: TrackerConfig) -> bool:
-    """Tell whether a tracker looks for people where the floor is."""
+    """Return whether a tracker looks for people where the floor is."""
     return all(map(math.isfinite, config.detector.limits.y_below_horizon))
 
 
 def reports_mount(person: TrackedPerson, rows: int) -> bool:
-    """Tell whether a person is seen well enough, and is surely one: whole, and walking."""
+    """Return whether a person is seen well enough, and is surely one: whole, and walking."""
     state = person.belief.estimate
     top, bottom = state[Y] - CROWN * state[H], state[Y] + FOOT * state[H]
     is_whole = person.status is Status.TRACKED and person.missing == 0 and top > 0 and bottom < rows

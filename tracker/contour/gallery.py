@@ -1,4 +1,4 @@
-"""Who a newly found person is: somebody new, or one of those who were lost from sight."""
+"""Who a newly found person is: a person new, or one of those who were lost from sight."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from peopleboy.tracker.contour.tracked_person import TrackedPerson
 PLACE_PX = 12.0  # [px] of 240 rows: spread of the place of a person who was just lost
 PLACE_PX_S = 40.0  # [px/s] by which it grows
 FARTHEST = 5.0  # square that place counts at most: people turn back, and come in by another door
-LOOKS2 = 12.0  # squared distance of looks of the same person, where they are not known
+LOOKS2 = 12.0  # squared distance of appearance of the same person, where they are not known
 # Logistic regression over reappearances in the data sets and the library, of the same person and of others.
 PLACE_WEIGHT = 0.56
 APPEARANCE_WEIGHT = 1.76
 WORST = 6.8
 GROWTH = 0.7  # largest change of the logarithm of the height
-COMPARED = 0.5  # share of somebody's known looks that must be seen of who may be the same person
+COMPARED = 0.5  # share of a person's known looks that must be seen of who may be the same person
 
 
 def least_mismatch(
@@ -65,7 +65,7 @@ def colour_distance(one: TrackedPerson, other: TrackedPerson) -> float:
 
 
 def mismatch(found: TrackedPerson, person: TrackedPerson, view: FrameView, config: TrackerConfig) -> float:
-    """Add up what speaks against one being the other: their places, and their looks.
+    """Add up what speaks against one being the other: their places, and their appearance.
 
     The logarithm takes into account that looks in another pose, or half hidden, can be far off.
     """
@@ -78,7 +78,7 @@ def mismatch(found: TrackedPerson, person: TrackedPerson, view: FrameView, confi
 
 
 def appearance_distance(found: TrackedPerson, person: TrackedPerson, config: TrackerConfig) -> float:
-    """Measure the squared distance of looks; that of the same person where looks cannot tell."""
+    """Measure the squared distance of appearance; that of the same person where looks cannot tell."""
     if config.appearance is None or found.appearance is None or person.appearance is None:
         return LOOKS2
     distance = float(squared_distances(found.appearance.mean[None], person.appearance)[0])

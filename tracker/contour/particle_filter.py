@@ -56,7 +56,7 @@ class FrameView:
         advance_m: how far the camera moved forward since then [m]; 0 if unknown.
         colour: the colour image; None without one.
         appearance: colours and thermal pattern together; None if they are not compared.
-        covered: what a point of the contour counts where the image says that somebody is in front; None
+        covered: what a point of the contour counts where the image says that a person is in front; None
             where it says nothing of the kind.
     """
 
@@ -81,7 +81,7 @@ class FrameView:
         return camera_turn(self.turn_rad, self.mount.focal_px, (self.image.shape[1] - 1) / 2)
 
     def column_after_turn(self, x: float) -> float:
-        """Tell where a column x [px] of the last frame lies in this one but for people's own motion."""
+        """Return where a column x [px] of the last frame lies in this one but for people's own motion."""
         return turned(x, self.turn)
 
     def describe(self, state: Floats, hiding: Regions | None = None) -> Floats | None:
@@ -148,7 +148,7 @@ def weigh(
         filter_config: of this filter.
         config: of the tracker.
         factor: (N,) on the weights, for keeping off other people; None for 1.
-        likeness: (N,) likelihood of the looks; None for 1.
+        likeness: (N,) likelihood of the appearance; None for 1.
 
     Source: thesis, algorithm 3 (update), equations 4.2 and 4.6; 5.1 and 5.2 with the factor, 6.17 with the
     likeness.
@@ -195,7 +195,7 @@ def sample_weights(
 
 @njit(cache=True, nogil=True)
 def is_within(state: Floats, limits: Floats) -> NDArray[np.bool_]:
-    """Tell which samples (N, 9) have a person's proportions and place, by limits of `limits_px`.
+    """Return which samples (N, 9) have a person's proportions and place, by limits of `limits_px`.
 
     Compares w / h, d / w, y and h with them, and y with those of the floor.
 

@@ -124,7 +124,7 @@ def _limits_px(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def floor_rows(h: np.float32, limits: Floats) -> tuple[np.float32, np.float32]:
-    """Give the rows [px] between which the centre of a person of semi-height h on the floor is.
+    """Return the rows [px] between which the centre of a person of semi-height h on the floor is.
 
     The limits are those of `limits_px`.
     """
@@ -202,7 +202,7 @@ def camera_turn(turn_rad: float, focal_px: float, centre_px: float) -> CameraTur
 
 
 def turned(x: float, turn: CameraTurn) -> float:
-    """Tell where a column x [px] lies after the camera has turned: to the left moves it to the right.
+    """Return where a column x [px] lies after the camera has turned: to the left moves it to the right.
 
     The thesis leaves the robot's motion to chance; its turn is known from odometry and need not be.
     """
@@ -267,7 +267,7 @@ def _scaled(factor: float, numbers: tuple[float, ...]) -> Floats:
 
 
 def equally_weighted(state: Floats) -> Particles:
-    """Give every one of the (N, 9) states the weight 1/N."""
+    """Return every one of the (N, 9) states the weight 1/N."""
     return Particles(state, np.full(len(state), 1 / len(state), dtype=np.float32))
 
 

@@ -47,7 +47,7 @@ class TrackedPerson:
         hidden_frames: for how many frames it has been hidden.
         hidden_s: for how long it has been hidden [s].
         looks: what it looked like of late, by which its samples are compared; None until that was seen.
-        is_unidentified: whether it may yet turn out to be somebody who was lost.
+        is_unidentified: whether it may yet turn out to be a person who was lost.
     """
 
     id: int
@@ -79,7 +79,7 @@ class TrackedPerson:
 
 
 def is_born(belief: Belief, view: FrameView, config: LifeConfig) -> bool:
-    """Tell whether a detector has settled on a person: it fits the image, and the samples agree.
+    """Return whether a detector has settled on a person: it fits the image, and the samples agree.
 
     Source: thesis, section 4.2: mean of equation 4.4 above 0.5 and equation 4.6 below its threshold.
     """
@@ -87,21 +87,21 @@ def is_born(belief: Belief, view: FrameView, config: LifeConfig) -> bool:
 
 
 def is_sure(belief: Belief, view: FrameView, confidence: float, config: LifeConfig) -> bool:
-    """Tell whether a filter's samples agree on somebody, above a confidence."""
+    """Return whether a filter's samples agree on a person, above a confidence."""
     return belief.confidence > confidence and _agrees(belief, view, config)
 
 
 @dataclass(frozen=True, slots=True)
 class Streak:
-    """For how many frames in a row the detector has been sure of somebody who is not tracked.
+    """For how many frames in a row the detector has been sure of a person who is not tracked.
 
     The same confidence says more of some contours than of others. Those few pixels high fit two people side
-    by side nearly as well as one of them, and beside somebody near, an arm looks like somebody smaller. A
+    by side nearly as well as one of them, and beside a person near, an arm looks like a person smaller. A
     large contour with nobody beside it is hardly ever wrong.
 
     Attributes:
         frames: in which the detector was as sure as it must be of anybody of that size.
-        clear_frames: in which it was as sure as it must be of somebody large with nobody beside.
+        clear_frames: in which it was as sure as it must be of a person large with nobody beside.
     """
 
     frames: int = 0
@@ -113,7 +113,7 @@ class Streak:
         return self.frames > 0 or self.clear_frames > 0
 
     def is_enough(self, config: TrackerConfig) -> bool:
-        """Tell whether a person is born."""
+        """Return whether a person is born."""
         return self.frames >= config.life.birth_frames or self.clear_frames >= config.search.clear_frames
 
     def after(
@@ -142,7 +142,7 @@ class Streak:
 
 
 def is_kept(belief: Belief, view: FrameView, config: LifeConfig) -> bool:
-    """Tell whether a tracked person is still seen.
+    """Return whether a tracked person is still seen.
 
     Source: thesis, section 5.1: a filter is deleted when its mean is smaller than 0.5 or its uncertainty too
     large.
@@ -158,7 +158,7 @@ def _agrees(belief: Belief, view: FrameView, config: LifeConfig) -> bool:
 def _is_beside(
     found: NDArray[np.float64], known: Sequence[NDArray[np.float64]], config: TrackerConfig
 ) -> bool:
-    """Tell whether a person (9,) shares any of its region with those known (9,), made wider."""
+    """Return whether a person (9,) shares any of its region with those known (9,), made wider."""
     around = regions_of(known, config)
     margin = config.search.clear_margin * around[:, 2]
     around[:, 0] -= margin
@@ -260,7 +260,7 @@ def smoothed(
 
 @lru_cache(maxsize=8)
 def _gains(dt_s: float, place_s: float, size_s: float) -> NDArray[np.float64]:
-    """Tell how much (9,) of what is new in a state is shown after so long, by the time constants."""
+    """Return how much (9,) of what is new in a state is shown after so long, by the time constants."""
     gain = np.ones(STATE_SIZE)
     gain[[X, Y]] = _gain(dt_s, place_s)
     gain[SIZE] = _gain(dt_s, size_s)
@@ -285,7 +285,7 @@ def _learned(
 
 
 def _foot_of(state: NDArray[np.float64]) -> float:
-    """Give the row of a person's feet [px]."""
+    """Return the row of a person's feet [px]."""
     return float(state[Y] + FOOT * state[H])
 
 

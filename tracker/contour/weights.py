@@ -26,7 +26,7 @@ def sharp_weights(fit: Floats, likeness: Floats, sharpness: float, floor: float)
 
     Args:
         fit: (N,) of the contour.
-        likeness: (N,) of the looks, or `NOTHING`.
+        likeness: (N,) of the appearance, or `NOTHING`.
         sharpness: by which the sum is multiplied.
         floor: least sum that counts.
     """
@@ -45,7 +45,7 @@ def sharp_weights(fit: Floats, likeness: Floats, sharpness: float, floor: float)
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def shared_out(weight: Floats, is_inside: NDArray[np.bool_], factor: Floats, outside: float) -> Floats:
-    """Give weights (N,) that sum to 1: times their factors, and very low outside the limits.
+    """Return weights (N,) that sum to 1: times their factors, and very low outside the limits.
 
     Args:
         weight: (N,) non-negative.
@@ -95,7 +95,7 @@ def systematic_rows(weight: Floats, count: int, offset: float) -> NDArray[np.int
 
 @njit(cache=True, nogil=True)
 def ranked(weight: Floats, rank: int) -> np.float32:
-    """Give the weight (N,) that so many others do not exceed; none is negative.
+    """Return the weight (N,) that so many others do not exceed; none is negative.
 
     Such numbers are in the order of their bits, of which the first 11 tell most, then the next 10: no
     processor foresees what comparing whole numbers would have it do next.

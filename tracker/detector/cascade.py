@@ -45,11 +45,11 @@ class Hits(NamedTuple):
     score: NDArray[np.float64]
 
     def take(self, these: NDArray[np.bool_]) -> Hits:
-        """Give some of them."""
+        """Return some of them."""
         return Hits(self.row[these], self.column[these], self.score[these])
 
     def best(self) -> Hits:
-        """Give those that count: beside one that is much surer others hardly matter."""
+        """Return those that count: beside one that is much surer others hardly matter."""
         is_kept = np.empty(len(self.score), np.bool_)
         _compare(*self, is_kept)
         return self.take(is_kept)
@@ -112,14 +112,14 @@ class Cascade:
         return Hits(at_row + first, at_column, found[at_row, at_column].astype(np.float64))
 
     def calibrated(self, gain: float, offset: float) -> Cascade:
-        """Give the same trees with scores times a gain plus an offset."""
+        """Return the same trees with scores times a gain plus an offset."""
         leaf = self.leaf * np.float32(gain)
         leaf[0] += np.float32(offset)
         least = self.least * np.float32(gain) + np.float32(offset)
         return Cascade(self.patches, self.feature, self.threshold, leaf, least)
 
     def running(self, sums: Sums) -> NDArray[np.float32]:
-        """Give the scores (N, T) after each tree of windows with sums in their columns (9 * 21 * 11, N)."""
+        """Return the scores (N, T) after each tree of windows with sums in their columns (9 * 21 * 11, N)."""
         scores = np.zeros((sums.shape[1], len(self.feature)), np.float32)
         offset, weight = self.patches.corners(self.feature.ravel(), ROWS + 1, COLUMNS + 1)
         for number, window in enumerate(np.ascontiguousarray(sums.T)):
@@ -183,7 +183,7 @@ def _scan(
 def _compare(
     row: NDArray[np.int64], column: NDArray[np.int64], score: NDArray[np.float64], is_kept: NDArray[np.bool_]
 ) -> None:  # pragma: no cover
-    """Tell which windows are not much worse than one beside them."""
+    """Return which windows are not much worse than one beside them."""
     rows, columns = _BESIDE
     for k in range(len(row)):
         is_kept[k] = True

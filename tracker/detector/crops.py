@@ -138,7 +138,7 @@ def _mark_inside(
 
 @njit(cache=True, nogil=True)
 def _deviations(crops: Crops) -> Floats:  # pragma: no cover
-    """Give the deviations (N,) of the greys of crops."""
+    """Return the deviations (N,) of the greys of crops."""
     deviation = np.empty(len(crops))
     for number in range(len(crops)):
         total, squares = 0, 0

@@ -60,7 +60,7 @@ def suppress(found: Detections) -> Detections:
 
 @njit(cache=True, nogil=True)
 def _best(box: Floats, score: Floats, means: Floats) -> NDArray[np.intp]:  # pragma: no cover
-    """Tell who is the best of those with boxes (N, 4) near, the surest first; give their means (N, 4)."""
+    """Return who is the best of those with boxes (N, 4) near, the surest first; give their means (N, 4)."""
     kept, is_left = np.empty(len(box), np.intp), np.ones(len(box), np.bool_)
     count = 0
     for k in range(len(box)):
@@ -83,7 +83,7 @@ def _best(box: Floats, score: Floats, means: Floats) -> NDArray[np.intp]:  # pra
 
 
 def _is_between(found: Detections) -> NDArray[np.bool_]:
-    """Tell which of N boxes show but the arm of somebody to the left, and of another one to the right."""
+    """Return which of N boxes show but the arm of a person to the left, and of another one to the right."""
     share = cover(intersection(found.box[:, None], found.box[None]), area(found.box)[:, None])
     share *= found.score[None] > found.score[:, None]
     middle = found.box[:, 0] + found.box[:, 2] / 2.0

@@ -73,7 +73,7 @@ def image_difference(before: Grey, now: Grey, moved: Matrix) -> Grey:
 
 
 def _farthest_px(moved: Matrix, rows: int, columns: int) -> float:
-    """Tell how far the corner of an image moves that moves farthest, along columns or rows."""
+    """Return how far the corner of an image moves that moves farthest, along columns or rows."""
     right, bottom = columns - 1.0, rows - 1.0
     corners = np.array([[0.0, right, 0.0, right], [0.0, 0.0, bottom, bottom], [1.0, 1.0, 1.0, 1.0]])
     there = moved @ corners
@@ -117,7 +117,7 @@ class PastImages:
             past.popleft()
 
     def change(self, mount: Mount | None = None) -> Grey:
-        """Give by how much the last one (H, W) differs from that of about 0.2 s before; 0 if there is none.
+        """Return by how much the last one (H, W) differs from that of about 0.2 s before; 0 if there is none.
 
         Args:
             mount: of the camera, with which odometry tells how pixels moved; without, the images do.

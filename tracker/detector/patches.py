@@ -48,13 +48,13 @@ class Patches:
         return len(self.channel)
 
     def corners(self, feature: NDArray[np.int32], high: int, wide: int) -> Layout:
-        """Tell where patches (N,) lie in sums of `high` by `wide`, seen from a window's first cell."""
+        """Return where patches (N,) lie in sums of `high` by `wide`, seen from a window's first cell."""
         offset, weight = np.empty((len(feature), CORNERS), np.uint32), np.empty((len(feature), 2), np.float32)
         _corners(feature, self.channel, self.first, self.second, high, wide, offset, weight)
         return offset, weight
 
     def of(self, sums: Sums, number: int) -> Cells:
-        """Give a patch (N,) of windows of which each has sums in its column (9 * 21 * 11, N)."""
+        """Return a patch (N,) of windows of which each has sums in its column (9 * 21 * 11, N)."""
         offset, weight = self.corners(np.array([number], np.int32), ROWS + 1, COLUMNS + 1)
         result = np.empty(sums.shape[1], np.float32)
         _measure(sums, offset[0], weight[0], result)
@@ -71,7 +71,7 @@ class Layouts:
         self._kept: dict[tuple[int, int], Layout] = {}
 
     def of(self, sums: Sums) -> Layout:
-        """Give the layout in sums (9, h + 1, w + 1)."""
+        """Return the layout in sums (9, h + 1, w + 1)."""
         _, high, wide = sums.shape
         layout = self._kept.get((high, wide))
         if layout is None:
@@ -99,7 +99,7 @@ def integrate_windows(windows: NDArray[np.float16]) -> Sums:
 
 @njit(inline="always")
 def patch(sums: Sums, at: np.uint32, corner: NDArray[np.uint32], by: Cells) -> np.float32:  # pragma: no cover
-    """Give a patch of the window that begins at a place in sums, by its corners and their weights."""
+    """Return a patch of the window that begins at a place in sums, by its corners and their weights."""
     one = sums[at + corner[0]] - sums[at + corner[1]] - sums[at + corner[2]] + sums[at + corner[3]]
     two = sums[at + corner[4]] - sums[at + corner[5]] - sums[at + corner[6]] + sums[at + corner[7]]
     return np.float32(np.float32(one) * by[0] - np.float32(two) * by[1])

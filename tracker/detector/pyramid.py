@@ -33,9 +33,9 @@ STEP: Final = 2.0 ** (1.0 / 3.0)
 _STATURES_M: Final = (1.4, 2.0)  # of who is looked for
 _SLACK: Final = 0.15  # of a person's height: the pitch of the camera, the gait, and cells are none of a ray's
 _WHOLE_OVER: Final = 8
-"""Rows of cells that a window of somebody who is mostly in the image may reach beyond it."""
+"""Rows of cells that a window of a person who is mostly in the image may reach beyond it."""
 _CUT_OVER: Final = (6, 9)
-"""Rows above and below the image from which on a window is of somebody who is cut off."""
+"""Rows above and below the image from which on a window is of a person who is cut off."""
 _CUT_PX: Final = 48.0  # height of the smallest people who are looked for cut off
 _LEAST_ROWS: Final = 7  # of cells in an image: a third of a window
 _LEAST_WHOLE_ROWS: Final = 12  # likewise; it shows the larger part of whom it cuts off
@@ -64,7 +64,7 @@ class Level:
     scale: tuple[float, float]
 
     def boxes(self, row: NDArray[np.int64], column: NDArray[np.int64]) -> Floats:
-        """Give the boxes (N, 4) [px] of the people who fill windows, by their first cell in `cells`."""
+        """Return the boxes (N, 4) [px] of the people who fill windows, by their first cell in `cells`."""
         corner = np.stack([row + self.first - OVER, column - BESIDE]).astype(np.float64)
         return boxes_of(corner[0], corner[1], self.scale)
 
@@ -84,7 +84,7 @@ class Level:
         return is_covered
 
     def windows(self, box: Floats) -> Floats:
-        """Give row and column (N, 2) in `cells` of the windows that people of boxes (N, 4) fill."""
+        """Return row and column (N, 2) in `cells` of the windows that people of boxes (N, 4) fill."""
         return np.asarray(cells_of(box, self.scale) + np.array([OVER - self.first, BESIDE]), np.float64)
 
 
@@ -132,7 +132,7 @@ def pyramid_levels(
 
 
 def _ranges(start: int, end: int, high: int, person_px: float) -> dict[WindowKind, tuple[Rows, ...]]:
-    """Tell in which rows windows of each kind begin, of those from a start to an end."""
+    """Return in which rows windows of each kind begin, of those from a start to an end."""
     whole = [(-_WHOLE_OVER, high + _WHOLE_OVER - ROWS + 1)] if high >= _LEAST_WHOLE_ROWS else []
     cut = [(start, 1 - _CUT_OVER[0]), (high + _CUT_OVER[1] - ROWS, end)] if whole else [(start, end)]
     if person_px < _CUT_PX:
@@ -161,11 +161,11 @@ class _Halves:
         self._images = [image]
 
     def sized(self, size: tuple[int, int], scale: float) -> Image:
-        """Give the image in another size (columns, rows), which is about a scale of its own."""
+        """Return the image in another size (columns, rows), which is about a scale of its own."""
         return np.asarray(cv2.resize(self._at(scale), size), np.float32)
 
     def _at(self, scale: float) -> Image:
-        """Give the smallest that is as large as a scale asks for."""
+        """Return the smallest that is as large as a scale asks for."""
         halvings = max(math.floor(-math.log2(scale) + 1e-9), 0)
         while len(self._images) <= halvings:
             rows, columns = self._images[-1].shape
@@ -176,7 +176,7 @@ class _Halves:
 
 
 def _beginnings(mount: Mount | None, high: int, down: float) -> tuple[int, int]:
-    """Tell in which rows of cells windows may begin; the border's are below 0 and beyond."""
+    """Return in which rows of cells windows may begin; the border's are below 0 and beyond."""
     everywhere = (-OVER, high + OVER - ROWS + 1)
     if mount is None:
         return everywhere
@@ -193,7 +193,7 @@ def _beginnings(mount: Mount | None, high: int, down: float) -> tuple[int, int]:
 def _cover(
     boxes: Floats, first: Floats, step: Floats, share: float, is_covered: NDArray[np.bool_]
 ) -> None:  # pragma: no cover
-    """Tell of windows, the first of which is a box (4,), at some steps (2,) [px], who covers them."""
+    """Return for windows, the first of which is a box (4,), at some steps (2,) [px], who covers them."""
     rows, columns = is_covered.shape
     wide, high = first[2], first[3]
     for left, top, width, height in boxes:

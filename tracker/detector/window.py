@@ -28,12 +28,12 @@ class WindowKind(StrEnum):
 
 
 def row_of(top: Top, down: float) -> Top:
-    """Give the row of the windows that people fill whose heads are at some rows of the image, or at one."""
+    """Return the row of the windows that people fill whose heads are at some rows of the image, or at one."""
     return ((top + 0.5) * down - ABOVE_PX) / CELL_PX
 
 
 def boxes_of(row: Floats, column: Floats, scale: tuple[float, float]) -> Floats:
-    """Give the boxes (N, 4) [px] of the people who fill windows.
+    """Return the boxes (N, 4) [px] of the people who fill windows.
 
     Args:
         row: (N,) of a window's first cell.
@@ -49,7 +49,7 @@ def boxes_of(row: Floats, column: Floats, scale: tuple[float, float]) -> Floats:
 
 
 def cells_of(box: Floats, scale: tuple[float, float]) -> Floats:
-    """Give row and column (N, 2) of the windows that the people of boxes (N, 4) fill, as a fraction."""
+    """Return row and column (N, 2) of the windows that the people of boxes (N, 4) fill, as a fraction."""
     down, right = scale
     row = row_of(box[:, 1], down)
     column = (box[:, 0] + box[:, 2] / 2.0 + 0.5) * right / CELL_PX - COLUMNS / 2.0

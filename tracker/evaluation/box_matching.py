@@ -121,7 +121,7 @@ class Judged:
 
 
 def counts(counted: Flags, visible: Floats, min_visible: float = MIN_VISIBLE) -> Flags:
-    """Tell who is a target: near enough to be counted, and more than a share of the person visible.
+    """Return who is a target: near enough to be counted, and more than a share of the person visible.
 
     Args:
         counted: (N,) whether the truth counts the person.
@@ -153,7 +153,7 @@ def settle_uncounted(
 def ignore_uncounted(truth: TrueBoxes, tracks: TrackBoxes, gate: float = GATE) -> Judged:
     """Take out the uncounted people, and the candidates on them.
 
-    All people choose together, so that the sum of overlaps is largest: where somebody uncounted and a target
+    All people choose together, so that the sum of overlaps is largest: where a person uncounted and a target
     stand at one place, a candidate is on the one whom it overlaps more. Each uncounted person takes out at
     most one; two candidates on one uncounted person leave one false alarm.
 

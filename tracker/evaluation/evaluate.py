@@ -44,7 +44,7 @@ class Counts(Sums):
 
     @property
     def true_tracks(self) -> int:
-        """Track ids that are on somebody at some time."""
+        """Track ids that are on a person at some time."""
         return self.tracks - self.false_tracks
 
     @property
@@ -142,7 +142,7 @@ def combine(sequences: Sequence[Scores]) -> Scores:
 
 
 def _length(truth: TrueBoxes, tracks: TrackBoxes, frames: int | None) -> int:
-    """Give the number of frames, which no row may exceed."""
+    """Return the number of frames, which no row may exceed."""
     if frames is None:
         return max(truth.last_frame, tracks.last_frame)
     if frames < 0:

@@ -46,7 +46,7 @@ class Places:
             raise BadInput(f"places: shapes must be ({rows},), ({rows}, 2), ({rows}, 3), got {shapes}")
 
     def find(self, frame: Ints, number: Ints) -> Ints:
-        """Give for each pair of frame (M,) and id (M,) the index of the place, -1 where there is none."""
+        """Return for each pair of frame (M,) and id (M,) the index of the place, -1 where there is none."""
         index = {key: k for k, key in enumerate(zip(self.frame.tolist(), self.id.tolist(), strict=True))}
         wanted = zip(frame.tolist(), number.tolist(), strict=True)
         return np.array([index.get(key, -1) for key in wanted], dtype=np.int64)
@@ -145,7 +145,7 @@ def measure_floor(
 
 
 def floor_squares(position_m: Floats) -> Floats:
-    """Give squares (..., 4) on the floor, left, top, width, height [m], that stand for people (..., 2).
+    """Return squares (..., 4) on the floor, left, top, width, height [m], that stand for people (..., 2).
 
     Trackers that give no boxes are scored by them, as others are by boxes in an image.
     """

@@ -38,7 +38,7 @@ def read_truth(path: Path, *, keeps_things: bool = False) -> TrueBoxes:
     Args:
         path: the file.
         keeps_things: whether things stay, without counting, so that a box on one, such as on a bicycle with
-            somebody on it, is not wrong either.
+            a person on it, is not wrong either.
 
     Raises:
         BadInput: the file cannot be read, or one of its lines is malformed (the message names the line).
@@ -115,12 +115,12 @@ def write_tracks(path: Path, tracks: TrackBoxes) -> None:
 
 
 def truth_line(frame: int, identity: int, box: Sequence[float], counted: bool, visible: float) -> str:
-    """Give the line of one person in one frame, newline included."""
+    """Return the line of one person in one frame, newline included."""
     return f"{_start(frame, identity, box)},{counted:d},1,{visible:.4f}\n"
 
 
 def track_line(frame: int, identity: int, box: Sequence[float], confidence: float) -> str:
-    """Give the line of one track in one frame, newline included."""
+    """Return the line of one track in one frame, newline included."""
     return f"{_start(frame, identity, box)},{confidence:.4f},-1,-1,-1\n"
 
 

@@ -28,7 +28,7 @@ class Sums:
 
 
 def percent(numerator: float, denominator: float) -> float:
-    """Give the ratio in percent, at most 100; NaN, for undefined, if the denominator is 0."""
+    """Return the ratio in percent, at most 100; NaN, for undefined, if the denominator is 0."""
     return min(100.0, 100.0 * numerator / denominator) if denominator else math.nan
 
 
@@ -258,7 +258,7 @@ def _pair_ids(truth: TrueBoxes, tracks: TrackBoxes, pairs: Pairs) -> tuple[Ints,
 
 
 def _share(pairs: Pairs, targets: int, candidates: int) -> Floats:
-    """Give each pair's IoU as a share (P,) of all overlap that its target and its candidate have."""
+    """Return each pair's IoU as a share (P,) of all overlap that its target and its candidate have."""
     of_target = sum_by(pairs.target, pairs.iou, targets)[pairs.target]
     of_candidate = sum_by(pairs.candidate, pairs.iou, candidates)[pairs.candidate]
     return cover(pairs.iou, of_target + of_candidate - pairs.iou)

@@ -112,7 +112,7 @@ def find_occlusions(frame: Ints, hidden: Floats) -> list[tuple[int, int]]:
 def score_occlusions(
     truth: TrueBoxes, tracks: TrackBoxes, hidden: Floats, in_image: NDArray[np.bool_], rate_hz: float
 ) -> list[Occlusion]:
-    """Tell of every total occlusion in a sequence what became of the identity.
+    """Return for every total occlusion in a sequence what became of the identity.
 
     Args:
         truth: the people of the sequence.

@@ -155,12 +155,12 @@ def _rules(columns: Mapping[str, Floats]) -> list[tuple[str, Bools, str]]:
 
 
 def _is_whole(values: Floats, least: int) -> Bools:
-    """Tell which values (N,) are whole numbers of at least `least`."""
+    """Return which values (N,) are whole numbers of at least `least`."""
     return np.asarray((values >= least) & (values <= LARGEST) & (values == np.floor(values)))
 
 
 def _is_first(frame: Floats, identity: Floats) -> Bools:
-    """Tell which rows (N,) are the first of their frame and id."""
+    """Return which rows (N,) are the first of their frame and id."""
     order = np.lexsort((np.arange(len(frame)), identity, frame))
     repeats = (np.diff(frame[order]) == 0.0) & (np.diff(identity[order]) == 0.0)
     first = np.ones(len(frame), dtype=np.bool_)

@@ -34,7 +34,7 @@ class Figure:
         return self.where.partition(".")[0]
 
     def is_defined_for(self, scores: Scores) -> bool:
-        """Tell whether truth and tracks of these scores have what the figure needs."""
+        """Return whether truth and tracks of these scores have what the figure needs."""
         if self.group == FLOOR:
             return len(scores.floor) > 0
         return not (scores.counts.partly_annotated and self.name in NEED_EVERYBODY)
@@ -143,7 +143,7 @@ def spread(sequences: Sequence[Scores]) -> list[SpreadRow]:
 
 
 def to_json(scores: Scores) -> dict[str, dict[str, float | int | None]]:
-    """Give the figures by group and name, as JSON can hold them: None for undefined."""
+    """Return the figures by group and name, as JSON can hold them: None for undefined."""
     groups: dict[str, dict[str, float | int | None]] = {}
     for row in rows(scores):
         if row.figure.group == FLOOR and not row.figure.is_defined_for(scores):

@@ -36,12 +36,12 @@ class BoxKind(StrEnum):
 
     @classmethod
     def of(cls, truth: TrueBoxes) -> BoxKind:
-        """Tell by how wide they are, in the median; without any, people are taken to be boxed whole."""
+        """Return by how wide they are, in the median; without any, people are taken to be boxed whole."""
         return cls.TORSO if width_per_height(truth) <= _WIDEST_TORSO else cls.WHOLE
 
 
 def width_per_height(boxes: Rows) -> float:
-    """Say how wide boxes are for their height, in the median; NaN without any."""
+    """Return how wide boxes are for their height, in the median; NaN without any."""
     is_tall = boxes.box[:, 3] > 0.0
     if not is_tall.any():
         return math.nan
@@ -49,7 +49,7 @@ def width_per_height(boxes: Rows) -> float:
 
 
 def boxed_whole(tracks: Iterable[Track], frame: Frame) -> tuple[Track, ...]:
-    """Give tracks with boxes round all of a person, in the place of those round the torso.
+    """Return tracks with boxes round all of a person, in the place of those round the torso.
 
     They end at the borders of the frame's images; who is outside an image has no box in it, and where there
     is no image, none is cut off.

@@ -84,7 +84,7 @@ def _in_order(colour: Sequence[Path], depth: Sequence[Path]) -> PicturePairs:
 
 
 def _nearest(sorted_times: Floats, times: Floats) -> NDArray[np.int64]:
-    """Give which of the sorted times is nearest to each of others (N,)."""
+    """Return which of the sorted times is nearest to each of others (N,)."""
     after = np.searchsorted(sorted_times, times).clip(1, max(len(sorted_times) - 1, 1))
     before, last = after - 1, np.minimum(after, len(sorted_times) - 1)
     is_before = times - sorted_times[before] <= sorted_times[last] - times
@@ -92,7 +92,7 @@ def _nearest(sorted_times: Floats, times: Floats) -> NDArray[np.int64]:
 
 
 def _step(paths: Sequence[Path], times: Floats) -> float:
-    """Give the median time between pictures [s]."""
+    """Return the median time between pictures [s]."""
     steps = np.diff(times)
     if not steps.all():
         twice = paths[int(np.argmin(steps)) + 1]
@@ -143,7 +143,7 @@ class DepthCounts:
         self._millimetres = np.where(millimetres <= 65535.0, millimetres, 0.0).astype(np.uint16)
 
     def __call__(self, picture: Raw) -> NDArray[np.uint16]:
-        """Give depths (H, W) [mm] of counts; 0 where nothing is read, or what is farther than 65.5 m.
+        """Return depths (H, W) [mm] of counts; 0 where nothing is read, or what is farther than 65.5 m.
 
         Raises:
             BadInput: the picture is none of 16-bit counts.

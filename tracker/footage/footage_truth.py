@@ -24,7 +24,7 @@ _LEAST_SPREAD: Final = 0.25  # of the width: boxes that spread less may well be 
 
 
 def frames_before(frame: Floats, numbers: range | None, path: Path, notes: list[str]) -> int:
-    """Tell how much less the frames of the truth must be, so that 1 is the first picture.
+    """Return how much less the frames of the truth must be, so that 1 is the first picture.
 
     Args:
         frame: (N,) frames of the truth.
@@ -80,7 +80,7 @@ def cells_of(line: str) -> list[str]:
 
 
 def is_motchallenge(lines: Sequence[str], path: Path) -> bool:
-    """Tell whether a file, by its lines, is MOTChallenge's; one without any is.
+    """Return whether a file, by its lines, is MOTChallenge's; one without any is.
 
     Lines of 6, 7 and 9 numbers can be nothing else. Those of 8 and 10 can be corners of a polygon; they are
     MOTChallenge's if all begin with two whole numbers, frame and id, and have 0, 1 or a share as the seventh,
@@ -117,12 +117,12 @@ def _numbers(lines: Sequence[str], count: int) -> Floats | None:
 
 
 def _are_keys(keys: Floats) -> bool:
-    """Tell whether rows (N, 2) can be frame and id; those of detections are -1."""
+    """Return whether rows (N, 2) can be frame and id; those of detections are -1."""
     return bool((keys == np.floor(keys)).all() and (keys >= (0.0, -1.0)).all())
 
 
 def _are_upright(table: Floats) -> bool:
-    """Tell whether rows (N, count) are four corners of upright rectangles, from whichever on."""
+    """Return whether rows (N, count) are four corners of upright rectangles, from whichever on."""
     if table.shape[1] != 8:
         return False
     # How far it is to the next corner: one of both is 0 along an edge, the other one along the next edge.
@@ -134,7 +134,7 @@ def _are_upright(table: Floats) -> bool:
 
 
 def _rise(keys: Floats) -> bool:
-    """Tell whether the frames of each id rise, from 0 or 1 on in all."""
+    """Return whether the frames of each id rise, from 0 or 1 on in all."""
     frame, identity = keys[np.argsort(keys[:, 1], kind="stable")].T
     is_same = np.diff(identity) == 0.0
     return bool(frame.min() <= 1.0 and (np.diff(frame)[is_same] > 0.0).all())
@@ -171,7 +171,7 @@ class GivenTruth:
     notes: tuple[str, ...] = ()
 
     def box_at(self, frame: int) -> tuple[float, float, float, float]:
-        """Give the box of the first person in a frame.
+        """Return the box of the first person in a frame.
 
         Raises:
             BadInput: there is none.

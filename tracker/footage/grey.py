@@ -35,7 +35,7 @@ OUTLIERS: Final = 0.05
 
 
 def local_grey(values: Values) -> Grey:
-    """Tell by how much each pixel differs from those around it, in what they differ by among each other.
+    """Return by how much each pixel differs from those around it, in what they differ by among each other.
 
     What is hardly warmer or colder than a wall stands out though a lamp in the picture is far hotter, which
     a single gain for all of it cannot give. Greys depend neither on the unit nor on the temperature.
@@ -56,7 +56,7 @@ def local_grey(values: Values) -> Grey:
 
 
 def noise_of(values: Values) -> float:
-    """Give the standard deviation of the noise of a picture (H, W), by how much rows bend."""
+    """Return the standard deviation of the noise of a picture (H, W), by how much rows bend."""
     bend = values[:, 2:] + values[:, :-2] - 2.0 * values[:, 1:-1]
     return float(np.median(np.abs(bend)) / 0.6745 / np.sqrt(6.0))
 
@@ -113,7 +113,7 @@ class Radiometry:
         return self.span_c is not None or self.scale is not None
 
     def values(self, picture: Raw, notes: list[str]) -> NDArray[np.float32]:
-        """Give what pixels (H, W) stand for: degC if known, else grey or counts; warm is always more.
+        """Return what pixels (H, W) stand for: degC if known, else grey or counts; warm is always more.
 
         Raises:
             BadInput: the picture's depth is not that of the option given.
@@ -168,7 +168,7 @@ def one_channel(picture: Raw, notes: list[str]) -> NDArray[Any]:
 
 
 def spanned(values: NDArray[np.float32], span: tuple[float, float] = ROBOT_SPAN_C) -> Grey:
-    """Give values (H, W) the greys that fill a span, by default those of degC of the robot's own camera."""
+    """Return values (H, W) the greys that fill a span, by default those of degC of the robot's own camera."""
     low, high = span
     return _whole_grey((values - np.float32(low)) * np.float32(255.0 / (high - low)))
 
@@ -268,7 +268,7 @@ def _option(radiometry: Radiometry) -> str:
 
 
 def _advice(radiometry: Radiometry, values: NDArray[np.float32]) -> str:
-    """Say which option would make these (H, W) plausible."""
+    """Return which option would make these (H, W) plausible."""
     if radiometry.scale is None:
         return "is it kelvin? give degC" if _is_plausible(values + np.float32(_ZERO_K_C)) else "give degC"
     gain, offset = radiometry.scale

@@ -203,12 +203,12 @@ class Video:
 
 
 def _code(film: cv2.VideoCapture, which: int) -> bytes:
-    """Give the four bytes of a code."""
+    """Return the four bytes of a code."""
     return int(film.get(which)).to_bytes(4, "little", signed=True)
 
 
 def _where_else(folder: Path) -> str:
-    """Say which folder inside has pictures, or what a picture is."""
+    """Return which folder inside has pictures, or what a picture is."""
     for inner in sorted(path for path in folder.iterdir() if path.is_dir()):
         if count := len(pictures_in(inner)):
             return f"but {inner.name}/ has {count}; give {inner}"

@@ -15,7 +15,7 @@ SUFFIXES: Final = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp")
 
 
 def natural_order(name: str) -> list[tuple[int, str]]:
-    """Give a key by which frame 2 comes before frame 10."""
+    """Return a key by which frame 2 comes before frame 10."""
     return [(int(part), "") if part.isdecimal() else (-1, part) for part in re.split(r"(\d+)", name)]
 
 
@@ -106,7 +106,7 @@ def split_sequence(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
 
 
 def describe_left_out(film: Sequence[Path], others: Sequence[Path]) -> str:
-    """Say which pictures are left out, and why."""
+    """Return which pictures are left out, and why."""
     more = f" and {len(others) - 1} more" if len(others) > 1 else ""
     return f"{others[0]}{more}: left out, as not called like the others, such as {film[0].name}"
 

@@ -1,4 +1,4 @@
-"""What the depth image shows where somebody may stand."""
+"""What the depth image shows where a person may stand."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _LEAST_PIXELS: Final = 12
 
 
 def is_warm(found: PreDetection, frame: Frame) -> bool:
-    """Tell whether what was found in the depth image is a person by its heat."""
+    """Return whether what was found in the depth image is a person by its heat."""
     pixels = grid(found.box, _WARM_COLUMNS, _WARM_ROWS, frame)
     z_m = depths_at(pixels, frame)
     own = (z_m > 0.0) & (np.abs(z_m - found.z_m) < _REACH_M)
@@ -38,7 +38,7 @@ def is_warm(found: PreDetection, frame: Frame) -> bool:
 
 
 def warm_share(pixels: NDArray[np.int64], z_m: Floats, frame: Frame) -> float | None:
-    """Give the share of surfaces that is as warm as people are.
+    """Return the share of surfaces that is as warm as people are.
 
     Args:
         pixels: (N, 2) of the depth image that show them.
@@ -61,7 +61,7 @@ def warm_share(pixels: NDArray[np.int64], z_m: Floats, frame: Frame) -> float | 
 
 
 def grid(box: Box, columns: int, rows: int, frame: Frame) -> NDArray[np.int64]:
-    """Give pixels (N, 2) spread evenly over a box [px], as far as it lies in the depth image."""
+    """Return pixels (N, 2) spread evenly over a box [px], as far as it lies in the depth image."""
     left, top, width, height = box
     u = left + width * (np.arange(columns) + 0.5) / columns
     v = top + height * (np.arange(rows) + 0.5) / rows
@@ -71,7 +71,7 @@ def grid(box: Box, columns: int, rows: int, frame: Frame) -> NDArray[np.int64]:
 
 
 def depths_at(pixels: NDArray[np.int64], frame: Frame) -> Floats:
-    """Give the depths (N,) [m] at pixels (N, 2) of the depth image; 0 where none is read."""
+    """Return the depths (N,) [m] at pixels (N, 2) of the depth image; 0 where none is read."""
     return np.asarray(frame.depth(DEPTH)[pixels[:, 1], pixels[:, 0]] / 1000.0)
 
 
@@ -86,7 +86,7 @@ _NO_COLOURS: Final = np.zeros(BINS)
 
 @dataclass(frozen=True, slots=True)
 class DepthVisibility:
-    """What stands where somebody may be.
+    """What stands where a person may be.
 
     Attributes:
         nearer, beyond: shares of the readings before and behind the person.
@@ -101,7 +101,7 @@ class DepthVisibility:
 def depth_visibility(
     place_m: Floats, wide_m: float, tall_m: float, frame: Frame, reach_m: float = REACH_M
 ) -> DepthVisibility | None:
-    """Look at the middle of somebody at a place (2,) in the robot's frame.
+    """Look at the middle of a person at a place (2,) in the robot's frame.
 
     Args:
         place_m: forward, left [m].
@@ -135,19 +135,19 @@ def depth_visibility(
 
 
 def view_of(frame: Frame) -> DepthView | None:
-    """Give the geometry of a frame's depth image; None without one."""
+    """Return the geometry of a frame's depth image; None without one."""
     if DEPTH not in frame.images or DEPTH not in frame.calibrations:
         return None
     return DepthView.of(frame.calibrations[DEPTH], DEPTH)
 
 
 def shoulders(view: DepthView, place_m: Floats, wide_m: float, low_m: float, high_m: float) -> Floats:
-    """Give left, top, width, height [px] of a body from one height above the floor to another."""
+    """Return left, top, width, height [px] of a body from one height above the floor to another."""
     return np.array(box_at(view, place_m, _body(wide_m, high_m, low_m)))
 
 
 def surface_m(view: DepthView, place_m: Floats) -> float:
-    """Give the depth [m] at which the camera sees the surface of somebody at a place (2,)."""
+    """Return the depth [m] at which the camera sees the surface of a person at a place (2,)."""
     pose = view.calibration.robot_from_camera
     point = np.array([*place_m, pose[2, 3]])
     return float((point - pose[:3, 3]) @ pose[:3, 2]) - BODY_M
@@ -157,7 +157,7 @@ def _body(wide_m: float, high_m: float, low_m: float) -> Body:
     return Body(width_m=wide_m, head_m=high_m, low_m=low_m, appearance=_NO_COLOURS)
 
 
-# What colours somebody has, by those readings of the depth image that are its own.
+# What colours a person has, by those readings of the depth image that are its own.
 
 _COLOUR_ROWS: Final = 24
 _COLOUR_COLUMNS: Final = 11
@@ -169,7 +169,7 @@ _LEAST_ROWS: Final = 0.5  # share of the rows
 
 
 def colours(place_m: Floats, tall_m: float, frame: Frame) -> Floats | None:
-    """Give the histogram (BINS,) of the colours of somebody at a place (2,) in the robot's frame.
+    """Return the histogram (BINS,) of the colours of a person at a place (2,) in the robot's frame.
 
     What is nearer or farther is left out, and so are readings beside an edge. Every row of the body counts
     the same, however much of it something else covers, so that half a person looks like a whole one.

@@ -15,7 +15,7 @@ from peopleboy.tracker.panoramic.people.floor_motion import FloorMotion
 from peopleboy.tracker.rgbd.observation_model import similarity
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
-# What one of the trackers tells of somebody in one frame.
+# What one of the trackers tells of a person in one frame.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -56,7 +56,7 @@ class SensorTrack:
 
 
 def to_room_frame(track: Track, pose: Pose2) -> tuple[Floats, Floats]:
-    """Give place (2,) [m] and covariance (2, 2) [m2] of a track that has a place, in the room."""
+    """Return place (2,) [m] and covariance (2, 2) [m2] of a track that has a place, in the room."""
     assert track.place is not None
     xx, xy, yy = track.place.covariance_m2
     return to_room(np.array(track.place.position_m), pose), pose.inverse().covariance_to_local(
@@ -79,7 +79,7 @@ _BEST_FIRST: Final = (Status.TRACKED, Status.PARTLY_OCCLUDED, Status.TOTALLY_OCC
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FusedPerson:
-    """Somebody of whom at least one of the trackers has told.
+    """A person of whom at least one of the trackers has told.
 
     Attributes:
         id: number of the fused track; negative of a guest, of whom it is not decided who it is.
@@ -91,7 +91,7 @@ class FusedPerson:
         looks: (BINS,) histogram of colours; None before any were seen in the light.
         looked: how often these were seen.
         strange: frames in a row in which it looked otherwise.
-        born_s, seen_s, looked_s: [s] when it was born, last seen, and last known by its looks.
+        born_s, seen_s, looked_s: [s] when it was born, last seen, and last known by its appearance.
         looked_m: (2,) where that was in the room; None for nowhere.
     """
 
@@ -137,7 +137,7 @@ class FusedPerson:
         return Status.PARTLY_OCCLUDED if is_found else best
 
     def later(self, dt_s: float, config: FusionConfig) -> FusedPerson:
-        """Give the person after it has walked on; nobody has told of it yet."""
+        """Return the person after it has walked on; nobody has told of it yet."""
         motion = self.motion.later(dt_s, config.restlessness)
         if not self.is_seen:
             motion = motion.slowed(dt_s, config.slow_s)
@@ -163,7 +163,7 @@ class FusedPerson:
         )
 
     def named(self, other: FusedPerson) -> FusedPerson:
-        """Give who is here, and is told of so, the number, the measures and the looks of another."""
+        """Return who is here, and is told of so, the number, the measures and the appearance of another."""
         return replace(
             self,
             id=other.id,
@@ -177,7 +177,7 @@ class FusedPerson:
         )
 
     def floor_place(self, pose: Pose2, shared_m: float) -> FloorPlace:
-        """Tell where the person stands in the robot's frame.
+        """Return where the person stands in the robot's frame.
 
         Args:
             pose: of the robot in the room.
@@ -207,7 +207,7 @@ class FusedPerson:
         return replace(self, tall_m=tall, span_m=span)
 
     def _with_appearance(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> FusedPerson:
-        """Learn looks, but not those of somebody else."""
+        """Learn looks, but not those of another person."""
         if reported.appearance is None:
             return self
         if self.appearance is None or self.strange >= config.relearn_frames:
@@ -252,7 +252,7 @@ _TORSO_BY_HEAT: Final = (0.065, 0.715)
 
 
 def outline(person: FusedPerson, frame: Frame, pose: Pose2) -> Box | None:
-    """Give left, top, width, height [px] in the thermal image, which may lie outside.
+    """Return left, top, width, height [px] in the thermal image, which may lie outside.
 
     Depth knows best where head and feet are, heat where the middle is. Whom only one of them sees has the
     ends of that one.
@@ -305,5 +305,5 @@ def standing_box(person: FusedPerson, camera: str, frame: Frame, pose: Pose2) ->
 
 
 def _contour(person: FusedPerson) -> Box | None:
-    """Give the thermal tracker's box of who is seen whole."""
+    """Return the thermal tracker's box of who is seen whole."""
     return person.warm.box if person.warm is not None and person.warm.is_clear else None

@@ -84,7 +84,7 @@ class ThermalDepthTracker:
         return self._depth.tracker.explanation
 
     def introduce(self, box: Box) -> None:
-        """Tell that a person is at this box [px] of the thermal image in the next frame."""
+        """Report that a person is at this box [px] of the thermal image in the next frame."""
         self._heat.tracker.introduce(box)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
@@ -138,14 +138,14 @@ class ThermalDepthTracker:
         return joined
 
     def _is_double(self, reported: SensorTrack, people: Sequence[FusedPerson]) -> bool:
-        """Tell whether a thermal track is likely somebody who has another one."""
+        """Return whether a thermal track is likely a person who has another one."""
         gate, floor_m = self._config.own_gate, self._config.floor_m
         return reported.box is not None and any(
             one.is_seen and distance2(one, reported, floor_m) < gate for one in people
         )
 
     def _peeked(self, person: FusedPerson, people: Sequence[FusedPerson], frame: Frame) -> FusedPerson:
-        """Look for somebody where it is expected if nobody sees it whole."""
+        """Look for a person where it is expected if nobody sees it whole."""
         config = self._config
         is_due = person.depth is not None and self._time_s - person.seen_s <= config.peek_s
         if not is_due or any(one.is_clear for one in person.reported) or self._is_crowded(person, people):
@@ -170,7 +170,7 @@ class ThermalDepthTracker:
     def _single(self, people: Sequence[FusedPerson]) -> list[FusedPerson]:
         """Make one of two at one place of whom one is seen by heat alone, and the other by depth alone.
 
-        Two who are both known by their looks stay two: heat has taken one for the other.
+        Two who are both known by their appearance stay two: heat has taken one for the other.
         """
         kept = list(people)
         for person in people:
@@ -208,7 +208,7 @@ class ThermalDepthTracker:
         return self._time_s - person.seen_s > limit_s
 
     def _is_shown(self, person: FusedPerson, frame: Frame) -> bool:
-        """Tell whether somebody is said to be there: who is hidden for a while, others for a blink."""
+        """Return whether a person is said to be there: who is hidden for a while, others for a blink."""
         config, late_s = self._config, self._time_s - person.seen_s
         if person.is_seen or late_s > config.hidden_s:
             return person.is_seen
@@ -255,7 +255,7 @@ def _depth(person: FusedPerson) -> int | None:
 
 
 def _without(person: FusedPerson, own: Own, owners: Mapping[int, int]) -> FusedPerson:
-    """Take a track from who had it before, if it is somebody else's now: it must not go back and forth."""
+    """Take a track from who had it before, if it is another person's now: it must not go back and forth."""
     mine = own(person)
     if mine is None or owners.get(mine, person.id) == person.id:
         return person

@@ -11,42 +11,42 @@ class FusionConfig:
 
     Attributes:
         gate: squared distance, in standard deviations, beyond which a track is not a person's.
-        unlike_gate: the same with what other looks and another height count.
+        unlike_gate: the same with what other appearance and another height count.
         own_gate: the same as `gate` for the track that was the person's before.
         loyalty, loyalty_heat: by how much a person's track of before counts as nearer: one by depth, and a
             thermal one.
-        beside_m: [m] across the line of sight, by which a thermal track may be off somebody whom depth sees
+        beside_m: [m] across the line of sight, by which a thermal track may be off a person whom depth sees
             whole before neither its place nor its contour is taken.
-        looks_weight: what entirely other looks count.
+        looks_weight: what entirely other appearance counts.
         height_sd_m: [m] by which a person's height may be measured wrongly.
         most_height: what another height counts at most.
         floor_m: [m] what places may be off beyond what the trackers believe.
         restlessness: density of the white accelerations with which people move [m2/s3].
         slow_s: [s] in which who is not seen loses most of its speed.
         clear_m, partly_m: [m] by which the place of a track may be off beyond what its tracker believes: of
-            somebody who is seen whole, and of somebody who is hidden in part.
+            a person who is seen whole, and of a person who is hidden in part.
         peek_m: [m] the same of who is looked for where it is expected.
-        peek_s: [s] for how long somebody is looked for so.
+        peek_s: [s] for how long a person is looked for so.
         peek_warm: share of warm pixels that this takes.
         shared_m: [m] error that all images of a person have in common.
-        learned: share of a newly measured height, or of new looks.
+        learned: share of a newly measured height, or of new appearance.
         learned_width: the same of the width of the torso, which changes with every step.
-        blink_s: [s] for how long somebody is shown whom nothing hides and nobody tells of.
+        blink_s: [s] for how long a person is shown whom nothing hides and nobody tells of.
         hidden_s: [s] the same of who is hidden.
-        hidden_share: share of readings before somebody, from which on it is hidden.
-        remembered_s: [s] for how long somebody is known who is away.
-        reach_m, fastest_m_s: [m], [m/s] how far away from where it was lost somebody may turn up.
+        hidden_share: share of readings before a person, from which on it is hidden.
+        remembered_s: [s] for how long a person is known who is away.
+        reach_m, fastest_m_s: [m], [m/s] how far away from where it was lost a person may turn up.
         away_s: [s] after which who is not seen is away, and recognised rather than followed.
         settled_s: [s] for which it may be undecided who turned up,
-        plain: unless somebody is so much more likely than anybody else.
+        plain: unless a person is so much more likely than anybody else.
         lookless_s: [s] after which nobody is recognised by the place alone.
-        least_alike: similarity of looks of who turns up again.
+        least_alike: similarity of appearance of who turns up again.
         tallest_off_m: [m] by which the height of who turns up again may differ.
-        least_own: similarity to one's own looks, below which somebody looks strange.
-        strange_frames: in a row, after which a strange person may be somebody else.
-        relearn_frames: in a row, after which the looks must have been wrong.
+        least_own: similarity to one's own looks, below which a person looks strange.
+        strange_frames: in a row, after which a strange person may be another person.
+        relearn_frames: in a row, after which the appearance must have been wrong.
         young_s: [s] for which a new person may turn out to be one who is away,
-        young_alike: by looks of this similarity.
+        young_alike: by appearance of this similarity.
         seen_through: share of readings behind a warm track, from which on nobody is there.
         least_warm: share of warm pixels of what stands somewhere, below which it is nobody.
     """

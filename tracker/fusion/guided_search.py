@@ -1,4 +1,4 @@
-"""Looking for somebody who is known where it is expected in the depth image, as far as it can be seen."""
+"""Looking for a person who is known where it is expected in the depth image, as far as it can be seen."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _HALF: Final = 1.25  # widths to either side of the middle that are looked at
 _REACH_M: Final = 0.35
 _DECIDES: Final = 0.5  # share of a column's readings that tell whose it is
 _LEAST_WIDE: Final = 0.15  # widths that must be seen,
-_WHOLE: Final = 0.6  # and of somebody whom nothing covers
+_WHOLE: Final = 0.6  # and of a person whom nothing covers
 _WIDEST: Final = 1.5  # widths that one person has at most
 _FARTHEST: Final = 0.8  # widths that the person may be off
 
@@ -39,7 +39,7 @@ class GuidedMeasurement:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Columns:
-    """Columns of pixels across the shoulders of somebody, and whose each is.
+    """Columns of pixels across the shoulders of a person, and whose each is.
 
     Attributes:
         u: (N,) [px] from left to right.
@@ -111,7 +111,7 @@ def _columns(
 
 
 def _middle(columns: _Columns, run: tuple[int, int], width: float) -> float | None:
-    """Give the column [px] of the middle of somebody of a width [px] of whom a run of columns is seen."""
+    """Return the column [px] of the middle of a person of a width [px] of whom a run of columns is seen."""
     u, (first, last) = columns.u, run
     step = (u[-1] - u[0]) / (len(u) - 1)
     starts, ends = float(u[first] - step / 2.0), float(u[last] + step / 2.0)
@@ -129,7 +129,7 @@ def _middle(columns: _Columns, run: tuple[int, int], width: float) -> float | No
 
 
 def _longest(flags: NDArray[np.bool_]) -> tuple[int, int] | None:
-    """Give first and last index of the longest run; gaps of one do not count."""
+    """Return first and last index of the longest run; gaps of one do not count."""
     closed = flags.copy()
     closed[1:-1] |= flags[:-2] & flags[2:]
     edges = np.flatnonzero(np.diff(np.concatenate([[False], closed, [False]]).astype(np.int8)))

@@ -41,7 +41,7 @@ def pairs(ones: Sequence[Track], others: Sequence[Track]) -> list[tuple[Track, T
 
 
 def mahalanobis2(one: Track, other: Track) -> float:
-    """Tell by how much the places of two tracks differ: squared, in standard deviations."""
+    """Return by how much the places of two tracks differ: squared, in standard deviations."""
     if one.place is None or other.place is None:
         return np.inf
     away = np.subtract(one.place.position_m, other.place.position_m)
@@ -50,7 +50,7 @@ def mahalanobis2(one: Track, other: Track) -> float:
 
 
 def is_same_way(one: Track, other: Track) -> bool:
-    """Tell whether two tracks are in the same direction, however far away."""
+    """Return whether two tracks are in the same direction, however far away."""
     if one.place is None or other.place is None:
         return False
     (ahead, aside), (further, across) = one.place.position_m, other.place.position_m
@@ -59,7 +59,7 @@ def is_same_way(one: Track, other: Track) -> bool:
 
 
 def is_seen(track: Track) -> bool:
-    """Tell whether a track is more than a guess."""
+    """Return whether a track is more than a guess."""
     return track.status is not Status.TOTALLY_OCCLUDED
 
 
@@ -153,7 +153,7 @@ class Departures:
     def who(
         self, track: Track, present: Collection[int], camera: str, others: Mapping[int, Track]
     ) -> int | None:
-        """Tell whose number a new track should have: that of who was near last, and is not there.
+        """Return whose number a new track should have: that of who was near last, and is not there.
 
         Args:
             track: the new one.
@@ -173,7 +173,7 @@ class Departures:
         return nearest if nearest is not None and ways[nearest] < REACH_M else None
 
     def _ways(self, seen_m: tuple[float, float], camera: str, number: int) -> Iterator[float]:
-        """Tell of each camera how much farther away a place is than somebody can have gone since [m]."""
+        """Return for each camera how much farther away a place is than a person can have gone since [m]."""
         for (before, one), (place, time_s) in self._places.items():
             if one == number:
                 share = 1.0 if camera == before == PANORAMA else DEPTH_SHARE
@@ -243,7 +243,7 @@ class Identities:
                 self._take((camera, track.id), number)
 
     def agree(self, follower: tuple[Key, Track], leader: tuple[Key, Track], present: Collection[Key]) -> None:
-        """Give two tracks that are one person the same number.
+        """Return two tracks that are one person the same number.
 
         A number that is young gives way; otherwise the leader's stays. Whoever else has the number in the
         camera of the one that gives way gets a new one.
@@ -262,7 +262,7 @@ class Identities:
         return self._newest
 
     def _take(self, taker: Key, number: int) -> list[Key]:
-        """Give a number to one track of a camera alone; who had it there is told, and has none any more."""
+        """Return a number to one track of a camera alone; who had it there is told, and has none any more."""
         had = [key for key, one in self.number.items() if one == number and key[0] == taker[0]]
         for key in had:
             del self.number[key]

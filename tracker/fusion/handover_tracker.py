@@ -42,7 +42,7 @@ class Introductions:
     def next(
         self, around: Sequence[Track], warm: Sequence[Track], linked: Collection[int], frame: Frame
     ) -> Box | None:
-        """Give the box in the thermal image of somebody who is before its camera, but not seen by it.
+        """Return the box in the thermal image of a person who is before its camera, but not seen by it.
 
         Args:
             around: tracks of the panoramic tracker.
@@ -67,7 +67,7 @@ class Introductions:
 
 
 def thermal_view(track: Track, calibration: Calibration, width_px: int) -> Box | None:
-    """Give the box of a track that is seen elsewhere in a thermal image of this width; None if outside."""
+    """Return the box of a track that is seen elsewhere in a thermal image of this width; None if outside."""
     if track.place is None or track.status is not Status.TRACKED:
         return None
     ahead, aside = track.place.position_m
@@ -79,7 +79,7 @@ def thermal_view(track: Track, calibration: Calibration, width_px: int) -> Box |
 
 
 def _is_taken(box: Box, warm: Sequence[Track]) -> bool:
-    """Tell whether somebody whom the thermal tracker has is in the middle of a box."""
+    """Return whether a person whom the thermal tracker has is in the middle of a box."""
     middle = box[0] + box[2] / 2.0
     spans = (track.boxes[THERMAL] for track in warm)
     return any(left - 0.25 * wide <= middle <= left + 1.25 * wide for left, _, wide, _ in spans)
@@ -108,7 +108,7 @@ def joined(warm: Mapping[int, Track], around: Mapping[int, Track], frame: Frame)
 
 
 def renamed(tracks: Mapping[int, Track]) -> dict[int, Track]:
-    """Give tracks, and those who hide them, the numbers by which they are listed."""
+    """Return tracks, and those who hide them, the numbers by which they are listed."""
     number = {track.id: shared for shared, track in tracks.items()}
     return {
         shared: replace(track, id=shared, occluder=number.get(track.occluder or 0))
@@ -117,13 +117,13 @@ def renamed(tracks: Mapping[int, Track]) -> dict[int, Track]:
 
 
 def _shown(track: Track, calibration: Calibration, width_px: int) -> Track:
-    """Put somebody who is seen in the panorama into the thermal image, too."""
+    """Put a person who is seen in the panorama into the thermal image, too."""
     box = thermal_view(track, calibration, width_px)
     return track if box is None else replace(track, boxes={**track.boxes, THERMAL: box})
 
 
 def _is_doubtful(track: Track, tracks: Mapping[int, Track]) -> bool:
-    """Tell whether a new track of the panorama is likely one of the thermal image, not linked to it yet."""
+    """Return whether a new track of the panorama is likely one of the thermal image, not linked to it yet."""
     if track.age_s >= DOUBTFUL_S or PANORAMA not in track.boxes:
         return False
     return any(PANORAMA not in other.boxes and is_same_way(track, other) for other in tracks.values())
@@ -145,7 +145,7 @@ def _merged(warm: Track, around: Track) -> Track:
 
 
 def _is_surer(warm: Track, around: Track) -> bool:
-    """Tell whether the first of two who are both seen is surer of its place."""
+    """Return whether the first of two who are both seen is surer of its place."""
     if not (is_seen(warm) and is_seen(around)) or warm.place is None or around.place is None:
         return False
     (xx, _, yy), (other_xx, _, other_yy) = warm.place.covariance_m2, around.place.covariance_m2
@@ -170,7 +170,7 @@ class Ahead(Protocol):
         ...
 
     def introduce(self, box: Box) -> None:
-        """Tell that a person is at this box [px] of the thermal image in the next frame."""
+        """Report that a person is at this box [px] of the thermal image in the next frame."""
         ...
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
@@ -237,7 +237,7 @@ class HandoverTracker:
         return joined(renamed(by_heat), renamed(by_place), frame)
 
     def _number(self, warm: Sequence[Track], around: Sequence[Track]) -> None:
-        """Give all tracks their numbers, and one to two that have been together for long enough."""
+        """Return all tracks their numbers, and one to two that have been together for long enough."""
         by_heat, by_place = {track.id: track for track in warm}, {track.id: track for track in around}
         seen = pairs([one for one in warm if is_seen(one)], [one for one in around if is_seen(one)])
         agreed = {one.id: other.id for one, other in seen}

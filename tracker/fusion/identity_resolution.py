@@ -1,4 +1,4 @@
-"""Who is who after a while: who turns up again, and who has been taken for somebody else."""
+"""Who is who after a while: who turns up again, and who has been taken for another person."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from peopleboy.tracker.fusion.track_to_track import cheapest
 from peopleboy.tracker.rgbd.observation_model import similarity
 
 _OWN: Final = 1.0  # what it counts that a track was the person's before
-_UNLIKE: Final = 5.0  # what entirely other looks count
+_UNLIKE: Final = 5.0  # what entirely other appearance counts
 _GRACE_S: Final = 1.0
-_DOUBTED_S: Final = 0.25  # after which who is not known by looks may be elsewhere
-_DOUBTED: Final = 2  # frames in a row in which somebody looked otherwise who may be taken for another
+_DOUBTED_S: Final = 0.25  # after which who is not known by appearance may be elsewhere
+_DOUBTED: Final = 2  # frames in a row in which a person looked otherwise who may be taken for another
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +39,8 @@ class IdentityResolution:
     def settled(self, people: Sequence[FusedPerson], numbers: Iterator[int]) -> list[FusedPerson]:
         """Number those who turned up, as soon as it is plain who they are, or late enough.
 
-        All of them are compared with all who are away at once. Who is taken for somebody who seemed to be
-        seen, but was not known by looks of late, has that one's number.
+        All of them are compared with all who are away at once. Who is taken for a person who seemed to be
+        seen, but was not known by appearance of late, has that one's number.
 
         Args:
             people: everybody; who turned up has a negative id.
@@ -61,14 +61,14 @@ class IdentityResolution:
         return list(known.values())
 
     def _is_away(self, person: FusedPerson) -> bool:
-        """Tell whether somebody may be elsewhere: who is not seen, or not known by looks of late."""
+        """Return whether a person may be elsewhere: who is not seen, or not known by appearance of late."""
         is_doubted = (
             self.is_lit and person.appearance is not None and self.time_s - person.appearance_s > _DOUBTED_S
         )
         return not person.is_seen or is_doubted
 
     def _is_plain(self, guest: FusedPerson, costs: Floats, chosen: int | None) -> bool:
-        """Tell whether it is time to say who somebody is.
+        """Return whether it is time to say who a person is.
 
         Args:
             guest: who turned up.
@@ -86,9 +86,9 @@ class IdentityResolution:
         return bool((others - costs[chosen] >= self.config.plain).all())
 
     def resolve_swaps(self, people: Sequence[FusedPerson]) -> list[FusedPerson]:
-        """Give people who look like another that one's number.
+        """Return people who look like another that one's number.
 
-        Who has looked otherwise for a while changes with somebody of its looks who is away, or looks
+        Who has looked otherwise for a while changes with a person of its appearance who is away, or looks
         otherwise, too. A new person may turn out to be one who is away.
         """
         known = {one.id: one for one in people}
@@ -105,7 +105,7 @@ class IdentityResolution:
         return list(known.values())
 
     def _strangeness(self, person: FusedPerson, guest: FusedPerson) -> float:
-        """Rate how unlikely it is that a guest is somebody; infinite if it is out of the question."""
+        """Rate how unlikely it is that a guest is a person; infinite if it is out of the question."""
         if person.is_seen and guest.appearance is None:
             return math.inf
         is_own = person.depth == guest.depth if guest.depth is not None else person.heat == guest.heat
@@ -142,7 +142,7 @@ class IdentityResolution:
         return self.time_s - person.born_s < self.config.young_s
 
     def _other(self, person: FusedPerson, people: Sequence[FusedPerson]) -> FusedPerson | None:
-        """Find whose looks somebody has who looks otherwise, or is new."""
+        """Find whose appearance a person has who looks otherwise, or is new."""
         reported, is_strange = person.deep, person.strange >= self.config.strange_frames
         if reported is None or reported.appearance is None:
             return None

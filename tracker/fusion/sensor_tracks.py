@@ -41,7 +41,7 @@ class Heat:
         self._images = FreshImages(THERMAL)
 
     def reported(self, frame: Frame, pose: Pose2) -> list[SensorTrack]:
-        """Tell of everybody; nobody without a new image."""
+        """Return for everybody; nobody without a new image."""
         fresh = self._images.of(frame)
         if fresh is None:
             return []
@@ -77,7 +77,7 @@ class Depth:
         self.is_lit = False
 
     def reported(self, frame: Frame, pose: Pose2) -> list[SensorTrack]:
-        """Tell of everybody; nobody without a new image."""
+        """Return for everybody; nobody without a new image."""
         fresh = self._images.of(frame)
         if fresh is None:
             return []
@@ -141,7 +141,7 @@ def _deep(
 
 
 def _body_of(person: Hypothesis, detections: Sequence[Detection]) -> Body | None:
-    """Give what the detection that is nearest to a person measures; None without one."""
+    """Return what the detection that is nearest to a person measures; None without one."""
     ways = {k: math.dist(one.place_m, person.place_m) for k, one in enumerate(detections)}
     nearest = min(ways, key=lambda k: ways[k], default=None)
     return detections[nearest].body if nearest is not None and ways[nearest] < _OWN_M else None

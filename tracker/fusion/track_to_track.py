@@ -17,7 +17,7 @@ _NEVER: Final = 1e6
 
 
 def distance2(person: FusedPerson, reported: SensorTrack, floor_m: float) -> float:
-    """Tell by how much what is told differs from a person's place: squared, in standard deviations.
+    """Return by how much what is told differs from a person's place: squared, in standard deviations.
 
     A thermal track is sure of its bearing and not of its range; one by depth is sure of both.
     """
@@ -29,7 +29,7 @@ def distance2(person: FusedPerson, reported: SensorTrack, floor_m: float) -> flo
 def cost(
     person: FusedPerson, reported: SensorTrack, own: int | None, time_s: float, config: FusionConfig
 ) -> float:
-    """Tell how unlikely it is that a person is told of; infinite if it is out of the question.
+    """Return how unlikely it is that a person is told of; infinite if it is out of the question.
 
     Args:
         person: where it is expected.
@@ -49,7 +49,7 @@ def cost(
 
 
 def is_contradicted(person: FusedPerson, reported: SensorTrack, config: FusionConfig) -> bool:
-    """Tell whether a thermal track is in another bearing than somebody whom depth sees whole."""
+    """Return whether a thermal track is in another bearing than a person whom depth sees whole."""
     deep = person.deep
     if reported.box is None or deep is None or not deep.is_clear:
         return False

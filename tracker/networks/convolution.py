@@ -154,7 +154,7 @@ def _rectify(given: Planes, bias: Planes) -> None:  # pragma: no cover
 
 @njit(cache=True, nogil=True)
 def _into_tiles(planes: Planes, right: int, tiles: Planes) -> None:  # pragma: no cover
-    """Give B' d B of each tile d, one of 16 numbers after the other."""
+    """Return B' d B of each tile d, one of 16 numbers after the other."""
     count, high, wide, deep = planes.shape
     each = tiles.shape[1] // count
     edged = np.zeros((TILE, TILE, deep), np.float32)
@@ -187,7 +187,7 @@ def _into_tiles(planes: Planes, right: int, tiles: Planes) -> None:  # pragma: n
 
 @njit(cache=True, nogil=True)
 def _out_of_tiles(products: Planes, bias: Planes, right: int, given: Planes) -> None:  # pragma: no cover
-    """Give A' m A of each tile's products m, with the bias, cut off below 0."""
+    """Return A' m A of each tile's products m, with the bias, cut off below 0."""
     count, high, wide, deep = given.shape
     each = products.shape[1] // count
     half = np.empty((2, TILE, deep), np.float32)

@@ -275,7 +275,7 @@ def _unmix(sums: Linear, units: Linear, biases: Linear, dilation: int, grown: Li
 
 @njit(cache=True, fastmath=False)
 def _first_row(block: int, dilation: int) -> int:
-    """Tell in which row of the units a block begins."""
+    """Return in which row of the units a block begins."""
     return _BORDER + block // dilation * _HIGH * dilation + block % dilation
 
 

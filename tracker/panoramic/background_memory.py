@@ -79,7 +79,7 @@ def _moved(memory: Linear, by_m: Pair, turn: float, distance: Linear, row_of: Tr
 def _look_up(
     columns: Linear, rows: Linear, distance: np.float32, along: Linear, across: Linear, row_of: Triple
 ) -> None:
-    """Tell by how many columns (W,) more the floor of a row lay aside, and in which rows (W,)."""
+    """Return by how many columns (W,) more the floor of a row lay aside, and in which rows (W,)."""
     per_rad = np.float32(len(columns) / math.tau)
     a, b, c = np.float32(row_of[0]), np.float32(row_of[1]), np.float32(row_of[2])
     for u in range(len(columns)):
@@ -92,7 +92,7 @@ def _look_up(
 
 @njit(cache=True, fastmath=True, error_model="numpy")
 def _find(columns: Linear, rows: Linear, height: int, corners: NDArray[np.uint32], shares: Linear) -> None:
-    """Tell which four pixels (4, W) of a plane places lie between, and how far right and low (2, W)."""
+    """Return which four pixels (4, W) of a plane places lie between, and how far right and low (2, W)."""
     width = len(columns)
     wide, bottom = np.float32(width), np.float32(height - 1)
     for u in range(width):
@@ -126,7 +126,7 @@ def _interpolate(memory: Linear, corners: NDArray[np.uint32], shares: Linear, mo
 
 @njit(cache=True, fastmath=True, error_model="numpy")
 def compare(image: NDArray[np.uint8], memory: Linear) -> tuple[Linear, Linear]:
-    """Tell of each pixel of an image (H, W, 3) what it looks like, and how its memory does.
+    """Return for each pixel of an image (H, W, 3) what it looks like, and how its memory does.
 
     These are its colour, by how many standard deviations it differs from the memory (their logarithm), and
     the memory's age and doubt. To a pixel's own variance is added what its background's slope makes of a
@@ -242,7 +242,7 @@ def learn(memory: Linear, image: NDArray[np.uint8], foreground: Linear, passed_s
 
 @njit(cache=True, fastmath=True, error_model="numpy")
 def _set_rates(foreground: Linear, age: Linear, passed_s: np.float32, clear: Linear, rate: Linear) -> None:
-    """Tell how surely a line's pixels are no person, and what share of them is taken over."""
+    """Return how surely a line's pixels are no person, and what share of them is taken over."""
     one = np.float32(1.0)
     absorbed = np.float32(1.0 - math.exp(-passed_s / _ABSORB_TAU_S))
     least = np.float32(1.0 - math.exp(-passed_s / _TAU_S))

@@ -37,7 +37,7 @@ class FloorRows:
 
 
 def floor_rows(calibration: Calibration, height: int) -> FloorRows:
-    """Tell how the floor lies in the rows of a panorama with this calibration."""
+    """Return how the floor lies in the rows of a panorama with this calibration."""
     zero, one = np.zeros(3), np.ones(3)
     rows = calibration.project(np.stack([_THREE_M, zero, zero], axis=1))[:, 1]
     lines = np.stack([_THREE_M, one, -rows], axis=1)

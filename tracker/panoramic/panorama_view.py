@@ -72,7 +72,7 @@ def view_of(calibration: Calibration, width_px: int, height_px: int) -> Panorama
 def choose_view(
     trained: Sequence[PanoramaView], size: tuple[int, int], calibration: Calibration | None
 ) -> int:
-    """Tell which of one or more views a camera has, by its images' (height, width) and its calibration.
+    """Return which of one or more views a camera has, by its images' (height, width) and its calibration.
 
     Where that is unknown, the first one of that size will do.
 

@@ -144,7 +144,7 @@ class Foreground:
         return move_along(self._memory, Odometry.from_motion(moved), floor)
 
     def _floor(self, calibration: Calibration, image: NDArray[np.uint8]) -> FloorRows:
-        """Tell how the floor lies; a camera that the network does not know is refused."""
+        """Return how the floor lies; a camera that the network does not know is refused."""
         (height, width), known = image.shape[:2], self._view
         is_same = calibration is self._calibration and (width, height) == (known.width_px, known.height_px)
         if self._rows is None or not is_same:

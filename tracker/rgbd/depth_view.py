@@ -63,7 +63,7 @@ class DepthView:
         return float(self.focal_px * forward / -down) if down else 0.0
 
     def on_floor(self, x_m: Floats, z_m: Floats) -> Floats:
-        """Give places (N, 2) on the floor, forward and left, below points at the horizon's height."""
+        """Return places (N, 2) on the floor, forward and left, below points at the horizon's height."""
         points = np.stack([x_m, np.zeros_like(x_m), z_m], axis=-1)
         pose = self.calibration.robot_from_camera
         return np.asarray(points @ pose[:2, :3].T + pose[:2, 3])

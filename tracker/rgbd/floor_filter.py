@@ -41,7 +41,7 @@ class FloorFilter:
         return np.asarray(self.state[:, :2].mean(axis=0))
 
     def carried(self, motion: Pose2) -> FloorFilter:
-        """Give the same particles in the robot's frame after it moved."""
+        """Return the same particles in the robot's frame after it moved."""
         return FloorFilter(
             np.hstack([motion.points_to_local(self.state[:, :2]), motion.vectors_to_local(self.state[:, 2:])])
         )

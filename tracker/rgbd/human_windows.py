@@ -22,7 +22,7 @@ _Borders = tuple[int, int, int, int]  # above, below, left, right
 
 
 class WindowRange(StrEnum):
-    """How far somebody is: so near that the feet are cut off, or farther (SA 4.4.2)."""
+    """How far a person is: so near that the feet are cut off, or farther (SA 4.4.2)."""
 
     NEAR = "near"
     FAR = "far"
@@ -39,7 +39,7 @@ _RELIEF_M: Final = 0.6  # before and behind a body, that its window shows of the
 
 
 def range_of(z_m: float, floor: HeightLine, view: DepthView, rows: int) -> WindowRange:
-    """Tell how far something is: far from where feet are in the image on (SA eq. 4.16)."""
+    """Return how far something is: far from where feet are in the image on (SA eq. 4.16)."""
     half_angle = math.atan((rows / 2.0 + view.horizon_px) / view.focal_px)
     farthest = floor.offset_m * math.tan(math.pi / 2.0 - half_angle) + _SAFETY_M
     return WindowRange.FAR if z_m > farthest else WindowRange.NEAR
@@ -81,7 +81,7 @@ def depth_features(depth: Depth, z_m: float, window: Box, kind: WindowRange) -> 
 
 
 def hog(patch: Image, kind: WindowRange) -> Features:
-    """Give the histograms of oriented gradients (N,) of what was cut out."""
+    """Return the histograms of oriented gradients (N,) of what was cut out."""
     return np.asarray(_hog(kind).compute(patch), np.float32).ravel()
 
 
@@ -101,7 +101,7 @@ def cut_depth(depth: Depth, z_m: float, window: Box, kind: WindowRange) -> Image
 
 
 def _inside(window: Box, shape: tuple[int, ...]) -> tuple[tuple[slice, slice], _Borders]:
-    """Tell which rows and columns of an image a window has, and how many it lacks at each border."""
+    """Return which rows and columns of an image a window has, and how many it lacks at each border."""
     left, top, width, height = window
     first_u, first_v = math.floor(left), math.floor(top)
     last_u, last_v = max(math.ceil(left + width), first_u + 2), max(math.ceil(top + height), first_v + 2)

@@ -16,7 +16,7 @@ from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
 from peopleboy.tracker.track import Box
 
-# What somebody looks like: a histogram of hue and saturation (SA 4.6).
+# What a person looks like: a histogram of hue and saturation (SA 4.6).
 
 HUES: Final = 12
 SATURATIONS: Final = 6
@@ -49,7 +49,7 @@ def bin_of_colour() -> NDArray[np.uint8]:
 
 
 def similarity(one: Floats, other: Floats) -> float:
-    """Give the Bhattacharyya coefficient of two histograms, 1 for equal ones (SA eq. 4.25).
+    """Return the Bhattacharyya coefficient of two histograms, 1 for equal ones (SA eq. 4.25).
 
     The source prints a comma between the two; their product is meant.
     """
@@ -141,7 +141,7 @@ def look_at(view: RgbdView, places_m: Floats, body: Body, foreground_m: float) -
 
 
 def box_at(geometry: DepthView, place_m: Floats, body: Body) -> Box:
-    """Give the box [px] of a body at a place (2,), which may reach outside the image."""
+    """Return the box [px] of a body at a place (2,), which may reach outside the image."""
     pose = geometry.calibration.robot_from_camera
     intrinsics = np.array([geometry.focal_px, geometry.centre_u, geometry.centre_v])
     left, top, width, height, _ = _box(
@@ -151,7 +151,7 @@ def box_at(geometry: DepthView, place_m: Floats, body: Body) -> Box:
 
 
 def colours_in(view: RgbdView, box: Box) -> Floats:
-    """Give the histogram (BINS,) of what stands out in a box (SA eq. 4.24).
+    """Return the histogram (BINS,) of what stands out in a box (SA eq. 4.24).
 
     Its readings are parted into two by their depths; the nearer ones are taken.
     """
@@ -168,7 +168,7 @@ def _box(
     head_m: float,
     low_m: float,
 ) -> tuple[float, float, float, float, float]:
-    """Give left, top, width, height [px] and depth [m] of a body; depth 0 for behind the camera."""
+    """Return left, top, width, height [px] and depth [m] of a body; depth 0 for behind the camera."""
     ends = np.empty((2, 3))
     for k in range(2):
         dx, dy, dz = place[0] - origin[0], place[1] - origin[1], (head_m if k == 0 else low_m) - origin[2]
@@ -198,7 +198,7 @@ def _glances(
     foreground_m: float,
     table: NDArray[np.uint8],
 ) -> Floats:
-    """Give similarity, miss, share nearer, share beyond (P, 4)."""
+    """Return similarity, miss, share nearer, share beyond (P, 4)."""
     found = np.zeros((len(places), 4))
     found[:, 1] = _NOWHERE_M
     samples = np.zeros((COLUMNS * ROWS, 4))
@@ -265,7 +265,7 @@ def _similarity(
 
 @njit(cache=True, nogil=True)
 def _miss(rotation: Floats, origin: Floats, place: Floats, x: float, z: float) -> float:
-    """Give the distance [m] on the floor of a place from a point of the optical frame."""
+    """Return the distance [m] on the floor of a place from a point of the optical frame."""
     across = rotation[0, 0] * x + rotation[0, 2] * z + origin[0] - place[0]
     aside = rotation[1, 0] * x + rotation[1, 2] * z + origin[1] - place[1]
     return math.hypot(across, aside)

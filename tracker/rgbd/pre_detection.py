@@ -193,7 +193,7 @@ class PreDetector:
         )
 
     def _visible_m(self, floor: HeightLine, depth_m: float, rows: int, view: DepthView) -> float:
-        """Tell how much of a human's height can be in the image at a depth [m]."""
+        """Return how much of a human's height can be in the image at a depth [m]."""
         at = np.array([depth_m])
         foot = float(floor.rows(at, view)[0])
         head = float(floor.raised(self.size.height_m).rows(at, view)[0])

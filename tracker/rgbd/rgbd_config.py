@@ -47,11 +47,11 @@ class HypothesesConfig:
     Attributes:
         gate_m, gate_per_m: [m] distance of what belongs together, and by how much more it may be apart for
             each square metre of squared depth.
-        gate_m_s: [m/s] by which the gate grows, up to twice, while somebody is not seen.
-        births: verifications after which somebody is believed in.
+        gate_m_s: [m/s] by which the gate grows, up to twice, while a person is not seen.
+        births: verifications after which a person is believed in.
         pre_share, verified_share, filter_share: of a measurement in the merged place (SA eq. 4.22).
         unverified_s: [s] without a verification after which a hypothesis is deleted.
-        missing_s: [s] for which somebody is claimed who should be seen and is not.
+        missing_s: [s] for which a person is claimed who should be seen and is not.
         outside_s: [s] the same for who is outside the image.
         hidden_s: [s] the same for who is hidden or outside the image; claimed for `unverified_s` only.
         has_see_through: whether a hypothesis is deleted when the camera sees through it.
@@ -104,7 +104,7 @@ class RgbdConfig:
     least_other_score: float = -0.3
 
     def least_score(self, kind: WindowRange) -> float:
-        """Tell above which score a window of a range is a human's."""
+        """Return above which score a window of a range is a human's."""
         return self.least_far_score if kind is WindowRange.FAR else self.least_near_score
 
 

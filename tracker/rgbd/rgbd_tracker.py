@@ -166,7 +166,7 @@ class RgbdTracker:
         return tuple(replace(one, occluder=occluder_of(one, everybody, management.view)) for one in everybody)
 
     def _named(self, people: Sequence[Hypothesis]) -> tuple[Hypothesis, ...]:
-        """Give numbers to those who were verified often enough."""
+        """Return numbers to those who were verified often enough."""
         named = []
         for person in people:
             if not person.id and person.verifications >= self.config.hypotheses.births:
@@ -190,14 +190,14 @@ class RgbdTracker:
 
 
 def _place(found: PreDetection, view: RgbdView) -> Floats:
-    """Give the place (2,) of a body's middle, which is behind the surface that is seen."""
+    """Return the place (2,) of a body's middle, which is behind the surface that is seen."""
     deeper = 1.0 + view.body_m / math.hypot(found.x_m, found.z_m)
     at = np.array([found.x_m * deeper]), np.array([found.z_m * deeper])
     return np.asarray(view.geometry.on_floor(*at)[0])
 
 
 def _boxes(person: Hypothesis, calibrations: Mapping[str, Calibration]) -> dict[str, Box]:
-    """Give the box of a person, from head to feet, in the image of each flat camera before which it is."""
+    """Return the box of a person, from head to feet, in the image of each flat camera before which it is."""
     body = replace(person.body, low_m=0.0)
     boxes = {}
     for name, calibration in calibrations.items():

@@ -19,11 +19,11 @@ from peopleboy.tracker.track import Status
 
 _CONFIDENT: Final = 0.3
 _GAIN: Final = 0.15  # of what the place was off in a frame that goes into the velocity
-_SLOWS_S: Final = 2.0  # in which somebody who is not seen is thought to lose most of the velocity
+_SLOWS_S: Final = 2.0  # in which a person who is not seen is thought to lose most of the velocity
 _SIZE_SHARE: Final = 0.2
-_SEEN_THROUGH: Final = 0.8  # share of readings behind, by which somebody is gone
+_SEEN_THROUGH: Final = 0.8  # share of readings behind, by which a person is gone
 _SEEN_THROUGH_FRAMES: Final = 5
-_HIDDEN: Final = 0.5  # share of readings before somebody who is hidden
+_HIDDEN: Final = 0.5  # share of readings before a person who is hidden
 _PARTLY_HIDDEN: Final = 0.2
 _HIDDEN_ONES: Final = (Status.PARTLY_OCCLUDED, Status.TOTALLY_OCCLUDED)
 _TENTATIVE_S: Final = 0.4
@@ -95,7 +95,7 @@ class Management:
         )
 
     def is_over(self, person: Hypothesis) -> bool:
-        """Tell whether a hypothesis is to be deleted."""
+        """Return whether a hypothesis is to be deleted."""
         rules = self.config.hypotheses
         if not person.id:
             return self.time_s - person.verified_s > _TENTATIVE_S
@@ -105,7 +105,7 @@ class Management:
         return self.time_s - person.verified_s > (rules.hidden_s if is_excused else rules.unverified_s)
 
     def is_claimed(self, person: Hypothesis) -> bool:
-        """Tell whether somebody is said to be there: believed in, and seen not long ago."""
+        """Return whether a person is said to be there: believed in, and seen not long ago."""
         rules = self.config.hypotheses
         if self._is_outside(person):
             limit_s = rules.outside_s
@@ -114,7 +114,7 @@ class Management:
         return person.id > 0 and self.time_s - person.seen_s <= limit_s
 
     def _is_outside(self, person: Hypothesis) -> bool:
-        """Tell whether the middle of a person is outside the image."""
+        """Return whether the middle of a person is outside the image."""
         left, _, width, _ = box_at(self.view.geometry, person.place_m, person.body)
         return width <= 0.0 or not 0.0 <= left + width / 2.0 < self.view.depth.shape[1]
 
@@ -133,7 +133,7 @@ class Management:
         )
 
     def _walking(self, person: Hypothesis, expected: Floats, *, is_seen: bool) -> Hypothesis:
-        """Learn how somebody walks from how far off the expected place was; who is not seen slows down."""
+        """Learn how a person walks from how far off the expected place was; who is not seen slows down."""
         if is_seen:
             off = (person.place_m - expected) / max(self.dt_s, 1e-3)
             return replace(person, velocity_m_s=person.velocity_m_s + _GAIN * off, seen_s=self.time_s)
@@ -156,7 +156,7 @@ class Management:
         )
 
     def _judged(self, person: Hypothesis, update: Update, *, is_seen: bool) -> Hypothesis:
-        """Tell how well a person is seen, and whether the camera sees what is behind."""
+        """Return how well a person is seen, and whether the camera sees what is behind."""
         at = look_at(self.view, person.place_m[None], person.body, 0.0)
         nearer, beyond = float(at.nearer[0]), float(at.beyond[0])
         through = person.seen_through + 1 if not is_seen and beyond > _SEEN_THROUGH else 0
@@ -172,7 +172,7 @@ class Management:
         return replace(person, seen_through=through, status=status, confidence=min(confidence, 1.0))
 
     def _error_m2(self, detection: Detection) -> Floats:
-        """Give the covariance (2, 2) of a detection's place: the sensor's along the ray, and the gait's."""
+        """Return the covariance (2, 2) of a detection's place: the sensor's along the ray, and the gait's."""
         ray = detection.place_m / max(float(np.hypot(*detection.place_m)), 1e-6)
         along = (_DEPTH_SD * detection.found.z_m**2) ** 2
         return np.eye(2) * _FLOOR_SD_M**2 + np.outer(ray, ray) * along

@@ -83,7 +83,7 @@ def u_depth(depth: Depth, first_row: Floats, last_row: Floats, row_m: float) -> 
 
 
 def depths_m(row_m: float) -> Floats:
-    """Give the middle (D,) of each row's depths [m]."""
+    """Return the middle (D,) of each row's depths [m]."""
     return np.asarray((np.arange(round(FARTHEST_M / row_m) + 1) + 0.5) * row_m)
 
 
@@ -106,7 +106,7 @@ def _piece(row: list[float], row_m: float) -> DepthPiece:
 
 
 def gaps(config: UDepthConfig) -> Ints:
-    """Give the rows (D,) that a gap behind each row may have."""
+    """Return the rows (D,) that a gap behind each row may have."""
     depth_m = depths_m(config.row_m)
     printed = _GAPS[np.searchsorted(_ZONES_M, depth_m)]
     steps = np.round(config.bridged_steps * STEP_1_M * depth_m**2 / config.row_m)
@@ -143,7 +143,7 @@ def _connect(kept: NDArray[np.uint8], gap: Ints) -> None:
 
 @njit(cache=True, nogil=True)
 def _extents(counts: Ints, labels: Ints, boxes: Ints, number: int, trimmed: float) -> Floats:
-    """Give left, right, near, far, mean row + 0.5 and mass (N, 6) of the pieces."""
+    """Return left, right, near, far, mean row + 0.5 and mass (N, 6) of the pieces."""
     found = np.zeros((number - 1, 6))
     for label in range(1, number):
         left, top, width, height = boxes[label, :4]
@@ -165,7 +165,7 @@ def _extents(counts: Ints, labels: Ints, boxes: Ints, number: int, trimmed: floa
 
 @njit(cache=True, nogil=True)
 def _trim(mass: Floats, least: float) -> tuple[int, int]:
-    """Give the first and last place of what is left when so much is taken off either end."""
+    """Return the first and last place of what is left when so much is taken off either end."""
     first, last, seen = 0, len(mass) - 1, mass[0]
     while seen <= least and first < last:
         first += 1

@@ -38,11 +38,11 @@ class HeightLine:
     offset_m: float
 
     def rows(self, depth_m: Floats, view: DepthView) -> Floats:
-        """Give the image rows [px] of the limit at depths [m]."""
+        """Return the image rows [px] of the limit at depths [m]."""
         return np.asarray(view.centre_v + view.focal_px * (self.slope + self.offset_m / depth_m))
 
     def raised(self, height_m: float) -> HeightLine:
-        """Give the limit so much higher."""
+        """Return the limit so much higher."""
         return HeightLine(self.slope, self.offset_m - height_m)
 
 

@@ -43,23 +43,23 @@ class DepthWall:
     right: int
 
     def disparity(self, columns: Floats, view: DepthView) -> Floats:
-        """Give the disparity [px] in columns; not positive where they do not meet the plane."""
+        """Return the disparity [px] in columns; not positive where they do not meet the plane."""
         return np.asarray(self.offset_px + self.slope * (columns - view.centre_u))
 
     def depth_m(self, columns: Floats, view: DepthView) -> Floats:
-        """Give the depth [m] in columns; at least 1000 m where they do not meet the plane."""
+        """Return the depth [m] in columns; at least 1000 m where they do not meet the plane."""
         disparity = np.maximum(self.disparity(columns, view), view.disparity_px_m / 1000.0)
         return np.asarray(view.disparity_px_m / disparity)
 
     def square_px(self, view: DepthView) -> float:
-        """Give the disparity [px] that it had if the camera were turned to it."""
+        """Return the disparity [px] that it had if the camera were turned to it."""
         return float(np.hypot(self.slope * view.focal_px, self.offset_px))
 
 
 def tall_disparity(
     depth: Depth, first_row: Floats, last_row: Floats, row_m: float, view: DepthView
 ) -> Floats:
-    """Give the disparity (W, 2) [px] of what stands above people's heads, NaN where nothing does.
+    """Return the disparity (W, 2) [px] of what stands above people's heads, NaN where nothing does.
 
     The first is the middle one, the second half of what eight tenths of the readings span. Only every fourth
     column of the image is looked at.
@@ -99,7 +99,7 @@ def find_walls(tall: Floats, view: DepthView) -> tuple[DepthWall, ...]:
 def bands_mm(
     walls: tuple[DepthWall, ...], tall: Floats, off_m: float, view: DepthView
 ) -> tuple[NDArray[np.uint16], NDArray[np.uint16]]:
-    """Give the nearest and the farthest depth (K, W) [mm] of each wall by column; 0 and 0 where it is not.
+    """Return the nearest and the farthest depth (K, W) [mm] of each wall by column; 0 and 0 where it is not.
 
     It is in the columns in which it shows above people's heads, a little beyond them, as corners are frayed,
     and in those next to them in which nothing tall is seen.

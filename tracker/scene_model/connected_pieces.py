@@ -49,7 +49,7 @@ def pieces_of(
 
 
 def pixels_by_label(labels: Labels, count: int) -> list[tuple[int, Pixels]]:
-    """Give the pixels of each label from 1 on."""
+    """Return the pixels of each label from 1 on."""
     flat = labels.ravel()
     inside = np.flatnonzero(flat)
     order = inside[np.argsort(flat[inside], kind="stable")]
@@ -67,7 +67,7 @@ def _root(parent, k):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def _belongs(depth, gap, first, last, slack, a, b):  # type: ignore[no-untyped-def]
-    """Tell whether two neighbouring pixels belong together."""
+    """Return whether two neighbouring pixels belong together."""
     if abs(depth[a] - depth[b]) > gap * max(1.0, depth[a] / 4.0):
         return False
     return slack < 0.0 or max(first[a], first[b]) <= min(last[a], last[b]) + slack

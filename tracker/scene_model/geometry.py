@@ -61,12 +61,12 @@ class Geometry:
         return height, width
 
     def points(self, pixels: NDArray[np.intp], depth_m: Metres) -> Floats:
-        """Give the points (N, 3) [m] in the robot's frame at flat indices (N,) of pixels."""
+        """Return the points (N, 3) [m] in the robot's frame at flat indices (N,) of pixels."""
         rays = self.rays.reshape(-1, 3)[pixels].astype(np.float64)
         return np.asarray(self.calibration.robot_from_camera[:3, 3] + rays * depth_m.ravel()[pixels, None])
 
     def warmth(self, depth_m: Metres, frame: Frame, warm: float) -> NDArray[np.int8] | None:
-        """Tell (H, W) of each reading whether it is warm, cold, or not seen by the thermal camera.
+        """Return (H, W) of each reading whether it is warm, cold, or not seen by the thermal camera.
 
         Returns:
             None if there is no thermal image, or nobody knows where its camera is.
@@ -109,7 +109,7 @@ _WHITE_AT_1_M = 10_000.0  # amplitude
 
 
 def shades_of(frame: Frame) -> Shades | None:
-    """Give (H, W, 3) RGB, or (H, W, 1) reflectance of a time-of-flight sensor; None where neither is there.
+    """Return (H, W, 3) RGB, or (H, W, 1) reflectance of a time-of-flight sensor; None where neither is there.
 
     Raises:
         BadInput: its size is not that of the depth image.
@@ -127,7 +127,7 @@ def shades_of(frame: Frame) -> Shades | None:
 
 
 def grey_of(frame: Frame) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-    """Give (H, W) grey that does not change as things come nearer, and (H, W) amplitude.
+    """Return (H, W) grey that does not change as things come nearer, and (H, W) amplitude.
 
     A camera that sees colour instead of its own light has its grey for amplitude.
 

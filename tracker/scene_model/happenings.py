@@ -59,7 +59,7 @@ class Ledger:
             self._first.setdefault(person.id, (time_s, person.place_m))
 
     def finished(self, time_s: float) -> list[Happening]:
-        """Tell what is left, as nothing will follow."""
+        """Return what is left, as nothing will follow."""
         return self._news(time_s, (), is_over=True)
 
     def reported(
@@ -67,7 +67,7 @@ class Ledger:
     ) -> list[Happening]:
         """Take in what settled and what left, and tell what is clear by now.
 
-        What left before it was told was only held still by somebody who carries it. What is hidden again
+        What left before it was told was only held still by a person who carries it. What is hidden again
         waits, as it may have left.
 
         Args:
@@ -113,18 +113,18 @@ class Ledger:
         return happenings
 
     def missing(self) -> Thing | None:
-        """Give what vanished last and has not appeared elsewhere; None for nothing."""
+        """Return what vanished last and has not appeared elsewhere; None for nothing."""
         return self._gone[-1].thing if self._gone else None
 
     def _is_held(self, thing: Thing) -> bool:
-        """Tell whether somebody is near enough now to have a thing in their hands."""
+        """Return whether a person is near enough now to have a thing in their hands."""
         if not self._people:
             return False
         _, persons = self._people[-1]
         return any(math.dist(one.place_m, thing.place_m[:2]) < _HELD_M for one in persons)
 
     def _was_person(self, gone: Thing) -> bool:
-        """Tell whether what vanished was somebody who stood there until the model knew them."""
+        """Return whether what vanished was a person who stood there until the model knew them."""
         return gone.top_m > _TALL_M and any(
             math.dist(place, gone.place_m[:2]) < _BODY_M and abs(time_s - gone.span_s[1]) < _LEAVES_S
             for time_s, place in self._first.values()
@@ -137,7 +137,7 @@ class Ledger:
         return self._gone[max(likely, key=lambda k: likely[k])] if likely else None
 
     def _arrived(self, thing: Thing) -> _Half | None:
-        """Find what appeared and may be what vanished, as somebody hid that it did: the most alike."""
+        """Find what appeared and may be what vanished, as a person hid that it did: the most alike."""
         likeness = {k: self._alike(thing, one.thing) for k, one in enumerate(self._known)}
         likely = {k: value for k, value in likeness.items() if value > 0.0 and not self._known[k].is_paired}
         return self._known[max(likely, key=lambda k: likely[k])] if likely else None
@@ -199,7 +199,7 @@ def _middle(thing: Thing) -> float:
 
 
 def _colours_apart(one: Floats, other: Floats) -> float:
-    """Give the distance of two mean colours (C,); light and shade change brightness more than hue."""
+    """Return the distance of two mean colours (C,); light and shade change brightness more than hue."""
     apart = one - other
     brightness = float(apart.mean())
     if len(apart) == 1:

@@ -110,7 +110,7 @@ class Layers:
         return inverted(self._state[_BACK])
 
     def surface_m(self, noise: Metres) -> Metres:
-        """Give (H, W) the background [m], made even where it is of one plane.
+        """Return (H, W) the background [m], made even where it is of one plane.
 
         It is 0 also where light of several surfaces mixes, or hardly anything is read.
 

@@ -57,7 +57,7 @@ class Readings:
         return cls(raw, smooth, _mixed(raw, noise), noise, 1 if before is None else before.count + 1)
 
     def reach_m(self, least_m: float, deviations: float, most_m: float) -> Metres:
-        """Give (H, W) how far two readings of one surface may be apart [m]."""
+        """Return (H, W) how far two readings of one surface may be apart [m]."""
         reach = deviations * self.noise * self.smooth_m**2
         return np.asarray(np.clip(reach, least_m, most_m), np.float32)
 

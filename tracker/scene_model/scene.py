@@ -57,7 +57,7 @@ class ScenePerson:
     """A person in the depth image.
 
     Attributes:
-        id: from 1 on; the same one as long as somebody is followed.
+        id: from 1 on; the same one as long as a person is followed.
         place_m: on the floor, forward and left of where the robot stood first [m].
     """
 

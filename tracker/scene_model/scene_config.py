@@ -34,14 +34,14 @@ class PeopleMaskConfig:
         grown_px: [px] by which what is warm grows over what is connected with it.
         least_m2: [m^2] area of the smallest piece of a person.
         gap_m: [m] of depth between neighbouring pixels of one body.
-        clear_m: [m] that somebody stands before the background at least; by shape.
+        clear_m: [m] that a person stands before the background at least; by shape.
         top_m, wide_m: [m] a person's head is above, and how wide a person is at most; by shape.
         column_m: [m] radius in which a known person's pixels lie where a thing is connected with it.
-        below_m: [m] the same below somebody who is found.
+        below_m: [m] the same below a person who is found.
         moved_m: [m] way after which something of a person's shape is believed to be one.
         doubt_s: [s] after which it is taken for a thing if it has not moved.
         gate_m, gate_m_s: [m] from one frame to the next, and [m/s] for each second without a sight.
-        kept_s: [s] for which somebody is remembered who is not seen.
+        kept_s: [s] for which a person is remembered who is not seen.
     """
 
     has_heat: bool = True
@@ -78,7 +78,7 @@ class ThingsConfig:
         left: share of a thing's largest area below which it is gone.
         pair_s: [s] from a thing's vanishing until it appears elsewhere, at most.
         wait_s: [s] for which a change is held back for its other half.
-        hold_s: [s] for which what appears beside somebody may still be in their hands.
+        hold_s: [s] for which what appears beside a person may still be in their hands.
         unseen_s: [s] out of sight from which on nothing new is told of a thing.
         size_ratio: of areas and heights of what may be the same thing.
         colour: distance of mean colours, of 255, that halves how alike two things are.

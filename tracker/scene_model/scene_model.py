@@ -107,13 +107,13 @@ class SceneModel:
         return self._newest
 
     def finish(self) -> tuple[Happening, ...]:
-        """Tell what was held back, as no frame will follow."""
+        """Return what was held back, as no frame will follow."""
         if self._newest is None:
             return ()
         return tuple(self._known(one) for one in self._ledger.finished(self._newest.time_s))
 
     def static_map(self) -> Surface:
-        """Give what stands, seen from every place until now.
+        """Return what stands, seen from every place until now.
 
         Raises:
             BadInput: there was no frame yet.
@@ -216,7 +216,7 @@ class SceneModel:
         return tuple(happenings)
 
     def _rename(self, moved: Happening) -> None:
-        """Give a thing that appeared the id of what vanished."""
+        """Return a thing that appeared the id of what vanished."""
         for number, thing in list(self._standing.things.items()):
             if thing.place_m == moved.to_m and number != moved.object:
                 self._standing.things.pop(moved.object, None)
@@ -247,7 +247,7 @@ class SceneModel:
         )
 
     def _label_carried(self, things: Labels, readings: Readings, reach: Metres, people: PeopleSeen) -> None:
-        """Find what vanished last in somebody's hands, and label it."""
+        """Find what vanished last in a person's hands, and label it."""
         config = self.config.things
         missing = self._opened.newest() or self._ledger.missing()
         if missing is None or not people.persons:

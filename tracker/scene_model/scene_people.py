@@ -62,7 +62,7 @@ class BodyPiece:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Follower:
-    """Somebody, or something of a person's shape, that is followed from frame to frame.
+    """A person, or something of a person's shape, that is followed from frame to frame.
 
     Attributes:
         id: 0 until it is believed to be a person.
@@ -181,7 +181,7 @@ class People:
         return _within(piece, np.hypot(*(across - axis).T) < config.wide_m / 2.0)
 
     def _columns(self, piece: BodyPiece, people: Sequence[BodyPiece]) -> Iterable[BodyPiece]:
-        """Give the columns of known people in a piece that has not the size of a human.
+        """Return the columns of known people in a piece that has not the size of a human.
 
         Of those who are found already only what is below them is theirs.
         """
@@ -202,7 +202,7 @@ class People:
                 yield _within(piece, is_own)
 
     def _followed(self, pieces: Sequence[BodyPiece], geometry: Geometry, time_s: float) -> PeopleSeen:
-        """Give every piece to somebody."""
+        """Return every piece to a person."""
         config = self._config
         labels, ignored = np.zeros(geometry.shape, np.int32), np.zeros(geometry.shape, np.uint8)
         known = [one for one in self._known if time_s - one.seen_s < config.kept_s]
@@ -258,7 +258,7 @@ def _within(piece: BodyPiece, is_own: Bools) -> BodyPiece:
 
 
 def _is_human(piece: BodyPiece) -> bool:
-    """Tell of something warm whether it can be a human: radiators, lamps and windows are none."""
+    """Return for something warm whether it can be a human: radiators, lamps and windows are none."""
     foot = float(np.quantile(piece.points_m[:, 2], 0.02))
     return piece.top_m > _LOWEST_HUMAN_M and foot < _HIGHEST_FOOT_M and piece.width_m < _WIDEST_M
 

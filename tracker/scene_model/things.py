@@ -160,11 +160,11 @@ class ThingPieces:
         self.things[new] = replace(self.things.pop(old), id=new)
 
     def unseen(self, time_s: float) -> set[int]:
-        """Give the ids of things that somebody or something hides since a while before a time [s]."""
+        """Return the ids of things that a person or something hides since a while before a time [s]."""
         return {k for k, one in self.things.items() if time_s - one.seen_s > self._config.unseen_s}
 
     def newest(self) -> Thing | None:
-        """Give the newest thing that has not settled; None for none."""
+        """Return the newest thing that has not settled; None for none."""
         open_ones = [one for one in self.things.values() if not one.is_settled]
         return max(open_ones, key=lambda one: one.id, default=None)
 

@@ -19,7 +19,7 @@ from peopleboy.tracker.tracking.viewpoint import Viewpoint
 def transfer_boxes(
     boxes: Floats, view: Viewpoint, here: PinholeCalibration, there: PinholeCalibration
 ) -> Floats:
-    """Tell where people who have boxes (M, 4) [px] in one image are in the other, if all are equally tall.
+    """Return where people who have boxes (M, 4) [px] in one image are in the other, if all are equally tall.
 
     Args:
         boxes: in the image of the first camera.
@@ -79,7 +79,7 @@ def describe_colours(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
 
 
 def colour_similarity(one: Colours, other: Colours) -> float:
-    """Give Bhattacharyya's coefficient of colours: of the same clothes above 0.8, of others below 0.4."""
+    """Return Bhattacharyya's coefficient of colours: of the same clothes above 0.8, of others below 0.4."""
     return float(one @ other) * PARTS / max(_common_parts(one, other), 1)
 
 
@@ -95,14 +95,14 @@ def colour_similarities(some: Colours, others: Colours) -> tuple[Colours, NDArra
 
 
 def blend_colours(before: Colours, now: Colours, share: float) -> Colours:
-    """Give the colours that are remembered after others are seen, by the parts that are."""
+    """Return the colours that are remembered after others are seen, by the parts that are."""
     result = np.empty_like(before)
     _blend(before, now, np.float32(share), result)
     return result
 
 
 def _are_seen(colours: Colours) -> NDArray[np.bool_]:
-    """Tell of colours (K, FEATURES) of which parts (K, PARTS) something is seen."""
+    """Return for colours (K, FEATURES) of which parts (K, PARTS) something is seen."""
     return np.asarray(colours.reshape(len(colours), PARTS, -1).max(axis=2) > 0.0)
 
 
@@ -116,7 +116,7 @@ def _seen_there(frame: Frame, boxes: Floats, view: Viewpoint, shape: tuple[int, 
 
 
 def _bins_of(values: Floats, bins: int) -> NDArray[np.uint8]:
-    """Tell in which of so many bins values are; what is beyond -_SPREAD to _SPREAD is in the outer ones."""
+    """Return in which of so many bins values are; what is beyond -_SPREAD to _SPREAD is in the outer ones."""
     return np.clip(np.floor((values + _SPREAD) * bins / (2.0 * _SPREAD)), 0, bins - 1).astype(np.uint8)
 
 
@@ -164,7 +164,7 @@ def _histogram(
     of_blue: NDArray[np.uint8],
     bins: Colours,
 ) -> bool:  # pragma: no cover
-    """Give the roots of shares of pixels (h, w, 3) by brightness and opponent colours, if they are enough.
+    """Return the roots of shares of pixels (h, w, 3) by brightness and opponent colours, if they are enough.
 
     Of all parts together squares add up to 1.
     """

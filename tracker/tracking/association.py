@@ -41,14 +41,14 @@ def associate(
     time_s: float,
     config: AssociationConfig,
 ) -> dict[int, int]:
-    """Give the number of the proposal that is each target's, by the target's number.
+    """Return the number of the proposal that is each target's, by the target's number.
 
     Args:
         targets: K of them.
         distance: (K, M) Mahalanobis.
         overlap: (K, M) of boxes.
         likeness: (K, M) of pattern, -1 to 1.
-        is_coloured: (K, M) whether that is by colours, which tell somebody who was lost wherever he is.
+        is_coloured: (K, M) whether that is by colours, which tell a person who was lost wherever he is.
         score: (M,) of proposals.
         known: whose proposals are known.
         time_s: now.
@@ -78,7 +78,7 @@ def associate(
 
 
 def _rank(target: TrackState, time_s: float, config: AssociationConfig) -> int:
-    """Tell whose turn it is: those who are seen, those who may be somebody, and those who were lost."""
+    """Return whose turn it is: those who are seen, those who may be a person, and those who were lost."""
     if not target.is_confirmed:
         return _TENTATIVE
     return _SEEN if time_s - target.seen_s < config.lost_s else _LOST
@@ -91,17 +91,17 @@ Flags = NDArray[np.bool_]
 _COVERED: Final = 0.35  # share of a box that is hidden by who stands in front
 _LOWER: Final = 0.03  # who stands so much lower in the image, in heights, is in front
 CLEAR: Final = 0.2
-"""Overlap up to which somebody is seen apart from another one."""
+"""Overlap up to which a person is seen apart from another one."""
 
 
 def are_overlapped(expected: Floats, is_confirmed: Flags) -> Flags:
-    """Tell of K people with boxes (K, 4) who is not seen apart from somebody else who is told."""
+    """Return for K people with boxes (K, 4) who is not seen apart from another person who is told."""
     mutual = iou(expected[:, None], expected[None]) * ~np.eye(len(expected), dtype=bool)
     return np.asarray((is_confirmed[None] & (mutual > CLEAR)).any(axis=1))
 
 
 def find_occluders(expected: Floats, is_confirmed: Flags, found: Iterable[int]) -> list[int | None]:
-    """Tell for each of K people with boxes (K, 4) who of those who were found may hide it."""
+    """Return for each of K people with boxes (K, 4) who of those who were found may hide it."""
     covered = cover(intersection(expected[:, None], expected[None]), area(expected)[:, None])
     foot = expected[:, 1] + expected[:, 3]
     hides = (
@@ -116,7 +116,7 @@ def find_occluders(expected: Floats, is_confirmed: Flags, found: Iterable[int]) 
 
 
 def shared_area(boxes: Floats, theirs: Sequence[int]) -> Floats:
-    """Tell what share of the smaller box each of (M, 4) has in common with one of some others, at most."""
+    """Return what share of the smaller box each of (M, 4) has in common with one of some others, at most."""
     share = shared_of_smaller(boxes[:, None], boxes[None, theirs])
     share[theirs, np.arange(len(theirs))] = 0.0
     return np.asarray(share.max(axis=1, initial=0.0))
@@ -158,11 +158,11 @@ class DescribedDetections:
         return len(self.boxes)
 
     def without_colours(self, rows: NDArray[np.bool_]) -> DescribedDetections:
-        """Give these, nothing told of the colours of some (M,), which may be another one's."""
+        """Return these, nothing told of the colours of some (M,), which may be another one's."""
         return replace(self, colours=np.where(rows[:, None], np.float32(0.0), self.colours))
 
     def likeness(self, targets: list[TrackState]) -> tuple[Floats, NDArray[np.bool_]]:
-        """Tell how colour_similarity K targets and these are.
+        """Return how colour_similarity K targets and these are.
 
         Returns:
             (K, M) -1 to 1, by colours where they are known, else by warmth, and whether they are (K, M).
@@ -174,7 +174,7 @@ class DescribedDetections:
         return np.where(is_known, 2.0 * same - 1.0, warm).astype(np.float64), is_known
 
     def ratio(self, row: int) -> float:
-        """Give the width of a box over its height."""
+        """Return the width of a box over its height."""
         return float(self.boxes[row, 2] / self.boxes[row, 3])
 
 

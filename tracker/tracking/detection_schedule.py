@@ -1,4 +1,4 @@
-"""Where an image is looked at, and how closely: everywhere, where somebody should be, or hardly."""
+"""Where an image is looked at, and how closely: everywhere, where a person should be, or hardly."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Schedule(NamedTuple):
         return found.take(np.argsort(-trees, kind="stable"))
 
     def with_followed(self, found: Detections, targets: Sequence[TrackState]) -> Detections:
-        """Give who was found by the detector, and then who is followed, as sure as when last looked at."""
+        """Return who was found by the detector, and then who is followed, as sure as when last looked at."""
         if not self.followed:
             return found
         who = [targets[row] for row in self.followed]
@@ -103,7 +103,7 @@ def _shown(
     expected: Floats,
     config: DetectionScheduleConfig,
 ) -> dict[int, Floats]:
-    """Give the boxes (4,) of some (K,) of those whom their portraits show, by their row."""
+    """Return the boxes (4,) of some (K,) of those whom their portraits show, by their row."""
     shown = {}
     for row in np.flatnonzero(these).tolist():
         template = targets[row].template
@@ -118,6 +118,6 @@ def _are_sure(targets: Sequence[TrackState]) -> NDArray[np.bool_]:
 
 
 def _are_apart(expected: Floats, counts: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Tell whose boxes (K, 4) touch no other one that counts, (K,)."""
+    """Return whose boxes (K, 4) touch no other one that counts, (K,)."""
     common = intersection(expected[:, None], expected[None]) * ~np.eye(len(expected), dtype=bool)
     return np.asarray(~(counts[None] & (common > 0.0)).any(axis=1))

@@ -49,7 +49,7 @@ from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 FIRST_STEP_S: Final = 1 / 15
 _STANDING: Final = Odometry()
-_TAKEN: Final = 0.45  # overlap with somebody from which a proposal is nobody new
+_TAKEN: Final = 0.45  # overlap with a person from which a proposal is nobody new
 
 
 class _Instant(NamedTuple):
@@ -98,7 +98,7 @@ class DetectionTracker:
         return self._explanation
 
     def introduce(self, box: Box) -> None:
-        """Tell that a person is at this box [px] in the next frame, as for trackers of single objects."""
+        """Report that a person is at this box [px] in the next frame, as for trackers of single objects."""
         self._introduced = box
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
@@ -241,7 +241,7 @@ class DetectionTracker:
         return target.is_confirmed and target.seen_s < now.time_s - now.association.lost_s
 
     def _known(self, found: dict[int, int]) -> list[int]:
-        """Give the numbers of the proposals that are of those who are told."""
+        """Return the numbers of the proposals that are of those who are told."""
         return [column for row, column in found.items() if self._targets[row].is_confirmed]
 
     def _initiate(self, found: dict[int, int], proposed: DescribedDetections, now: _Instant) -> None:
@@ -256,14 +256,14 @@ class DetectionTracker:
         self._add(np.flatnonzero(is_free), proposed.without_colours(is_mixed), now)
 
     def _initiate_at(self, box: Floats, frame: Frame, now: _Instant) -> None:
-        """Follow somebody who is pointed out, instead of whoever was found there."""
+        """Follow a person who is pointed out, instead of whoever was found there."""
         strangers = (iou(self._boxes(now.view)[:, None], box[None]) < _TAKEN).all(axis=1)
         kept = np.flatnonzero(strangers) if self._targets else np.empty(0, int)
         self._paths = self._paths.take(kept)
         self._targets = [self._targets[row] for row in kept]
         met = DescribedDetections.of(frame, Detections.from_trees(box, np.zeros(1)), now.view)
         self._add(np.zeros(1, int), met, now)
-        self._confirm(self._targets[-1], -math.inf, now.existence)  # whoever points at somebody knows whom
+        self._confirm(self._targets[-1], -math.inf, now.existence)  # whoever points at a person knows whom
 
     def _add(self, free: NDArray[np.intp], proposed: DescribedDetections, now: _Instant) -> None:
         """Begin to follow some of those who are proposed."""
@@ -287,7 +287,7 @@ class DetectionTracker:
         ]
 
     def _manage(self, now: _Instant) -> None:
-        """Tell of those who are sure, and forget those who are gone."""
+        """Return for those who are sure, and forget those who are gone."""
         for target in self._targets:
             if target.seen_s == now.time_s and (
                 target.has_enough_evidence(now.existence) or target.is_confirmed
@@ -299,7 +299,7 @@ class DetectionTracker:
         self._targets = [self._targets[row] for row in kept]
 
     def _reidentify(self, target: TrackState, now: _Instant) -> None:
-        """Tell of somebody, who may be one of those who were lost."""
+        """Return for a person, who may be one of those who were lost."""
         if now.time_s - target.confirmed_s > now.reidentification.revised_s:
             return
         since = now.time_s - now.reidentification.lost_s
@@ -330,7 +330,7 @@ class DetectionTracker:
         target.log_odds = max(target.log_odds, config.confirmed)
 
     def _output_box(self, target: TrackState, box: Floats, time_s: float) -> Box:
-        """Tell where somebody is: between where the path leads and what the image shows, if it does."""
+        """Return where a person is: between where the path leads and what the image shows, if it does."""
         if target.seen_s == time_s:
             box = box + self._config.motion.shown * (target.shown - box)
         left, top, width, height = box.tolist()

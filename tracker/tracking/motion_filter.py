@@ -39,17 +39,17 @@ class StateEstimates:
         return len(self.mean)
 
     def take(self, rows: NDArray[np.intp]) -> StateEstimates:
-        """Give some of them."""
+        """Return some of them."""
         return StateEstimates(self.mean[rows], self.covariance[rows])
 
     def joined(self, others: StateEstimates) -> StateEstimates:
-        """Give these and others."""
+        """Return these and others."""
         return StateEstimates(
             np.concatenate([self.mean, others.mean]), np.concatenate([self.covariance, others.covariance])
         )
 
     def replaced(self, rows: NDArray[np.intp], others: StateEstimates) -> StateEstimates:
-        """Give these, with others in some rows."""
+        """Return these, with others in some rows."""
         mean, covariance = self.mean.copy(), self.covariance.copy()
         mean[rows], covariance[rows] = others.mean, others.covariance
         return StateEstimates(mean, covariance)
@@ -88,14 +88,14 @@ def predict(paths: StateEstimates, dt_s: float, moved: Odometry, config: KalmanC
 
 
 def move_points(points_m: Floats, moved: Odometry) -> Floats:
-    """Give points (K, 3) of the level frame before the robot moved in that after it."""
+    """Return points (K, 3) of the level frame before the robot moved in that after it."""
     return np.asarray((points_m - (-moved.aside_m, 0.0, moved.advance_m)) @ _turn(moved).T)
 
 
 def mahalanobis_distances(
     paths: StateEstimates, boxes: Floats, view: Viewpoint, config: KalmanConfig
 ) -> Floats:
-    """Give the Mahalanobis distances (K, M) of proposals (M, 4) from where people are expected."""
+    """Return the Mahalanobis distances (K, M) of proposals (M, 4) from where people are expected."""
     expected, slope = _expected(paths, view)
     deviation = np.maximum(expected[:, 2:] - expected[:, 1:2], 1.0) * _deviations(config)
     result = np.empty((len(paths), len(boxes)))
@@ -117,7 +117,7 @@ def update_states(
 
 
 def predicted_boxes(paths: StateEstimates, view: Viewpoint, ratio: Floats) -> Floats:
-    """Give the boxes (K, 4) [px] of people who are so wide (K,), in heights."""
+    """Return the boxes (K, 4) [px] of people who are so wide (K,), in heights."""
     column, head, foot = view.seen(paths.mean[:, :3], paths.mean[:, 6]).T
     height = np.maximum(foot - head, 1.0)
     width = ratio * height
@@ -126,7 +126,7 @@ def predicted_boxes(paths: StateEstimates, view: Viewpoint, ratio: Floats) -> Fl
 
 
 def floor_positions(paths: StateEstimates, camera_m: tuple[float, float, float]) -> list[FloorPlace]:
-    """Tell where on the floor people stand in the frame of the robot whose camera is there [m]."""
+    """Return where on the floor people stand in the frame of the robot whose camera is there [m]."""
     forward, left, _ = camera_m
     return [
         FloorPlace(
@@ -138,13 +138,13 @@ def floor_positions(paths: StateEstimates, camera_m: tuple[float, float, float])
 
 
 def _turn(moved: Odometry) -> Floats:
-    """Give the rotation (3, 3) of the level frame into that of a robot that turned."""
+    """Return the rotation (3, 3) of the level frame into that of a robot that turned."""
     cosine, sine = math.cos(moved.turn_rad), math.sin(moved.turn_rad)
     return np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]])
 
 
 def _expected(paths: StateEstimates, view: Viewpoint) -> tuple[Floats, Floats]:
-    """Give what is expected to be seen (K, 3), and its slopes (K, 3, 7)."""
+    """Return what is expected to be seen (K, 3), and its slopes (K, 3, 7)."""
     feet, build = paths.mean[:, :3], paths.mean[:, 6]
     slope = np.zeros((len(paths), 3, STATE))
     slope[:, :, (0, 1, 2, 6)] = view.slopes(feet, build)
@@ -152,13 +152,13 @@ def _expected(paths: StateEstimates, view: Viewpoint) -> tuple[Floats, Floats]:
 
 
 def _ends(boxes: Floats) -> Floats:
-    """Give middle column, rows of head and feet (M, 3) of boxes (M, 4)."""
+    """Return middle column, rows of head and feet (M, 3) of boxes (M, 4)."""
     left, top, width, height = boxes.T
     return np.stack([left + width / 2.0, top, top + height], axis=1)
 
 
 def _deviations(config: KalmanConfig) -> Floats:
-    """Give the deviations (3,) of the ends of boxes, in their heights."""
+    """Return the deviations (3,) of the ends of boxes, in their heights."""
     return np.array([config.column, config.head, config.foot])
 
 
@@ -223,7 +223,7 @@ def _multiply(one: Floats, other: Floats, product: Floats) -> None:  # pragma: n
 def _measure(
     covariance: Floats, slope: Floats, noise: Floats, expected: Floats, seen: Floats, result: Floats
 ) -> None:  # pragma: no cover
-    """Tell the Mahalanobis distances (K, M) of what is seen (M, 3) from what is expected (K, 3)."""
+    """Return the Mahalanobis distances (K, M) of what is seen (M, 3) from what is expected (K, 3)."""
     across, root = np.empty((STATE, 3)), np.zeros((3, 3))
     gap = np.empty(3)
     for number in range(len(result)):
@@ -260,7 +260,7 @@ def _learn(
 def _root_of_spread(
     covariance: Floats, slope: Floats, noise: Floats, across: Floats, root: Floats
 ) -> None:  # pragma: no cover
-    """Give P H' (7, 3), and the lower root (3, 3) of H P H' + noise (Cholesky)."""
+    """Return P H' (7, 3), and the lower root (3, 3) of H P H' + noise (Cholesky)."""
     _multiply(covariance, slope.T, across)
     _multiply(slope, across, root)
     for i in range(3):

@@ -38,7 +38,7 @@ class ColourFinder:
         self._way: Odometry | None = Odometry()
 
     def __call__(self, frame: Frame, thermal: Detections) -> Detections:
-        """Give who is seen in a frame, by heat or in colours, with boxes (M, 4) [px] in the thermal image.
+        """Return who is seen in a frame, by heat or in colours, with boxes (M, 4) [px] in the thermal image.
 
         By heat alone, if it is too soon, there is no new image, or not both cameras are calibrated.
         """
@@ -103,7 +103,7 @@ class Finder(Protocol):
     """Whatever proposes people, frame by frame."""
 
     def __call__(self, frame: Frame, expected: Detections, *, everywhere: bool) -> Detections:
-        """Give boxes [px] in the thermal image, as wide as the torso, and log odds.
+        """Return boxes [px] in the thermal image, as wide as the torso, and log odds.
 
         Args:
             frame: the next one.

@@ -1,7 +1,7 @@
-"""Who is who: decided late, when people who met have parted, and when somebody new is sure to be there.
+"""Who is who: decided late, when people who met have parted, and when a person new is sure to be there.
 
 While people overlap, what is seen of one may be the other. What they look like afterwards is compared with
-what they looked like before, which is learned no further while they look like somebody else.
+what they looked like before, which is learned no further while they look like another person.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def resolve_identity_swaps(
 def reidentify(
     target: TrackState, lost: Sequence[TrackState], config: ReidentificationConfig
 ) -> TrackState | None:
-    """Tell by colours which of those who were lost somebody new is, if any.
+    """Return by colours which of those who were lost a person new is, if any.
 
     Args:
         target: who is new.
@@ -58,7 +58,7 @@ def _is_clear(target: TrackState, config: ReidentificationConfig) -> bool:
 
 
 def _gain(one: TrackState, other: TrackState, config: ReidentificationConfig) -> float:
-    """Tell how much better people fit who they look like if both are the other one."""
+    """Return how much better people fit who they look like if both are the other one."""
     gain = colour_similarity(one.recent, other.colours) - colour_similarity(one.recent, one.colours)
     if _is_clear(other, config):
         gain += colour_similarity(other.recent, one.colours) - colour_similarity(other.recent, other.colours)

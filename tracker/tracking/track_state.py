@@ -20,11 +20,11 @@ _OWN: Final = 0.6  # Bhattacharyya's coefficient above which it looks like itsel
 
 
 class DetectionEvidence(NamedTuple):
-    """Somebody was found.
+    """A person was found.
 
     Attributes:
         score: log odds of the proposal.
-        shared: how much of its box is of somebody known, too, 0 to 1.
+        shared: how much of its box is of a person known, too, 0 to 1.
         speed_m_s: how fast this one goes.
     """
 
@@ -35,7 +35,7 @@ class DetectionEvidence(NamedTuple):
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class TrackState:
-    """What is known of somebody besides the path.
+    """What is known of a person besides the path.
 
     Attributes:
         born_s: when it was first seen.
@@ -127,7 +127,7 @@ class TrackState:
         self.clear_s, self.recent = 0.0, np.zeros_like(self.recent)
 
     def inherit(self, before: TrackState) -> None:
-        """Go on as somebody who was lost, and is no more."""
+        """Go on as a person who was lost, and is no more."""
         self.id, self.born_s = before.id, before.born_s
         self.confirmed_s = min(self.confirmed_s, before.confirmed_s)
         self.colours = blend_colours(before.colours, self.colours, _LEARNING)
@@ -139,7 +139,7 @@ class TrackState:
     def update_missed(self, occluder: int | None, dt_s: float, config: ExistenceConfig) -> None:
         """Take in that it was not found, and who may hide it.
 
-        However long somebody known is not found, the first image that says so brings him back.
+        However long a person known is not found, the first image that says so brings him back.
         """
         self.occluder = occluder
         loss = config.missed if occluder is None else config.missed_hidden
@@ -147,7 +147,7 @@ class TrackState:
         self.log_odds = max(self.log_odds - loss * dt_s / config.independent_s, least)
 
     def status(self, time_s: float) -> Status:
-        """Tell how well it is seen now."""
+        """Return how well it is seen now."""
         if not self.is_confirmed:
             return Status.TENTATIVE
         if self.seen_s >= time_s:
@@ -155,7 +155,7 @@ class TrackState:
         return Status.PARTLY_OCCLUDED if self.occluder is None else Status.TOTALLY_OCCLUDED
 
     def is_output(self, time_s: float, config: ExistenceConfig) -> bool:
-        """Tell whether it is still said to be where it is expected."""
+        """Return whether it is still said to be where it is expected."""
         doubt = config.max_coast_s
         if self.occluder is not None:
             doubt = max(doubt, min(config.max_coast_occluded_s, config.coast_occluded_share * self.watched_s))
@@ -164,13 +164,13 @@ class TrackState:
         )
 
     def is_deleted(self, time_s: float, config: ExistenceConfig) -> bool:
-        """Tell whether it would not be known again."""
+        """Return whether it would not be known again."""
         gone = time_s - self.seen_s
         if not self.is_confirmed:
             return self.log_odds < config.deletion_log_odds or gone > config.max_coast_s
         return gone > (config.forget_s if self.watched_s > config.brief_s else config.brief_forget_s)
 
     def has_enough_evidence(self, config: ExistenceConfig) -> bool:
-        """Tell whether enough speaks for it to be told."""
+        """Return whether enough speaks for it to be told."""
         is_enough = self.sightings >= config.sightings or self.surest >= config.at_once
         return is_enough and self.log_odds > config.confirmed

@@ -68,7 +68,7 @@ class Viewpoint:
         return cls((focal, focal), ((columns - 1) / 2.0, (rows - 1) / 2.0), np.eye(3), None)
 
     def seen(self, feet_m: Floats, build: Floats) -> Floats:
-        """Tell how people are seen: (K, 3) middle column, rows of head and feet.
+        """Return how people are seen: (K, 3) middle column, rows of head and feet.
 
         Args:
             feet_m: (K, 3) where they stand.
@@ -79,13 +79,13 @@ class Viewpoint:
         return result
 
     def slopes(self, feet_m: Floats, build: Floats) -> Floats:
-        """Give the derivatives (K, 3, 4) of `seen` by x, y, z of the feet, and the build."""
+        """Return the derivatives (K, 3, 4) of `seen` by x, y, z of the feet, and the build."""
         slope = np.empty((len(feet_m), 3, 4))
         _slope(feet_m, build, self.camera_from_level, self.focal_px, slope)
         return slope
 
     def feet(self, boxes: Floats) -> Floats:
-        """Tell where people with these boxes (K, 4) stand, (K, 3), if they are of the usual stature."""
+        """Return where people with these boxes (K, 4) stand, (K, 3), if they are of the usual stature."""
         left, top, width, height = boxes.T
         aside = self._lean(boxes) * height / 2.0
         rays = self._rays(np.stack([left + width / 2.0 + aside, top + height], axis=1))
@@ -95,14 +95,14 @@ class Viewpoint:
         return rays * np.maximum(ahead, NEAREST_M)[:, None]
 
     def _lean(self, boxes: Floats) -> Floats:
-        """Tell by how many columns a plumb line through middles of boxes moves on from row to row, (K,)."""
+        """Return by how many columns a plumb line through middles of boxes moves on from row to row, (K,)."""
         middle = (boxes[:, :2] + boxes[:, 2:] / 2.0 - self.centre_px) / self.focal_px
         plumb = self.camera_from_level[:, 1]
         across, down = (plumb[:2] - plumb[2] * middle).T
         return np.asarray(across / np.maximum(down, 1e-3) * self.focal_px[0] / self.focal_px[1])
 
     def _rays(self, pixels: Floats) -> Floats:
-        """Give directions (K, 3) in the level frame, of depth 1 along the floor."""
+        """Return directions (K, 3) in the level frame, of depth 1 along the floor."""
         straight = np.column_stack([(pixels - self.centre_px) / self.focal_px, np.ones(len(pixels))])
         level = straight @ self.camera_from_level
         return level / np.maximum(level[:, 2:], 1e-3)
@@ -154,7 +154,7 @@ def _slope(
 def _seen_from(
     x: float, y: float, z: float, camera_from_level: Floats
 ) -> tuple[float, float, float]:  # pragma: no cover
-    """Give where a point is to the right, down and ahead of a camera, and that it is not behind it."""
+    """Return where a point is to the right, down and ahead of a camera, and that it is not behind it."""
     right, down, ahead = camera_from_level
     depth = ahead[0] * x + ahead[1] * y + ahead[2] * z
     return (

@@ -40,7 +40,7 @@ class CurvePoint(NamedTuple):
 
 
 def distance_edges(runs: Iterable[RunFindings]) -> tuple[float, ...]:
-    """Give the edges [m] of bins a metre wide over all distances at which people count in some runs."""
+    """Return the edges [m] of bins a metre wide over all distances at which people count in some runs."""
     nearest_m, farthest_m = zip(*(found.counted_m for found in runs), strict=True)
     first, last = min(nearest_m), max(farthest_m)
     return (first, *(float(edge) for edge in range(math.floor(first) + 1, math.ceil(last))), last)

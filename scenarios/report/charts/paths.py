@@ -58,7 +58,7 @@ def _draw_section(axes: Axes, found: RunFindings) -> None:
 def _draw_path(
     axes: Axes, labels: Labels, way: Floats, thick: Floats, colour: str, name: str, rate_hz: float
 ) -> None:
-    """Draw where somebody went: a disc and the name at the start, small marks every five seconds."""
+    """Draw where a person went: a disc and the name at the start, small marks every five seconds."""
     axes.plot(*thick.T, color=colour, lw=1.8, zorder=7)
     there = np.flatnonzero(np.isfinite(way[:, 0]))
     if len(there) == 0:

@@ -92,7 +92,7 @@ def show_frames(found: RunFindings, frames: Sequence[int]) -> dict[int, DrawnFra
 
 
 def _newest(frame: int, rate_hz: int, images_hz: int | None) -> int:
-    """Give the frame (from 1) at which a camera took its newest image."""
+    """Return the frame (from 1) at which a camera took its newest image."""
     step = rate_hz // (images_hz or rate_hz)
     return (frame - 1) // step * step + 1
 

@@ -52,7 +52,7 @@ def set_tooltip(artist: Artist, words: str) -> None:
 
 
 def inline(figure: Figure, name: str, words: str = "") -> Markup:
-    """Give a figure as an element of a page.
+    """Return a figure as an element of a page.
 
     Args:
         figure: what to show.

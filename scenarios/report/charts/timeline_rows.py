@@ -120,7 +120,7 @@ def mode_row(found: RunFindings) -> TimelineRow:
 
 
 def hidden_words(found: RunFindings, person: PersonHistory) -> str:
-    """Say when the person was hidden, by whom, how much, and for how long wholly."""
+    """Return when the person was hidden, by whom, how much, and for how long wholly."""
     rate, told = found.run.rate_hz, []
     for span in spans(np.isin(person.view, tuple(_HIDDEN))):
         if span.value:

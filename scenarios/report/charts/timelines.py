@@ -124,7 +124,7 @@ def _is_same_world(columns: Sequence[Column]) -> bool:
 def draw_rows(
     found: RunFindings, rows: Sequence[TimelineRow], name: str, label: str, *, has_axis: bool
 ) -> Markup:
-    """Draw the rows of somebody or something of a run, wide for desks and narrow for phones."""
+    """Draw the rows of a person or something of a run, wide for desks and narrow for phones."""
     duration_s = found.run.frames / found.run.rate_hz
     words = f"{name}, {'. '.join(row.words for row in rows)}"
     wide, narrow = (

@@ -64,7 +64,7 @@ class Outcome(Enum):
 
 
 def outcome_of(history: RunHistory, person: PersonHistory) -> Outcome:
-    """Tell whether a track lay on a person in the last second of being due, and what came then."""
+    """Return whether a track lay on a person in the last second of being due, and what came then."""
     due = steady_due(history, person)
     if len(due) == 0:
         return Outcome.NEVER_DUE

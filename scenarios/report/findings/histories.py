@@ -87,7 +87,7 @@ def settle(values: Ints, shortest: int) -> Ints:
 
 
 def between(values: Floats, starts: float, ends: float) -> Flags:
-    """Tell (F,) where a column has risen above `starts` and not yet fallen below `ends`; NaN ends it."""
+    """Return (F,) where a column has risen above `starts` and not yet fallen below `ends`; NaN ends it."""
     inside = np.zeros(len(values), np.bool_)
     is_in = False
     for k, value in enumerate(values.tolist()):
@@ -247,7 +247,7 @@ class RunHistory:
         return tuple(_person_history(self, who, lying) for who in np.unique(self.seen["id"]).tolist())
 
     def called(self, name: str) -> PersonHistory:
-        """The history of somebody."""
+        """The history of a person."""
         return next(person for person in self.people if person.name == name)
 
 

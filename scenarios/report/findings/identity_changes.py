@@ -1,4 +1,4 @@
-"""Where the number on a person became another one, and where a number went to somebody else."""
+"""Where the number on a person became another one, and where a number went to another person."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class ChangeKind(Enum):
     """What a change of numbers means."""
 
     LOST = auto()  # a fresh number, which stayed
-    TAKEN = auto()  # that of somebody else, told as a `Transfer`
+    TAKEN = auto()  # that of another person, told as a `Transfer`
     FOR_A_MOMENT = auto()  # an own one came back within `REIDENTIFIED_S`
     BACK = auto()  # to a number that the person had before
 
@@ -135,7 +135,7 @@ def _change(
 def _turn(
     history: RunHistory, held: Sequence[Span], k: int, is_own: bool, is_taken: bool
 ) -> tuple[ChangeKind, float]:
-    """Tell what the change to `held[k]` means, and of a way back how long other numbers were there."""
+    """Return what the change to `held[k]` means, and of a way back how long other numbers were there."""
     rate, new = history.run.rate_hz, held[k]
     if is_own:
         last = max(n for n in range(k) if held[n].value == new.value)

@@ -51,7 +51,7 @@ class RunFindings(RunHistory):
 
     @cached_property
     def transfers(self) -> list[Transfer]:
-        """Numbers that went to somebody else, in time."""
+        """Numbers that went to another person, in time."""
         return find_transfers(self)
 
     @cached_property
@@ -112,7 +112,7 @@ _APART_S = 1.0  # two moments of one person nearer than this are one
 
 
 def headline(runs: Sequence[RunFindings]) -> str:
-    """Say who was tracked to the end, and where identities were lost, in one run or in several."""
+    """Return who was tracked to the end, and where identities were lost, in one run or in several."""
     is_of_many = len(runs) > 1
     text = "; ".join(finding.sentence(is_of_many_runs=is_of_many) for finding in _findings(runs))
     return f"{counted(len(runs), 'run')}: {text}." if is_of_many else f"{text}."

@@ -136,7 +136,7 @@ def listed(words: Sequence[str]) -> str:
 
 
 def times(count: int) -> str:
-    """Say how often."""
+    """Return how often."""
     return {1: "once", 2: "twice"}.get(count, f"{count} times")
 
 

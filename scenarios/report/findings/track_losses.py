@@ -93,7 +93,7 @@ def count_short_losses(history: RunHistory) -> ShortLosses:
 
 
 def _ends(history: RunHistory, number: int, shown: Flags) -> Iterator[int]:
-    """Yield the indices at which a track is shown no more, though nobody goes on as somebody known again."""
+    """Yield the indices at which a track is shown no more, though nobody goes on as a person known again."""
     known = {
         line.frame - 1
         for line in history.run.events
@@ -164,13 +164,13 @@ def _shown_again(
 
 
 def _first_on(lies: Sequence[tuple[PersonHistory, Flags]]) -> tuple[int, PersonHistory] | None:
-    """Give when and on whom a track lay first, of flags (N,) for each person; None if it lay on nobody."""
+    """Return when and on whom a track lay first, of flags (N,) for each person; None if it lay on nobody."""
     first = [(int(at[0]), person) for person, flags in lies if len(at := np.flatnonzero(flags))]
     return min(first, key=lambda one: one[0], default=None)
 
 
 def _afterwards(history: RunHistory, person: PersonHistory, number: int, end: int) -> tuple[str, bool]:
-    """Say what became of a person whose track was lost, and whether that is bad."""
+    """Describe what became of a person whose track was lost, and whether that is bad."""
     later = [span for span in spans(person.track[end:]) if span.value]
     name, rate = spoken(person.name), history.run.rate_hz
     if later and later[0].value != number:
@@ -193,7 +193,7 @@ def _say(kind: str, **values: object) -> str:
 
 
 def _belief(history: RunHistory, number: int, end: int, own: PersonHistory | None) -> str:
-    """Give the tracker's own reason, and say on whom the tracks lay that it names."""
+    """Return the tracker's own reason, and say on whom the tracks lay that it names."""
     about, since = ("lost", f"track {number}"), end + 1 - history.every
     events = (line for line in history.run.events if since < line.frame <= end + 1)
     why = next((line.why for line in events if (line.kind, line.who) == about), "")
@@ -226,7 +226,7 @@ def _during_faults(history: RunHistory, end: int) -> str:
 
 
 def _confidence(history: RunHistory, number: int, end: int) -> str:
-    """Say how the confidence went until index `end`."""
+    """Return how the confidence went until index `end`."""
     beliefs = history.files.beliefs
     rows = beliefs.filter(np.asarray(beliefs["id"].to_numpy() == number))
     frame, value = rows["frame"].to_numpy() - 1, rows["confidence"].to_numpy()

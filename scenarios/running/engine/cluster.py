@@ -88,7 +88,7 @@ def _check_workers(client: Any, scheduler: str) -> None:
 
 
 def _difference(ours: Source, theirs: Source) -> str:
-    """Say what a worker has otherwise; empty if all is the same."""
+    """Describe what a worker has otherwise; empty if all is the same."""
     for name in ours:
         if ours[name] != theirs.get(name):
             if name == "source":

@@ -49,7 +49,7 @@ def in_processes(tasks: Sequence[Task[Any]], count: int) -> Outcomes:
 
 
 def _next_turn(waiting: Mapping[int, Task[Any]], deaths: Counter[int]) -> Mapping[int, Task[Any]]:
-    """Give what is done together next: all that was never cut off, then the others one by one."""
+    """Return what is done together next: all that was never cut off, then the others one by one."""
     never = {number: task for number, task in waiting.items() if not deaths[number]}
     return never or dict([next(iter(waiting.items()))])
 

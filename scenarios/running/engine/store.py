@@ -54,7 +54,7 @@ class Store(Mapping[str, Result]):
         return len(self._results)
 
     def spent_s(self, key: str) -> float:
-        """Give the processor's time [s] that a result took; 0 where nobody said."""
+        """Return the processor's time [s] that a result took; 0 where nobody said."""
         return self._spent_s.get(key, 0.0)
 
     def add(self, key: str, result: Result, spent_s: float = 0.0) -> None:

@@ -88,7 +88,7 @@ def histogram(temperature_c: Temperatures) -> Bins:
 
 
 def span_of(shares: Bins, tail: float) -> tuple[float, float]:
-    """Give the span [degC] outside which lies at most a share `tail` at either end, to whole bins."""
+    """Return the span [degC] outside which lies at most a share `tail` at either end, to whole bins."""
     below = np.cumsum(shares)
     first = int(np.searchsorted(below, tail, side="right"))
     last = int(np.searchsorted(below, below[-1] - tail, side="left"))
@@ -110,7 +110,7 @@ def linear(temperature_c: Temperatures, low_c: float, high_c: float) -> Grey:
 def equalised(
     shares: Bins, low_c: float, high_c: float, plateau: float, linear_share: float, least_k: float
 ) -> Bins:
-    """Give by how much grey rises over each bin, as shares of all greys: plateau equalisation.
+    """Return by how much grey rises over each bin, as shares of all greys: plateau equalisation.
 
     No bin counts for more than the plateau, what is outside the span for nothing, and nothing rises more
     steeply than if `least_k` took all greys; the sum is therefore 1 or less.
@@ -198,7 +198,7 @@ _LEAST_K: Final = 5.0
 
 
 def show_scene(temperature_c: Temperatures) -> Grey:
-    """Give an (H, W) image [degC] greys by itself, without memory of others; none is clipped."""
+    """Return an (H, W) image [degC] greys by itself, without memory of others; none is clipped."""
     shares = histogram(temperature_c)
     rise = equalised(shares, *span_of(shares, _TAIL), _PLATEAU, _LINEAR_SHARE, _LEAST_K)
     return apply(temperature_c, grey_curve(rise))

@@ -119,13 +119,13 @@ class Drift:
         self._drawn = -1
 
     def is_closed(self, time_s: float) -> bool:
-        """Tell whether the shutter is before the detector."""
+        """Return whether the shutter is before the detector."""
         count = self._closures(time_s)
         since_s = time_s - count * self._config.shutter_every_s
         return count > 0 and since_s < self._config.shutter_lasts_s - _SOON_S
 
     def offset_k(self, time_s: float) -> NDArray[np.float32] | None:
-        """Give the (H, W) offsets [K] at a time; None for none."""
+        """Return the (H, W) offsets [K] at a time; None for none."""
         if not self._is_on:
             return None
         count = self._closures(time_s)

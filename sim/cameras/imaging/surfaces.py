@@ -65,7 +65,7 @@ def make_material_table(
     rng: np.random.Generator,
     paintings: Sequence[Painting | None] | None = None,
 ) -> MaterialTable:
-    """Put the looks of all parts into arrays; the generator draws each part's phase of variation.
+    """Put the appearance of all parts into arrays; the generator draws each part's phase of variation.
 
     A painting has the variation of its part in it.
     """

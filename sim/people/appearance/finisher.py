@@ -41,7 +41,7 @@ _COLD_HANDS = {"hand": 1.0, "foot": 0.8, "forearm": 0.4, "shin": 0.3}  # share b
 
 
 class Finisher:
-    """Refines the looks of one person's parts.
+    """Refines the appearance of one person's parts.
 
     In air of 21 degC the mean temperature of a part is, over many people, as it is without.
     """
@@ -150,7 +150,7 @@ class Finisher:
 
 
 def appearance_stream(seed: int, name: str) -> np.random.Generator:
-    """Give the stream from which a person's looks are drawn, in a world of this seed."""
+    """Return the stream from which a person's appearance is drawn, in a world of this seed."""
     return stream(seed, f"person.{name}.looks")
 
 

@@ -130,7 +130,7 @@ class Paint:
         self.kelvin -= self.kelvin.mean()
 
     def finish(self, rgb: Rgb = (0.0, 0.0, 0.0)) -> Finish:
-        """Give what has been painted."""
+        """Return what has been painted."""
         return Finish(
             lowest_m=self.mesh.lowest_m,
             texel_m=self.mesh.texel_m,

@@ -36,23 +36,23 @@ _REGION = {
 
 
 def skin_change_k(part: str, air_c: float) -> float:
-    """Tell by how much the skin of a part [K] differs in such air from what it is at 21 degC."""
+    """Return by how much the skin of a part [K] differs in such air from what it is at 21 degC."""
     bare = part.removeprefix("left_").removeprefix("right_")
     return float(np.interp(air_c, _AIR_C, _SKIN_K[_REGION.get(bare, "trunk")]))
 
 
 def bare_c(at_room_c: float, part: str, air_c: float) -> float:
-    """Tell the temperature [degC] of skin that has another one in air of 21 degC."""
+    """Return the temperature [degC] of skin that has another one in air of 21 degC."""
     return min(at_room_c + skin_change_k(part, air_c), max(WARMEST_SKIN_C, at_room_c))
 
 
 def share_of_skin(at_room_c: float) -> float:
-    """Tell r of a garment that has this temperature [degC] in air of 21 degC."""
+    """Return r of a garment that has this temperature [degC] in air of 21 degC."""
     return min(max((at_room_c - ROOM_C) / (_COVERED_SKIN_C - ROOM_C), _LEAST), _MOST)
 
 
 def under_cloth_c(part: str, air_c: float) -> float:
-    """Tell the temperature [degC] of skin that clothes cover."""
+    """Return the temperature [degC] of skin that clothes cover."""
     return bare_c(_COVERED_SKIN_C, part, air_c)
 
 
@@ -66,7 +66,7 @@ def wind_loss(moving_m_s: float) -> float:
 
 
 def cloth_c(at_room_c: float, part: str, air_c: float, loss: float = 1.0) -> float:
-    """Tell the temperature [degC] of a garment's surface that has another one in still air of 21 degC.
+    """Return the temperature [degC] of a garment's surface that has another one in still air of 21 degC.
 
     Args:
         at_room_c: [degC] that one.

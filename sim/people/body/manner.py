@@ -105,7 +105,7 @@ _ELBOW_AND_PALM: Final[dict[Hold, tuple[tuple[float, float, float], tuple[float,
 
 
 def draw_manner(rng: np.random.Generator, carries: str | None, *, has_straps: bool) -> Manner:
-    """Draw how somebody walks and stands.
+    """Draw how a person walks and stands.
 
     Args:
         rng: draws it.
@@ -152,7 +152,7 @@ def _draw_holds(rng: np.random.Generator, carries: str | None, *, has_straps: bo
 
 
 def held_arms(holds: tuple[Hold, Hold]) -> tuple[Array, NDArray[np.bool_]]:
-    """Give (17, 3) [rad] rotation vectors of arms that hold something, and (17,) which bones those are."""
+    """Return (17, 3) [rad] rotation vectors of arms that hold something, and (17,) which bones those are."""
     rotations, is_held = np.zeros((len(BONES), 3)), np.zeros(len(BONES), np.bool_)
     for side, hold in zip(("left", "right"), holds, strict=True):
         if hold == "free":
@@ -168,7 +168,7 @@ def held_arms(holds: tuple[Hold, Hold]) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def bearing(manner: Manner) -> Array:
-    """Give by how much (17, 3) [rad] a person's trunk, head and arms are turned further than others'."""
+    """Return by how much (17, 3) [rad] a person's trunk, head and arms are turned further than others'."""
     turns = np.zeros((len(BONES), 3))
     bow, aside = manner.head_rad
     turns[BONE_INDEX["abdomen"], 1] = turns[BONE_INDEX["chest"], 1] = 0.5 * manner.stoop_rad

@@ -1,4 +1,4 @@
-"""What changes somebody's outline beside the catalogue of clothes: coats, wide legs, hair, hats, bags."""
+"""What changes a person's outline beside the catalogue of clothes: coats, wide legs, hair, hats, bags."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ _LONG_TOPS: Final = ("jacket", "fleece", "wool_jumper", "shirt", "t_shirt", "che
 
 
 def draw_outfit(rng: np.random.Generator, clothes: Clothes, sex: Sex, has_bag: bool) -> Outfit:
-    """Draw how somebody wears these clothes, and what they carry beside a bag that they have already."""
+    """Draw how a person wears these clothes, and what they carry beside a bag that they have already."""
     reach, cover, tied, loose = (float(rng.uniform()) for _ in range(4))
     carried = list(CARRIED)[int(rng.choice(len(CARRIED), p=list(CARRIED.values())))]
     is_sleeve_wide = clothes.top in (*_HOODED, "lab_coat")

@@ -96,14 +96,14 @@ def _corner(turn: float, longest_trim: float) -> tuple[float, float]:
 
 
 def is_about_turn(before: Point, corner: Point, after: Point) -> bool:
-    """Say whether a corner is so sharp that people stop and turn there."""
+    """Return whether a corner is so sharp that people stop and turn there."""
     first, second = np.subtract(corner, before), np.subtract(after, corner)
     turn = turn_between(math.atan2(first[1], first[0]), math.atan2(second[1], second[0]))
     return abs(turn) > _ABOUT_TURN_RAD
 
 
 def abreast(path: Sequence[Point], offset_m: float) -> tuple[Point, ...]:
-    """Shift a path sideways, for somebody who walks beside the one that follows it.
+    """Shift a path sideways, for a person who walks beside the one that follows it.
 
     Every line of the result is parallel to its original at the given distance; corners are where the shifted
     lines meet.
@@ -128,9 +128,9 @@ def abreast(path: Sequence[Point], offset_m: float) -> tuple[Point, ...]:
 
 
 def is_free(start: Array, end: Array, walls: Array, margin_m: float = 0.0) -> bool:
-    """Tell whether a straight line keeps clear of all rectangles.
+    """Return whether a straight line keeps clear of all rectangles.
 
-    One in which the line starts is passed over, such as the chair that somebody sits on, and to one that is
+    One in which the line starts is passed over, such as the chair that a person sits on, and to one that is
     nearer to the start than the margin the line may come as near as it is at the start.
 
     Args:

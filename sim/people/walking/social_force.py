@@ -36,7 +36,7 @@ POINT_RADIUS_M = 0.25  # the size of the bodies that the constants were made for
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlanarState:
-    """Somebody or something that moves over the floor.
+    """A person or something that moves over the floor.
 
     Attributes:
         position: (2,) [m] in the world frame.
@@ -130,7 +130,7 @@ def _push_of(
     heading: tuple[float, float],
     turn: tuple[float, float],
 ) -> tuple[float, float]:
-    """Give the repulsion [m/s2] by another one, who is as far away as the gap [m] says.
+    """Return the repulsion [m/s2] by another one, who is as far away as the gap [m] says.
 
     It falls off with ellipses that reach out along the coming step. Our change to eq. 4: the step is that of
     the velocity relative to the walker, half as long (Johansson, Helbing and Shukla 2007), so that a robot
@@ -157,14 +157,14 @@ def _push_of(
 
 @njit(cache=True)
 def _sight_weight(heading: tuple[float, float], x: float, y: float) -> float:
-    """Give the weight of what lies in a direction: 1 in sight, `BEHIND` out of it (eqs. 8 and 9)."""
+    """Return the weight of what lies in a direction: 1 in sight, `BEHIND` out of it (eqs. 8 and 9)."""
     limit = math.hypot(heading[0], heading[1]) * math.hypot(x, y) * math.cos(HALF_SIGHT_RAD)
     return 1.0 if x * heading[0] + y * heading[1] >= limit else BEHIND
 
 
 @njit(cache=True)
 def _push_of_wall(at: tuple[float, float], walls: Array) -> tuple[float, float]:
-    """Give the repulsion [m/s2] by the nearest point of the nearest wall (eq. 5)."""
+    """Return the repulsion [m/s2] by the nearest point of the nearest wall (eq. 5)."""
     nearest, gap_x, gap_y = math.inf, 0.0, 0.0
     for wall in walls:
         x = at[0] - min(max(at[0], wall[0]), wall[2])
@@ -181,8 +181,8 @@ def _push_of_wall(at: tuple[float, float], walls: Array) -> tuple[float, float]:
 # What follows from the force: the next velocity, the side on which to pass, when a waypoint is reached.
 
 HURRY: Final = 1.3  # who gives way may be this much faster than planned (Helbing and Molnar 1995, eq. 11)
-TAKEN_WITHIN_M: Final = 1.0  # how near to a waypoint one looks whether somebody stands on it
-TAKEN_BY_M: Final = 0.6  # how near to it somebody stands then
+TAKEN_WITHIN_M: Final = 1.0  # how near to a waypoint one looks whether a person stands on it
+TAKEN_BY_M: Final = 0.6  # how near to it a person stands then
 _SETTLES_M_S: Final = 0.4  # so slow one settles beside a place that is taken
 _PASSED_M: Final = 0.35  # how near to a waypoint one goes on to the next
 _PASSED_TAKEN_M: Final = 0.9  # the same where others stand on it
@@ -204,7 +204,7 @@ def velocity_by_force(
     bend_rad: float,
     dt_s: float,
 ) -> tuple[float, float]:
-    """Give the velocity [m/s] after a step of a person who wants to a goal [m], at a speed.
+    """Return the velocity [m/s] after a step of a person who wants to a goal [m], at a speed.
 
     Nobody's changes by more than 4 m/s2; for the rest see `social_force`.
     """
@@ -224,7 +224,7 @@ def bend_rad(blocked_s: float) -> float:
 
 @njit(cache=True)
 def blocked_s(blocked_s: float, speed_m_s: float, wanted_m_s: float, dt_s: float) -> float:
-    """Give for how long one has been slower than half as fast as one wanted to be, a step later."""
+    """Return for how long one has been slower than half as fast as one wanted to be, a step later."""
     return blocked_s + dt_s if speed_m_s < 0.5 * wanted_m_s else max(blocked_s - dt_s, 0.0)
 
 

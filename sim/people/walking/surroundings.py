@@ -46,7 +46,7 @@ class Surroundings:
     walls: Array
 
     def find(self, face: tuple[float, float] | str) -> Array | None:
-        """Position (2,) [m] of what somebody turns to; None if it is not there."""
+        """Position (2,) [m] of what a person turns to; None if it is not there."""
         if not isinstance(face, str):
             return np.array(face)
         if face == "robot":

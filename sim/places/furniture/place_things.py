@@ -163,7 +163,7 @@ def extent_of(fixtures: Sequence[Fixture]) -> Extent:
 
 
 def describe_floor(plan: FloorPlan) -> str:
-    """Say where the floor is, for messages."""
+    """Return where the floor is, for messages."""
     parts = (
         f"{f'{name} has ' if name else ''}x {a.min_x:g} to {a.max_x:g} and y {a.min_y:g} to {a.max_y:g}"
         for name, a in plan.areas

@@ -25,7 +25,7 @@ from peopleboy.sim.shapes.materials import Covering, Material, Painting
 
 
 def paint_thing(texture: SurfaceTexture, material: Material) -> None:
-    """Give a thing its gradient and its unevenness."""
+    """Return a thing its gradient and its unevenness."""
     texture.kelvin += material.gradient_k_per_m * (texture.up - 0.5 * texture.size[1])
     scale = min(max(0.3 * max(texture.size), 0.1), 1.5)
     texture.kelvin += max(material.uneven_k, 0.25) * texture.cloudy(scale)

@@ -68,7 +68,7 @@ def _surface(person: PersonTruth, truth: Truth, view: DepthView) -> tuple[float,
 
 
 def _middle_half(first: float, size: float) -> slice:
-    """Give the middle half of a box's rows or columns."""
+    """Return the middle half of a box's rows or columns."""
     start = max(round(first + size / 4.0), 0)
     return slice(start, max(round(first + size * 3.0 / 4.0), start) + 1)
 
@@ -113,7 +113,7 @@ class DriveScore:
             self.false.append((frame, tracks[number].id, x, y))
 
     def plain(self) -> dict[str, Any]:
-        """Give it as plain data."""
+        """Return it as plain data."""
         return {"frames": self.frames, "hits": self.hits, "missed": self.missed, "false": self.false}
 
     def _hit(self, frame: int, person: FloorPerson, track: int, place: Floats) -> tuple[float | None, ...]:

@@ -150,7 +150,7 @@ class DriveTracking:
         self._count_pre_detections(moment.people)
 
     def plain(self) -> dict[str, Any]:
-        """Give all that was measured as plain data; "tracks" has rows of frame, track, place."""
+        """Return all that was measured as plain data; "tracks" has rows of frame, track, place."""
         pre = {"bands": self._found.tolist(), "false": self._false}
         ms = round(self._timed.median_ms, 2)
         return self._score.plain() | {"ms": ms, "pre": pre, "tracks": self.rows}
@@ -209,7 +209,7 @@ def watch_legs(scenario: Scenario, seed: int) -> dict[str, Any]:
 
 
 def _truth_row(frame: int, person: FloorPerson) -> tuple[float, ...]:
-    """Give frame, person, place, distance, hidden share, and whether the person counts."""
+    """Return frame, person, place, distance, hidden share, and whether the person counts."""
     distance_m, hidden = round(person.truth.distance_m, 2), round(person.truth.occluded_fraction, 3)
     return (*_row(frame, person.id, person.place_m), distance_m, hidden, int(person.is_counted))
 

@@ -44,7 +44,7 @@ _BIRTHS, _PATIENCE = 4, 10  # frames
 
 
 def scan(observation: Observation) -> Floats:
-    """Give the points (N, 2) of half a circle, forward and left of the robot [m], from left to right."""
+    """Return the points (N, 2) of half a circle, forward and left of the robot [m], from left to right."""
     parts = []
     for name, yaw_deg in _YAWS_DEG.items():
         depth = observation.images[name][_ROWS // 2].astype(np.float64) / 1000.0

@@ -72,7 +72,7 @@ class Model(Protocol):
         ...
 
     def finish(self) -> tuple[Happening, ...]:
-        """Give the events that were held back."""
+        """Return the events that were held back."""
         ...
 
 
@@ -93,7 +93,7 @@ CHOICES: Final[dict[str, Callable[[], Model]]] = {
 
 
 def with_preset(scenario: Scenario, preset: str) -> Scenario:
-    """Give the robot a depth camera by the name of its preset."""
+    """Return the robot a depth camera by the name of its preset."""
     return scenario.with_cameras({DEPTH: {"kind": DEPTH, "preset": preset}})
 
 
@@ -244,7 +244,7 @@ def event_counts(
 
 
 def _maps(watchers: Mapping[str, _Watcher], true: Mapping[str, Metres]) -> dict[str, str]:
-    """Give depths as 16-bit PNG files in millimetres, in base 64."""
+    """Return depths as 16-bit PNG files in millimetres, in base 64."""
     depths = {name: one.scene.background_m for name, one in watchers.items() if one.scene is not None}
     return {name: _encoded(depth) for name, depth in (depths | dict(true)).items()}
 

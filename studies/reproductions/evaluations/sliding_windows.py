@@ -117,7 +117,7 @@ class WindowTally:
         self.false += sum(not any(row[k] for row in matches) for k in range(len(windows)))
 
     def plain(self) -> dict[str, Any]:
-        """Give it as plain data."""
+        """Return it as plain data."""
         counts = {"people": self.people, "found": self.found, "false": self.false}
         return {"ms": self.timed.median_ms, "images": len(self.timed.times_ms)} | counts
 

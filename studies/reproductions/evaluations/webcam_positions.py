@@ -274,7 +274,7 @@ def _empty_room(config: WorldConfig) -> Background:
 
 
 def _seen(image: NDArray[np.uint8], background: Background, heading_rad: float) -> float:
-    """Tell where in the room the silhouette is [rad]; NaN if there is none."""
+    """Return where in the room the silhouette is [rad]; NaN if there is none."""
     figure = measure(background.silhouette(image), PanoramicConfig().least_px)
     return math.nan if figure is None else heading_rad + figure.bearing_rad
 
@@ -287,7 +287,7 @@ def _standing(film: _Film) -> list[slice]:
 
 
 def true_webcams(config: WorldConfig, cameras: Sequence[str]) -> Floats:
-    """Give x, y [m], heading and angle of view [rad] of the webcams in the room, (C, 4)."""
+    """Return x, y [m], heading and angle of view [rad] of the webcams in the room, (C, 4)."""
     robot = Pose2(*config.robot.at_m, config.robot.heading_rad)
     rows = []
     for camera in (flat_geometry(config.robot.cameras, name) for name in cameras):
@@ -306,12 +306,12 @@ def _delayed(columns: Floats, frames: Sequence[int]) -> Floats:
 
 
 def _bearing(places_m: Floats, robot_m: Floats) -> Floats:
-    """Tell where places (T, 2) [m] are from the robot, (T,) [rad] in the room."""
+    """Return where places (T, 2) [m] are from the robot, (T,) [rad] in the room."""
     return np.asarray(np.arctan2(*(places_m - robot_m).T[::-1]), np.float64)
 
 
 def _between(one_rad: Floats, other_rad: Floats) -> Floats:
-    """Give the angles (T,) between directions, in 0..180 [deg]."""
+    """Return the angles (T,) between directions, in 0..180 [deg]."""
     return np.asarray(np.degrees(np.abs(np.angle(np.exp(1j * (one_rad - other_rad))))), np.float64)
 
 

@@ -69,7 +69,7 @@ def drawn_people(count: int) -> NDArray[np.uint8]:
 
 
 def frame_of(people: int, time_s: float = 0.0) -> Frame:
-    """Give a frame with drawn people in both images."""
+    """Return a frame with drawn people in both images."""
     thermal = drawn_people(people)
     images = {THERMAL: thermal, COLOUR: np.stack([thermal] * 3, axis=-1)}
     return Frame(images=images, time_s=time_s, odometry=Odometry())

@@ -28,7 +28,7 @@ def canvas(height_in: float, width_in: float = WIDTH_IN) -> Figure:
 
 
 def label(axes: Axes, title: str = "", x: str = "", y: str = "") -> None:
-    """Give axes their title and labels, and no more lines than they need."""
+    """Return axes their title and labels, and no more lines than they need."""
     axes.set_title(title, fontsize=9, loc="left")
     axes.set_xlabel(x, fontsize=8)
     axes.set_ylabel(y, fontsize=8)

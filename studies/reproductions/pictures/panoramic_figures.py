@@ -111,7 +111,7 @@ def _draw_mirror(axes: Axes, mirror: Mirror) -> None:
 
 
 def _met(mirror: Mirror, angle: float) -> tuple[float, float]:
-    """Tell where the ray that leaves the lens at an angle [rad] off its axis meets the mirror: x, y [m]."""
+    """Return where the ray that leaves the lens at an angle [rad] off its axis meets the mirror: x, y [m]."""
     # x = (y - lens) tan(angle) and x = (y - apex) tan(half apex)
     spread, side = math.tan(angle), math.tan(mirror.half_apex_rad)
     y = (mirror.apex_m * side - (mirror.apex_m - mirror.lens_m) * spread) / (side - spread)
@@ -126,7 +126,7 @@ def _round_image() -> Picture:
 
 
 def _images_after(config: WorldConfig, time_s: float) -> Mapping[str, Picture]:
-    """Give the images of a world whose robot stands, after some time [s]."""
+    """Return the images of a world whose robot stands, after some time [s]."""
     from peopleboy.sim.world import World  # here, as curves of stored results need no PyBullet
 
     with World(config) as world:

@@ -177,12 +177,12 @@ def draw_legs(film: Film) -> Figure:
 
 
 def _rows(tracks: Sequence[Sequence[float]]) -> Floats:
-    """Give frame, track and place (N, 4)."""
+    """Return frame, track and place (N, 4)."""
     return np.array(tracks).reshape(-1, 4)
 
 
 def _counted(film: Film) -> Floats:
-    """Give frame, person and place (N, 4) of everybody who counts."""
+    """Return frame, person and place (N, 4) of everybody who counts."""
     truth = np.array(film["truth"], dtype=np.float64).reshape(-1, 7)
     return np.asarray(truth[truth[:, 6] > 0.0][:, :4])
 
@@ -228,7 +228,7 @@ class LearnedFilm:
 
 
 def learned_films(scenario: str = FOCUS_SCENE, seed: int = 1, every: int = 15) -> Iterator[LearnedFilm]:
-    """Give each person of a clip with the first image that shows most of it."""
+    """Return each person of a clip with the first image that shows most of it."""
     loaded = load_scenario(scenario)
     moments = list(play_focus(loaded, seed, every))
     for number in sorted({one.id for moment in moments for one in wanted(loaded, moment.truth)}):

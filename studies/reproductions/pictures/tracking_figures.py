@@ -136,7 +136,7 @@ def _middle(box: Floats) -> Floats:
 
 
 def _place(frame: int, person: int) -> Box:
-    """Give the true box of a person who crosses the image within all frames."""
+    """Return the true box of a person who crosses the image within all frames."""
     way = 200.0 * frame / (_FRAMES - 1)
     return (40.0 + way if person == _FIRST else 240.0 - way, _TOP, *_BOX)
 
@@ -217,7 +217,7 @@ def draw_example() -> Figure:
 
 
 def shared(one: Floats, other: Floats) -> Box:
-    """Give the box (left, top, width, height) that two overlapping boxes (4,) share."""
+    """Return the box (left, top, width, height) that two overlapping boxes (4,) share."""
     corner = np.maximum(one[:2], other[:2])
     size = np.minimum(one[:2] + one[2:], other[:2] + other[2:]) - corner
     return float(corner[0]), float(corner[1]), float(size[0]), float(size[1])
@@ -348,7 +348,7 @@ def draw_cues() -> Figure:
 
 
 def fitness_grey(thermal: NDArray[np.uint8], state: NDArray[np.float32]) -> Floats:
-    """Give the fitness (N,) of samples (N, 9) in grey: equation 4.3, with the literal tracker's cap."""
+    """Return the fitness (N,) of samples (N, 9) in grey: equation 4.3, with the literal tracker's cap."""
     height, width = thermal.shape
     model = ContourModel.build((height, width), THESIS.contour)
     differences = model.differences(model.prepare(thermal), state).astype(np.float64)
@@ -356,7 +356,7 @@ def fitness_grey(thermal: NDArray[np.uint8], state: NDArray[np.float32]) -> Floa
 
 
 def _cues(moment: ThermalMoment) -> Iterator[tuple[float, float, float, float]]:
-    """Give distance, strength, top and bottom of the contour that fits best around each whole person."""
+    """Return distance, strength, top and bottom of the contour that fits best around each whole person."""
     rng = stream(SEED, "reproduce.cues")
     for person in moment.whole:
         assert person.box is not None
@@ -385,7 +385,7 @@ def draw_time_ranges() -> Figure:
 
 
 def stretches(frames: Sequence[int]) -> Iterator[tuple[int, int]]:
-    """Give first and last of each unbroken run of ascending numbers."""
+    """Return first and last of each unbroken run of ascending numbers."""
     if frames:
         for run in np.split(np.array(frames), np.flatnonzero(np.diff(frames) > 1) + 1):
             yield int(run[0]), int(run[-1])

@@ -167,12 +167,12 @@ def calibration_pair(image: ThermalImage, rng: Draw, kind: WindowKind) -> tuple[
 
 
 def has_people(image: ThermalImage, kind: WindowKind) -> bool:
-    """Tell whether there are people to train on, for windows of a kind."""
+    """Return whether there are people to train on, for windows of a kind."""
     return bool((image.is_good if kind is WindowKind.WHOLE else _is_tall(image)).any())
 
 
 def is_cut_off(image: ThermalImage) -> NDArray[np.bool_]:
-    """Tell which people (P,) that are clear are cut off at head or feet, but not nearly all of them."""
+    """Return which people (P,) that are clear are cut off at head or feet, but not nearly all of them."""
     rows, columns = image.grey.shape
     left, top, width, height = image.box.T
     above = np.maximum(-top, 0.0) / height

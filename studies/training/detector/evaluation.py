@@ -22,7 +22,7 @@ from peopleboy.tracker.detector.window import WindowKind
 Floats = NDArray[np.float64]
 
 _HIT: Final = 0.5  # IoU
-_THERE: Final = 0.4  # IoU with somebody who is there
+_THERE: Final = 0.4  # IoU with a person who is there
 _LEAST_SCORE: Final = -2.0
 FALSE_PER_IMAGE: Final = 0.1
 """False positives per image at which recall is reported."""

@@ -202,7 +202,7 @@ def _without(
 
 
 def _is_clear(box: Floats, image: ThermalImage) -> NDArray[np.bool_]:
-    """Tell which boxes (N, 4) overlap no person much; a part of a person is a negative."""
+    """Return which boxes (N, 4) overlap no person much; a part of a person is a negative."""
     return np.asarray((iou(box[:, None], image.box[None]) < _BESIDE).all(axis=1), np.bool_)
 
 

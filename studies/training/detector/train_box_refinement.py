@@ -120,7 +120,7 @@ def sample_version(version: Version) -> CropSamples:
 
 
 def _is_sampled(image: ThermalImage, rng: np.random.Generator) -> NDArray[np.bool_]:
-    """Tell which people (P,) are visible enough, and draw some of the others."""
+    """Return which people (P,) are visible enough, and draw some of the others."""
     rows, columns = image.grey.shape
     whole = np.array([0.0, 0.0, columns, rows])
     is_inside = cover(intersection(image.box, whole), area(image.box)) > _INSIDE

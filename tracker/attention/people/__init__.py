@@ -1,1 +1,1 @@
-"""People who are known again by their looks, however long they were away."""
+"""People who are known again by their appearance, however long they were away."""

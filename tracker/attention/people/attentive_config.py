@@ -1,4 +1,4 @@
-"""When somebody is taken for a person who was lost."""
+"""When a person is taken for a person who was lost."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from peopleboy.bad_input import BadInput
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AttentiveConfig:
-    """How looks are learned, and what they must be to be somebody's.
+    """How looks are learned, and what they must be to be a person's.
 
     Attributes:
-        accept: mean score from which on somebody new may be a person who was lost ...
+        accept: mean score from which on a person new may be a person who was lost ...
         slack: ... if it is not so much below the one that this person usually had.
-        reject: mean score below which somebody is not who the tracker below takes him for.
+        reject: mean score below which a person is not who the tracker below takes him for.
         images: that scores are averaged over ...
         least_images: ... and how many there must be at least.
         learned_images: in which a person must have been seen to be known again.
         first_images: that count alike; later ones count less.
         rate: share of a new image that is learned then.
         doubt: score below which nothing is learned.
-        doubtful_images: in which somebody must have looked otherwise than that to be a stranger.
+        doubtful_images: in which a person must have looked otherwise than that to be a stranger.
         gap_s: [s] out of sight from which on looks are compared anew ...
         proof_s: [s] ... and from which on the number of the tracker below is no proof any more.
         remembered_s: [s] for which people are remembered.
@@ -56,5 +56,5 @@ class AttentiveConfig:
 
 
 AS_FOUND: Final = AttentiveConfig(accept=0.24, slack=1.0, reject=0.0, doubt=0.0)
-"""For the focus of attention as printed: it can be elsewhere while somebody is there, so that nobody is
+"""For the focus of attention as printed: it can be elsewhere while a person is there, so that nobody is
 doubted for that; and where no feature speaks for the box, patterns alone make a score of a quarter."""

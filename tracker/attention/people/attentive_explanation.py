@@ -38,7 +38,7 @@ class Attended:
 
     @classmethod
     def learned(cls, number: int, view: PersonView) -> Attended:
-        """Learn somebody from one image."""
+        """Learn a person from one image."""
         model = learn(ImageSums.of(view.image, TRACKING_ATTENTION), view.box, TRACKING_ATTENTION)
         return cls(number, view.camera, model, view.image)
 
@@ -72,7 +72,7 @@ class AttentiveExplanation:
 
 @singledispatch
 def renumbered(explanation: object, number: Mapping[int, int]) -> object:  # noqa: ARG001
-    """Give an explanation by the numbers that tracks are told by; a kind without numbers stays as it is."""
+    """Return an explanation by the numbers that tracks are told by; a kind without numbers stays as it is."""
     return explanation
 
 

@@ -20,7 +20,7 @@ from peopleboy.tracker.attention.people.recogniser import Appearance, Recogniser
 from peopleboy.tracker.frame import COLOUR, Calibration, Frame
 from peopleboy.tracker.track import Status, Track
 
-# A person who is known by its looks, and a track that somebody may wear.
+# A person who is known by its appearance, and a track that a person may wear.
 
 _OF_LATE: Final = 0.05  # share of the newest image in the usual score
 
@@ -44,11 +44,11 @@ class GalleryEntry(Generic[Appearance]):
     seen_s: float = -np.inf
 
     def is_known(self, config: AttentiveConfig) -> bool:
-        """Tell whether enough was seen of the person to know it again."""
+        """Return whether enough was seen of the person to know it again."""
         return max(self.images.values(), default=0) >= config.learned_images
 
     def score(self, seen: Mapping[str, Seen], recogniser: Recogniser[Appearance, Seen]) -> float | None:
-        """Score somebody who is seen, by camera; None where none saw both."""
+        """Score a person who is seen, by camera; None where none saw both."""
         scores = [
             recogniser.score(self.models[camera], one)
             for camera, one in seen.items()
@@ -85,7 +85,7 @@ class Wearer:
         number: of the person; None for one who is known to be elsewhere.
         since_s: [s] since when it has been this track without a longer break.
         seen_s: [s] when it was seen last.
-        is_new: whether it may still turn out to be somebody who was lost.
+        is_new: whether it may still turn out to be a person who was lost.
         scores: of late, by the number of those that it may be; its own among them.
     """
 
@@ -100,7 +100,7 @@ class Wearer:
         self.scores.setdefault(number, deque(maxlen=most)).append(score)
 
     def mean(self, number: int, least: int) -> float | None:
-        """Give the mean of the newest scores; None if there are too few."""
+        """Return the mean of the newest scores; None if there are too few."""
         scores = self.scores.get(number, ())
         return float(np.mean(scores)) if len(scores) >= least else None
 
@@ -124,11 +124,11 @@ class AttentiveTracker(Generic[Appearance, Seen]):
     It learns everybody who is seen, from the boxes of their tracks. After a loss only new tracks are scored,
     each by itself: from a threshold on one has the number of who was lost; below it, it stays a stranger.
     Who comes out from behind others keeps the number that the tracker below gives, if it does not look like
-    somebody else.
+    another person.
 
     Args:
         below: finds people.
-        recogniser: tells them by their looks.
+        recogniser: tells them by their appearance.
         config: how sure it must be.
 
     Source: situation-awareness thesis, chapter 5 and its outlook, which proposes it: the first box is the
@@ -212,7 +212,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
             wearer.seen_s = self._people[wearer.number].seen_s = time_s
 
     def _compare(self, track: Track, frame: Frame) -> None:
-        """Let a track that is seen whole be somebody who was lost, or nobody any more; learn who it is."""
+        """Let a track that is seen whole be a person who was lost, or nobody any more; learn who it is."""
         wearer = self._wearers[track.id]
         if track.status is not Status.TRACKED or wearer.number is None:
             return
@@ -242,7 +242,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
             self._attended = replace(attended, image=frame.rgb(attended.camera))
 
     def _recognise(self, wearer: Wearer, seen: Mapping[str, Seen]) -> None:
-        """Let somebody new be the one of those who were lost before whom he looks like most, if he does."""
+        """Let a person new be the one of those who were lost before whom he looks like most, if he does."""
         config, found = self._config, {}
         for number, person in self._people.items():
             if number != wearer.number and person.seen_s < wearer.since_s and person.is_known(config):
@@ -254,7 +254,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
             self._take(wearer, max(found, key=lambda number: found[number]))
 
     def _take(self, wearer: Wearer, number: int) -> None:
-        """Give a known person's number to a track; who is only thought to be there has none any more."""
+        """Return a known person's number to a track; who is only thought to be there has none any more."""
         for other in self._wearers.values():
             if other.number == number:
                 other.number = None
@@ -263,7 +263,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
         wearer.number, wearer.is_new = number, False
 
     def _is_doubtful(self, wearer: Wearer) -> bool:
-        """Tell whether a track has looked otherwise than its person for a while: it is on another one."""
+        """Return whether a track has looked otherwise than its person for a while: it is on another one."""
         mean = wearer.mean(wearer.number or 0, self._config.doubtful_images)
         return mean is not None and mean < self._config.reject
 
@@ -295,7 +295,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
         }
 
     def _renamed(self, tracks: Sequence[Track]) -> tuple[Track, ...]:
-        """Give tracks, and those who hide them, their numbers; who may be born next has the next one."""
+        """Return tracks, and those who hide them, their numbers; who may be born next has the next one."""
         number = {track.id: self._number(track) for track in tracks}
         self._reported = {below: own for below, own in number.items() if own is not None}
         named = (

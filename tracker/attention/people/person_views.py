@@ -39,7 +39,7 @@ class PersonView:
 
 
 def views_of(track: Track, frame: Frame) -> Iterator[PersonView]:
-    """Give a tracked person in each colour image that there is.
+    """Return a tracked person in each colour image that there is.
 
     Raises:
         BadInput: an image is none.
@@ -67,7 +67,7 @@ def check_colours(frame: Frame) -> None:
 def box_in(camera: str, track: Track, frame: Frame) -> Box | None:
     """Find the box of a track in a colour camera's image: its own, that of its rays, or of who stands there.
 
-    Who has a box in the thermal image and no place stands where somebody of usual height would.
+    Who has a box in the thermal image and no place stands where a person of usual height would.
     Without calibrations colours are taken to show what the thermal image shows.
 
     Returns:
@@ -100,14 +100,14 @@ def _same_view(camera: str, track: Track, frame: Frame) -> Box | None:
 
 
 def _place_by_height(track: Track, thermal: Calibration | None) -> FloorPlace | None:
-    """Tell where somebody stands of whom a tracker tells no more than a box in the thermal image."""
+    """Return where a person stands of whom a tracker tells no more than a box in the thermal image."""
     if thermal is None or THERMAL not in track.boxes:
         return None
     return places_on_floor([track.boxes[THERMAL]], [Status.TRACKED], thermal)[0]
 
 
 def _ends(box: Box, ahead_m: float, thermal: Calibration) -> NDArray[np.float64] | None:
-    """Give the points (2, 3) [m] of head and feet, so far ahead of the robot, that a box ends at."""
+    """Return the points (2, 3) [m] of head and feet, so far ahead of the robot, that a box ends at."""
     left, top, width, height = box
     rays = thermal.rays(np.array([[left + width / 2.0, top], [left + width / 2.0, top + height]]))
     away_m = ahead_m - thermal.position_m[0]

@@ -53,7 +53,7 @@ class ColourLook:
         return cls(np.array([_histogram(part, _BRIGHTNESS / light) for part in pixels]))
 
     def likeness(self, other: ColourLook) -> float:
-        """Tell how much of their colours two have in common: 1 for the same, 0 for nothing.
+        """Return how much of their colours two have in common: 1 for the same, 0 for nothing.
 
         Source: Bhattacharyya's coefficient, as in the situation-awareness thesis, equation 4.25.
         """
@@ -72,7 +72,7 @@ def _pixels(image: NDArray[np.uint8], cells: Cells) -> NDArray[np.uint8]:
 
 @njit(cache=True, nogil=True)
 def _histogram(pixels: NDArray[np.uint8], scale: float) -> Doubles:
-    """Give the shares (512,) of the colours of pixels (N, 3), made brighter by a factor."""
+    """Return the shares (512,) of the colours of pixels (N, 3), made brighter by a factor."""
     shares = np.zeros(_STEPS**3)
     low, over = np.zeros(3, np.int64), np.zeros(3)
     for i in range(pixels.shape[0]):
@@ -97,18 +97,18 @@ Seen = TypeVar("Seen")
 
 
 class Recogniser(Protocol[Appearance, Seen]):
-    """Whatever tells people by their looks."""
+    """Whatever tells people by their appearance."""
 
     def see(self, view: PersonView) -> Seen | None:
-        """Look at somebody in one image; None where there is not enough of the person in it."""
+        """Look at a person in one image; None where there is not enough of the person in it."""
         ...
 
     def learned(self, known: Appearance | None, seen: Seen, rate: float) -> Appearance:
-        """Learn somebody, or take in a share of how a known one looks now."""
+        """Learn a person, or take in a share of how a known one looks now."""
         ...
 
     def score(self, known: Appearance, seen: Seen) -> float:
-        """Tell how likely somebody is a known person, 0..1, whoever else is there."""
+        """Return how likely a person is a known person, 0..1, whoever else is there."""
         ...
 
 
@@ -116,21 +116,21 @@ class ByColour:
     """Tells people by the colours of head and torso, with the light divided out."""
 
     def see(self, view: PersonView) -> ColourLook | None:
-        """Look at somebody."""
+        """Look at a person."""
         return ColourLook.of(view)
 
     def learned(self, known: ColourLook | None, seen: ColourLook, rate: float) -> ColourLook:
-        """Learn somebody."""
+        """Learn a person."""
         return seen if known is None else known.updated(seen, rate)
 
     def score(self, known: ColourLook, seen: ColourLook) -> float:
-        """Tell how much of their colours two have in common."""
+        """Return how much of their colours two have in common."""
         return known.likeness(seen)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Spotted:
-    """Somebody in an image that is made ready.
+    """A person in an image that is made ready.
 
     Attributes:
         sight: the image.
@@ -153,7 +153,7 @@ class ByFocus:
         self._newest: ImageSums | None = None
 
     def see(self, view: PersonView) -> Spotted | None:
-        """Look at somebody; an image is made ready once for all who are in it."""
+        """Look at a person; an image is made ready once for all who are in it."""
         try:
             check_box(view.box, view.image.shape)
         except BadInput:
@@ -163,13 +163,13 @@ class ByFocus:
         return Spotted(self._newest, view)
 
     def learned(self, known: PersonModel | None, seen: Spotted, rate: float) -> PersonModel:  # noqa: ARG002
-        """Learn somebody from the first image; later ones count as little as the source has it."""
+        """Learn a person from the first image; later ones count as little as the source has it."""
         if known is None:
             return learn(seen.sight, seen.view.box, self._config)
         return relearn(known, seen.sight, search(seen.sight, known, self._config), self._config)
 
     def score(self, known: PersonModel, seen: Spotted) -> float:
-        """Give the score of the focus if it is on this person."""
+        """Return the score of the focus if it is on this person."""
         focus = search(seen.sight, known, self._config)
         u, v = focus.place
         left, top, width, height = seen.view.box

@@ -1,4 +1,4 @@
-"""What people look like, in colour and in their thermal pattern, and how likely somebody is who."""
+"""What people look like, in colour and in their thermal pattern, and how likely a person is who."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ HIDDEN_PART = 0.3  # share of a part behind others from which its colour is not 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AppearanceView:
-    """One frame as far as people's looks are concerned.
+    """One frame as far as people's appearance is concerned.
 
     Attributes:
         colour: the colour image; None without one, or in the dark.
@@ -94,7 +94,7 @@ def _blank_hidden(features: Floats, state: Floats, hiding: Regions) -> None:
 
 
 def _scale(light: float, config: AppearanceConfig) -> Floats:
-    """Divide by what one person's looks differ from frame to frame, and colours by the light."""
+    """Divide by what one person's appearance differs from frame to frame, and colours by the light."""
     scale = np.empty((PARTS, 4), dtype=np.float32)
     scale[:, :3] = BRIGHTNESS / max(light, 1.0) / np.array(COLOUR_SPREAD)[:, None]
     scale[:, 3] = 1 / np.array(config.grey_spread)
@@ -156,7 +156,7 @@ def squared_distances(features: Floats, model: ColourModel) -> Floats:
 def likelihood(
     features: Floats, model: ColourModel, config: ColourDescriptorConfig, unseen_spread: float = math.nan
 ) -> Floats:
-    """Tell how likely people (N,) with these features (N, F) are the person of the model.
+    """Return how likely people (N,) with these features (N, F) are the person of the model.
 
     Whoever cannot be compared at all is as likely as the others are on average, or 1 where nobody can.
 

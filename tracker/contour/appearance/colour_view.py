@@ -211,7 +211,7 @@ class ColourView:
         return described.reshape(len(rectangles), -1)
 
     def _bounds(self, rectangles: Floats, height: Floats) -> Bounds:
-        """Give the pixels (N P, 4) of this image that thermal rectangles (N, P, 4) cover."""
+        """Return the pixels (N P, 4) of this image that thermal rectangles (N, P, 4) cover."""
         bounds: Bounds = pixel_bounds(aligned(self.alignment, rectangles, height))
         return bounds
 

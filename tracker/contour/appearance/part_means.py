@@ -74,7 +74,7 @@ def write_part_means(
 
 @njit(cache=True, nogil=True)
 def _columns(state: Floats, rows: NDArray[np.int64]) -> Floats:
-    """Give x, y, w, h and d (5, M) of the samples (N, 9) in some rows."""
+    """Return x, y, w, h and d (5, M) of the samples (N, 9) in some rows."""
     shape = np.empty((5, len(rows)), dtype=np.float32)
     for n in range(len(rows)):
         i = rows[n]

@@ -61,7 +61,7 @@ def part_rectangles(state: Floats) -> Floats:
 
 @njit(cache=True, nogil=True)
 def first_pixel_after(edge: np.float32) -> np.int32:
-    """Tell the first column or row whose pixels' centres are not left of, or above, an edge [px].
+    """Return the first column or row whose pixels' centres are not left of, or above, an edge [px].
 
     Far beyond any image it is still an int32, whatever a stray sample asks for.
     """
@@ -70,7 +70,7 @@ def first_pixel_after(edge: np.float32) -> np.int32:
 
 @njit(cache=True, nogil=True)
 def pixel_bounds(rectangles: Floats) -> Bounds:
-    """Tell which pixels rectangles (N, P, 4) cover: those with their centre inside.
+    """Return which pixels rectangles (N, P, 4) cover: those with their centre inside.
 
     Returns:
         (N P, 4) first column, first row, and those after the last ones; they may lie outside the image.
@@ -102,7 +102,7 @@ def covered(bounds: Bounds, height: int, width: int) -> tuple[NDArray[np.int64],
 def alignment(
     thermal_shape: tuple[int, int], colour_shape: tuple[int, int], affine: Affine, parallax: float
 ) -> Floats:
-    """Give equation 6.1 in pixels for images of given sizes, its parallax included.
+    """Return equation 6.1 in pixels for images of given sizes, its parallax included.
 
     Pixel (u, v) has its centre at the shares (u + 1/2) / W, (v + 1/2) / H.
 

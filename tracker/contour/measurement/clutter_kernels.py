@@ -15,7 +15,7 @@ _MOST: Final = 255  # [grey] that pixels differ by
 
 @njit(cache=True, nogil=True)
 def differences_in(image: NDArray[np.uint8], apart: int, stride: int) -> NDArray[np.uint8]:
-    """Give by how much pixels of an image (H, W) differ from those so far to the right, and below, (N,).
+    """Return by how much pixels of an image (H, W) differ from those so far to the right, and below, (N,).
 
     Of the rows for the one, and of the columns for the other, every `stride`-th is looked at.
     """

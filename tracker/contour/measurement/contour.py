@@ -52,7 +52,7 @@ class Probes:
 
 
 def section_angles(config: ContourConfig) -> dict[int, tuple[float, float]]:
-    """Give each section's arc on its ellipse, in radians from the top, positive to the right.
+    """Return each section's arc on its ellipse, in radians from the top, positive to the right.
 
     The head's three arcs cover its ellipse but for the neck; shoulders and sides cover the body's down to
     `side_end_deg`.
@@ -112,7 +112,7 @@ def _firsts(rows: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def body_points(angle: NDArray[np.float64], grow: NDArray[np.float64], grow_px: float) -> Floats:
-    """Give points (K, 2, 4) of the body ellipse with both semi-axes longer by `grow` w + `grow_px`."""
+    """Return points (K, 2, 4) of the body ellipse with both semi-axes longer by `grow` w + `grow_px`."""
     points = np.zeros((len(angle), 2, 4), dtype=np.float32)
     right, down = np.sin(angle), -np.cos(angle)
     points[:, 0, 1] = (1 + grow) * right
@@ -138,7 +138,7 @@ def head_points(angle: NDArray[np.float64], grow: NDArray[np.float64], grow_px: 
 
 
 def _feet_points() -> tuple[Floats, Floats]:
-    """Give points (K, 2, 4) above the line under the feet, and below it at two depths, where floor is."""
+    """Return points (K, 2, 4) above the line under the feet, and below it at two depths, where floor is."""
     across = np.linspace(-FEET_SPAN, FEET_SPAN, FEET_COLUMNS)
     points = np.zeros((2, 2, FEET_COLUMNS, 2, 4), dtype=np.float32)
     points[..., 0, 2] = across
@@ -161,7 +161,7 @@ def build_response(config: ContourConfig) -> Floats:
 
 
 def section_weights(config: ContourConfig) -> NDArray[np.float64]:
-    """Give the weights (8,) of the sections, which sum to 1."""
+    """Return the weights (8,) of the sections, which sum to 1."""
     weights = np.array([*config.section_weights, config.feet_weight])
     shares: NDArray[np.float64] = weights / weights.sum()
     return shares

@@ -55,7 +55,7 @@ _EXTREME: Final = 40.0  # log odds beyond which the probability no longer change
 
 
 def _superellipse(power: float, count: int = 32) -> NDArray[np.float64]:
-    """Give the outline (count, 2) of a shape between an ellipse (power 2) and a square."""
+    """Return the outline (count, 2) of a shape between an ellipse (power 2) and a square."""
     angle = np.linspace(0.0, 2 * np.pi, count, endpoint=False)
     around = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     outline: NDArray[np.float64] = np.sign(around) * np.abs(around) ** (2 / power)
@@ -115,7 +115,7 @@ class ContourModel:
         Args:
             image: (H, W) prepared.
             state: (N, 9) samples.
-            covered: what a point counts where the image says that somebody is in front; None if it does not.
+            covered: what a point counts where the image says that a person is in front; None if it does not.
             covered_share: weight of such a point.
         """
         config = self.config
@@ -197,7 +197,7 @@ def person_grey(thermal: NDArray[np.uint8], config: ContourConfig) -> NDArray[np
 
 
 def _is_bright(thermal: NDArray[np.uint8], dark_share: float) -> bool:
-    """Tell whether less than a share of an image (H, W) is black."""
+    """Return whether less than a share of an image (H, W) is black."""
     some = thermal[::2, ::2]
     return dark_share > 0 and bool(np.count_nonzero(some <= BLACK_GREY) < dark_share * some.size)
 

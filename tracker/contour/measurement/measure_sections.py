@@ -286,7 +286,7 @@ def weighted_sums(differences: Floats, weights: NDArray[np.float64], weakest_sha
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def logistic(fit: Floats, slope: float, threshold: float, most: float) -> Floats:
-    """Give the probability (N,) of fitnesses (N,), whose log odds end at -most and most (equation 4.4)."""
+    """Return the probability (N,) of fitnesses (N,), whose log odds end at -most and most (equation 4.4)."""
     steep, middle, end, one = np.float32(2 * slope), np.float32(threshold), np.float32(most), np.float32(1)
     chance = np.empty_like(fit)
     for i in range(len(fit)):

@@ -94,7 +94,7 @@ def _model(shape: tuple[int, int], config: ContourConfig) -> ContourModel:
 
 
 def _state(ellipse: Ellipse) -> NDArray[np.float64]:
-    """Give the (9,) state of an ellipse, at rest."""
+    """Return the (9,) state of an ellipse, at rest."""
     return np.array([ellipse.x, ellipse.y, ellipse.w, ellipse.h, ellipse.d, 0.0, 0.0, 0.0, 0.0])
 
 
@@ -102,7 +102,7 @@ def _state(ellipse: Ellipse) -> NDArray[np.float64]:
 
 
 def outline(ellipse: Ellipse, count: int = 48) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Give the outlines of body and head as two closed lines (count, 2) [px]."""
+    """Return the outlines of body and head as two closed lines (count, 2) [px]."""
     angle = np.linspace(0.0, 2 * np.pi, count)
     nothing = np.zeros(count)
     mix = np.array([ellipse.d, ellipse.w, ellipse.h, 1.0])
@@ -111,7 +111,7 @@ def outline(ellipse: Ellipse, count: int = 48) -> tuple[NDArray[np.float64], NDA
 
 
 def section_lines(ellipse: Ellipse, config: ContourConfig) -> NDArray[np.float64]:
-    """Give a line (9, K, 2) [px] along every section, in their order with the feet, and one round the hips.
+    """Return a line (9, K, 2) [px] along every section, in their order with the feet, and one round the hips.
 
     The last one closes the body's ellipse, where no section is.
     """

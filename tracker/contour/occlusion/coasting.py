@@ -27,13 +27,13 @@ from peopleboy.tracker.contour.tracked_person import (
     smoothed,
 )
 
-# When somebody is hidden, and seen again.
+# When a person is hidden, and seen again.
 HEAD_COVERED = 0.8  # share of the head's contour behind others from which a person is hidden
 HIDDEN_BODY = 0.4  # least share of the contour by which a person with a covered head is still followed
-LOST_FRAMES = 3  # frames without evidence after which somebody counts as hidden by something unknown
+LOST_FRAMES = 3  # frames without evidence after which a person counts as hidden by something unknown
 CLEAR = 0.5  # share of head and body in view from which a hidden person may be seen again
 CLAIMED = 0.5  # share of its region that another person must have left free
-APPEARANCE_GATE = 40.0  # largest squared distance of looks of who comes back to sight
+APPEARANCE_GATE = 40.0  # largest squared distance of appearance of who comes back to sight
 SIZE_GATE = 0.25  # largest change of the logarithm of its height
 # How the hidden walk: people seldom stop or turn, keep to the floor, and keep their size.
 MEMORY = 0.985  # share of the velocity that lasts to the next step
@@ -42,7 +42,7 @@ STIFFNESS = 0.1  # the same for all other directions and the size
 WIDTH = 0.46  # semi-width in semi-heights: who is hidden may turn
 FADING = 0.96  # share of the velocity that lasts once nobody looks for the person any more
 SEARCHED_FRAMES = 45  # frames in the open for which samples look for it
-# How long they are shown [s]: hidden by nobody known; on the way out of the image; behind somebody, if the
+# How long they are shown [s]: hidden by nobody known; on the way out of the image; behind a person, if the
 # samples are farther apart than this share of the semi-width. Others are until they are forgotten.
 SHOWN_S, SHOWN_LEAVING_S, SHOWN_BEHIND_S, SURE_SPREAD = 0.3, 0.5, 0.8, 0.4
 
@@ -93,7 +93,7 @@ class WalkOn:
         return self._hidden_motion if person.is_hidden else self._config.motion
 
     def keeps_off(self, person: TrackedPerson) -> bool:  # noqa: ARG002
-        """Penalise the hidden too, or they would come back as somebody who is not in front."""
+        """Penalise the hidden too, or they would come back as a person who is not in front."""
         return True
 
     def judge(
@@ -221,7 +221,7 @@ def look_at(
 
 
 def _in_view(belief: Belief, surroundings: OrderContext, view: FrameView) -> tuple[float, float]:
-    """Tell which share of a person's head, and of all of it, those in front leave in view."""
+    """Return which share of a person's head, and of all of it, those in front leave in view."""
     if not surroundings.front:
         return 1.0, 1.0
     shares = seen_shares(surroundings.image, belief.estimate, view.model.probes)
@@ -229,7 +229,7 @@ def _in_view(belief: Belief, surroundings: OrderContext, view: FrameView) -> tup
 
 
 def _is_behind(state: NDArray[np.float64], surroundings: OrderContext, view: FrameView) -> bool:
-    """Tell whether people in front explain why a person with this state (9,) is not seen."""
+    """Return whether people in front explain why a person with this state (9,) is not seen."""
     if not surroundings.front:
         return False
     return body_share(seen_shares(surroundings.image, state, view.model.probes)) < HIDDEN_BODY

@@ -18,7 +18,7 @@ from peopleboy.tracker.contour.particles import STATE_SIZE, Floats
 from peopleboy.tracker.contour.tracked_person import TrackedPerson, moved_on
 
 FOOT_PX = 4.0  # [px] of 240 rows: difference of foot rows that counts 1
-APPEARANCE = 12.0  # difference of squared distances of looks that counts 1
+APPEARANCE = 12.0  # difference of squared distances of appearance that counts 1
 MOST = 4.0  # for which looks count at most
 
 Leads = NDArray[np.float64]
@@ -67,7 +67,7 @@ class Order(Protocol):
     """Compares people with each other."""
 
     def __call__(self, figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:
-        """Tell who of M people is in front of whom.
+        """Return who of M people is in front of whom.
 
         Returns:
             (M, M) how clearly the row's person is in front of the column's: positive if it is, negative if
@@ -82,9 +82,9 @@ def lower_foot(figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:  # 
 
 
 def likelier_front(figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:
-    """Weigh up whose feet are lower and whose looks are seen where it is expected.
+    """Weigh up whose feet are lower and whose appearance is seen where it is expected.
 
-    Where two people overlap, the image shows the looks of the one in front; the one behind looks wrong.
+    Where two people overlap, the image shows the appearance of the one in front; the one behind looks wrong.
     """
     clearer = -_leads([figure.unlikeness for figure in figures]) / APPEARANCE
     bounded: Leads = np.minimum(np.maximum(clearer, -MOST), MOST)

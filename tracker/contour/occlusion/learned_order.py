@@ -65,7 +65,7 @@ class LearnedOrder:
         return votes
 
     def lead(self, features: Features) -> Features:
-        """Tell how clearly (P,) the one is in front: 1 surely, -1 surely behind, 0 unknown.
+        """Return how clearly (P,) the one is in front: 1 surely, -1 surely behind, 0 unknown.
 
         The mirrored pair has the opposite lead: thresholds are seldom exactly 0, and the plain votes could
         call both of two people the front one. Ours; the thesis asks in one direction only.
@@ -96,7 +96,7 @@ def features_of(
 
 @cache
 def shipped_order(tracker: str, *, remembers_feet: bool = True) -> LearnedOrder:
-    """Give the order that was learned for the tracker of that name, and comes with it.
+    """Return the order that was learned for the tracker of that name, and comes with it.
 
     Trackers measure contours and colours in different units, so that each needs a table of its own.
 
@@ -107,7 +107,7 @@ def shipped_order(tracker: str, *, remembers_feet: bool = True) -> LearnedOrder:
 
 
 def make_order(config: DepthOrderConfig) -> Order | None:
-    """Give the way in which a tracker compares people; None if it does not."""
+    """Return the way in which a tracker compares people; None if it does not."""
     if config.order == LEARNED:
         return shipped_order(config.table, remembers_feet=config.remembers_feet)
     return None if config.order is None else ORDERS[config.order]

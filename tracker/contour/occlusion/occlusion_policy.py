@@ -105,11 +105,11 @@ class OcclusionPolicy(Protocol):
     """Supposes where people are who are not seen, and tells when that begins and ends."""
 
     def motion_of(self, person: TrackedPerson) -> MotionConfig:
-        """Tell how a person's samples move."""
+        """Return how a person's samples move."""
         ...
 
     def keeps_off(self, person: TrackedPerson) -> bool:
-        """Tell whether a person's samples are penalised for overlapping the others."""
+        """Return whether a person's samples are penalised for overlapping the others."""
         ...
 
     def judge(
@@ -120,15 +120,15 @@ class OcclusionPolicy(Protocol):
         view: FrameView,
         rng: np.random.Generator,
     ) -> TrackedPerson:
-        """Tell how well a person is seen after its samples were weighed, and where it is supposed to be."""
+        """Return how well a person is seen after its samples were weighed, and where it is supposed to be."""
         ...
 
     def searches(self, person: TrackedPerson) -> bool:
-        """Tell whether a hidden person's samples go on looking for it."""
+        """Return whether a hidden person's samples go on looking for it."""
         ...
 
     def remembers_lost(self, person: TrackedPerson) -> bool:
-        """Tell whether a person who is given up without having been hidden is remembered."""
+        """Return whether a person who is given up without having been hidden is remembered."""
         ...
 
     def whereabouts(
@@ -138,7 +138,7 @@ class OcclusionPolicy(Protocol):
         ...
 
     def can_compare(self, found: TrackedPerson, lost: TrackedPerson) -> bool:
-        """Tell whether enough is seen of a newly found person to say whether it is one who was lost."""
+        """Return whether enough is seen of a newly found person to say whether it is one who was lost."""
         ...
 
     def recognised(
@@ -148,7 +148,7 @@ class OcclusionPolicy(Protocol):
         ...
 
     def is_shown(self, person: TrackedPerson, region: Regions, view: FrameView) -> bool:
-        """Tell whether a hidden person, supposed in a region (4,) [px] in the image, is shown."""
+        """Return whether a hidden person, supposed in a region (4,) [px] in the image, is shown."""
         ...
 
 

@@ -70,7 +70,7 @@ def _strength(people: Floats, view: FrameView) -> Features:
 
 
 def _ends(people: Floats, view: FrameView) -> tuple[Features, Features]:
-    """Give the rows (M,) of heads and feet in image heights."""
+    """Return the rows (M,) of heads and feet in image heights."""
     y, h = people[:, Y].astype(np.float64), people[:, H]
     rows = view.image.shape[0]
     return (y - CROWN * h) / rows, (y + FOOT * h) / rows
@@ -112,7 +112,7 @@ def _described(view: FrameView, areas: Floats, height: Floats, holes: Floats | N
 
 
 def boxes(people: Floats) -> Floats:
-    """Give the boxes (M, 4) of people: left, top, right, bottom [px]; head to feet, as wide as the body."""
+    """Return the boxes (M, 4) of people: left, top, right, bottom [px]; head to feet, as wide as the body."""
     x, y, w, h = (people[:, k] for k in (X, Y, W, H))
     return np.stack([x - w, y - np.float32(CROWN) * h, x + w, y + np.float32(FOOT) * h], axis=1)
 

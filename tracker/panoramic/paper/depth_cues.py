@@ -64,7 +64,7 @@ class Background:
     subtraction: Subtraction
 
     def silhouette(self, image: NDArray[np.uint8]) -> Mask:
-        """Tell which pixels (H, W) of an RGB image (H, W, 3) differ from the background.
+        """Return which pixels (H, W) of an RGB image (H, W, 3) differ from the background.
 
         Raises:
             BadInput: an image of another size.
@@ -196,7 +196,7 @@ def _wrapped(column: float, width: int) -> float:
 
 
 def covering_arc(columns: NDArray[np.int64]) -> tuple[int, int]:
-    """Give first column and number of columns of the shortest arc that holds every filled one of (W,)."""
+    """Return first column and number of columns of the shortest arc that holds every filled one of (W,)."""
     filled = np.flatnonzero(columns)
     steps = np.diff(filled, append=filled[0] + len(columns))
     widest = int(np.argmax(steps))

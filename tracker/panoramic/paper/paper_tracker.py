@@ -93,7 +93,7 @@ class _TrackedPerson:
     estimate: Estimate
 
     def age_steps(self, time_s: float) -> float:
-        """Tell how many steps of the filter have gone since the person was last seen."""
+        """Return how many steps of the filter have gone since the person was last seen."""
         return (time_s - self.seen_s) / STEP_S
 
 
@@ -145,7 +145,7 @@ class PanoramicPaperTracker:
             raise BadInput(f"camera {PANORAMA!r}: the tracker wants one that sees all round")
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Take in the next frame and tell where the person is, if somebody is there.
+        """Take in the next frame and tell where the person is, if a person is there.
 
         Raises:
             BadInput: an image that is none, or of another camera than the networks were trained on.

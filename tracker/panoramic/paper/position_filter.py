@@ -68,7 +68,7 @@ class PositionFilter:
         return Estimate(position_m=measured_m, covariance_m2=self.noise.measurement_m2)
 
     def predict(self, before: Estimate, steps: float = 1.0) -> Estimate:
-        """Tell what to expect so many steps of `STEP_S` later."""
+        """Return what to expect so many steps of `STEP_S` later."""
         return Estimate(
             position_m=before.position_m + steps * before.velocity_m,  # Eq. 5
             covariance_m2=before.covariance_m2 + steps * self.noise.step_m2,  # Eq. 6

@@ -23,7 +23,7 @@ UP: Final = 22
 
 PEOPLE, NEW, KNOWN = 0, 1, 2
 LAYERS: Final = 3
-"""Shares of a cell's pixels: on people, unlike the background, and not covered by somebody nearer."""
+"""Shares of a cell's pixels: on people, unlike the background, and not covered by a person nearer."""
 
 PATCH: Final = LAYERS * ACROSS * UP
 

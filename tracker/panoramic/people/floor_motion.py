@@ -39,7 +39,7 @@ class FloorMotion:
 
     @classmethod
     def begin(cls, place_m: Floats, error_m2: Floats) -> FloorMotion:
-        """Start at a measured place (2,) with an error (2, 2), as somebody who may walk anywhere."""
+        """Start at a measured place (2,) with an error (2, 2), as a person who may walk anywhere."""
         covariance = np.zeros((4, 4))
         covariance[:2, :2] = error_m2
         covariance[2, 2] = covariance[3, 3] = FIRST_SPEED_SD_M_S**2

@@ -41,7 +41,7 @@ class PanoramaScene:
         image: (H, W, 3) uint8 RGB.
         foreground: (H, W) how surely each pixel is on a person.
         new: (H, W) how unlike the background it is, 0..1.
-        covered: (H, W) 1 where somebody who has been found is, 0 elsewhere.
+        covered: (H, W) 1 where a person who has been found is, 0 elsewhere.
         calibration: of the camera.
         figures: both, ready to be asked; renewed by `cover`.
     """
@@ -70,7 +70,7 @@ class PanoramaScene:
         self.figures = FigureMap.build(self.foreground, self.new, self.covered, self.calibration)
 
     def hidden_share(self, bearing_rad: float, distance_m: float) -> float:
-        """Tell which share of a body at a place, as far as it is in the image, is covered by others."""
+        """Return which share of a body at a place, as far as it is in the image, is covered by others."""
         left, top, width, height = self.box(bearing_rad, distance_m)
         top, bottom = max(top + 0.5, 0.0), min(top + height + 0.5, float(self.calibration.height))
         if bottom - top < 1.0:
@@ -80,16 +80,16 @@ class PanoramaScene:
         return 1.0 - known / (0.5 * width * (bottom - top))
 
     def clothing(self, bearing_rad: float, distance_m: float) -> BandColours:
-        """Tell what who stands there looks like, as far as nobody nearer covers it."""
+        """Return what who stands there looks like, as far as nobody nearer covers it."""
         return look_at(self.image, self.foreground, self.covered, bearing_rad, distance_m, self.calibration)
 
     def box(self, bearing_rad: float, distance_m: float) -> Box:
-        """Give the box [px] of somebody upright, which may reach beyond the image and over the seam."""
+        """Return the box [px] of a person upright, which may reach beyond the image and over the seam."""
         return person_box(bearing_rad, distance_m, self.calibration)
 
 
 def person_box(bearing_rad: float, distance_m: float, calibration: PanoramaCalibration) -> Box:
-    """Give the box [px] of somebody upright; one across the seam reaches beyond the right border."""
+    """Return the box [px] of a person upright; one across the seam reaches beyond the right border."""
     width_m, height_m = BODY_M
     top, bottom = calibration.row(distance_m, height_m), calibration.row(distance_m, 0.0)
     width = 2.0 * math.atan2(width_m / 2.0, distance_m) / math.tau * calibration.width
@@ -99,7 +99,7 @@ def person_box(bearing_rad: float, distance_m: float, calibration: PanoramaCalib
 
 
 def _outline(distance_m: float, calibration: PanoramaCalibration) -> tuple[Floats, Floats]:
-    """Give rows and half widths [px] of the outline, from its lower end up."""
+    """Return rows and half widths [px] of the outline, from its lower end up."""
     lowest, per_rad = calibration.height + 1.0, calibration.width / math.tau
     rows = [calibration.row(distance_m, height) for _, height in _OUTLINE_M]
     halves = [math.atan2(half, distance_m) * per_rad for half, _ in _OUTLINE_M]
@@ -161,7 +161,7 @@ def promising_places(figures: FigureMap, most: int) -> Floats:
 
 @lru_cache(maxsize=8)
 def _grid(calibration: PanoramaCalibration) -> tuple[Floats, Floats, Floats]:
-    """Give bearings (N,), distances (N,), and (N, 4, 4) left, right, top, bottom [px] of the parts."""
+    """Return bearings (N,), distances (N,), and (N, 4, 4) left, right, top, bottom [px] of the parts."""
     bearings, distances = np.tile(_BEARINGS, len(_RINGS)), np.repeat(_RINGS, len(_BEARINGS))
     width = calibration.width
     middle = np.remainder((0.5 - bearings / math.tau) * width, width)
@@ -195,7 +195,7 @@ def _worth(sums: Map, parts: Floats) -> Floats:
                 continue
             area = (right - left) * (bottom - top)
             seen = between(sums, PEOPLE, left, right, top, bottom) / area
-            if part == 0 and seen < _LEAST * _LITTLE:  # too few to be somebody, whatever is known
+            if part == 0 and seen < _LEAST * _LITTLE:  # too few to be a person, whatever is known
                 continue
             known = between(sums, KNOWN, left, right, top, bottom) / area
             if part > 0 or known > _LEAST_KNOWN:

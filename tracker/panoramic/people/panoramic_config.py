@@ -7,16 +7,16 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SightingConfig:
-    """When somebody is taken to be seen.
+    """When a person is taken to be seen.
 
     Attributes:
         least_evidence: log odds from which a patch shows the person.
         error_share: the part of the error that the model tells which counts: it was taught with more examples
             than those by which its errors were learned.
-        gate: squared Mahalanobis distance from which a sighting is of somebody else.
+        gate: squared Mahalanobis distance from which a sighting is of another person.
         wide_m: standard deviation of a predicted place from which its neighbourhood is looked at, too [m].
         reach_m: how far to either side that is [m].
-        partly_share: share of the body behind others from which somebody is hidden in part.
+        partly_share: share of the body behind others from which a person is hidden in part.
         hidden_share: likewise from which who is not seen is hidden.
         blind_share: likewise from which nothing is to be seen.
     """
@@ -36,10 +36,10 @@ class LifespanConfig:
     """When tracks begin and end.
 
     Attributes:
-        birth_sightings, birth_s: in so many images somebody must be seen to be believed, or in two so long
+        birth_sightings, birth_s: in so many images a person must be seen to be believed, or in two so long
             [s] apart.
-        birth_trust: log odds from which somebody new is believed.
-        return_trust: log odds from which somebody is believed who looks like one who went.
+        birth_trust: log odds from which a person new is believed.
+        return_trust: log odds from which a person is believed who looks like one who went.
         death_trust: log odds below which nobody is there.
         most_trust: log odds of a single image count as no more than this.
         miss: log odds of an image in which who should be there is not seen.
@@ -49,7 +49,7 @@ class LifespanConfig:
         newcomer_s: who is not believed yet and not seen for longer is forgotten [s].
         unseen_s: who is not seen for longer, and hidden by nobody, is gone [s].
         hidden_s: who is hidden for longer is gone [s].
-        apart_m: nobody is found nearer to somebody else than this [m].
+        apart_m: nobody is found nearer to another person than this [m].
         double_m: two who are nearer to each other than this are one [m].
     """
 
@@ -76,9 +76,9 @@ class IdentityConfig:
 
     Attributes:
         alike: unlikeness of looks up to which who comes is one who went.
-        strange: unlikeness from which somebody looks like somebody else.
-        strange_s: for how long somebody must, to be somebody else [s].
-        reach_m, fastest_m_s: how far from where it was lost somebody may be found, at once [m] and with time.
+        strange: unlikeness from which a person looks like another person.
+        strange_s: for how long a person must, to be another person [s].
+        reach_m, fastest_m_s: how far from where it was lost a person may be found, at once [m] and with time.
         forget_s: who has been gone for longer is not recognised [s].
     """
 

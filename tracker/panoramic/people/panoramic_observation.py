@@ -21,7 +21,7 @@ _AROUND = np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)], np.float64)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Sighting:
-    """Somebody seen.
+    """A person seen.
 
     Attributes:
         evidence: log odds that it is a person.
@@ -52,7 +52,7 @@ class Onlooker:
     config: SightingConfig
 
     def expected(self, motion: FloorMotion, scene: PanoramaScene) -> Sighting | None:
-        """Look where somebody is expected; None if nobody is there."""
+        """Look where a person is expected; None if nobody is there."""
         places = motion.place_m[None]
         spread = math.sqrt(float(np.trace(motion.place_m2)) / 2.0)
         if spread > self.config.wide_m:
@@ -73,7 +73,7 @@ class Onlooker:
         return None if seen is None or seen.evidence < self.config.least_evidence else seen
 
     def polar(self, place_m: Floats) -> tuple[float, float]:
-        """Give bearing [rad] and distance [m] of a place (2,) of the room."""
+        """Return bearing [rad] and distance [m] of a place (2,) of the room."""
         x, y = self.pose.points_to_local(place_m).tolist()
         return math.atan2(y, x), max(math.hypot(x, y), NEAREST_M)
 
@@ -97,7 +97,7 @@ class Onlooker:
 
 
 def _axes(angle: float) -> Floats:
-    """Give unit vectors away from the robot and to the left, as columns."""
+    """Return unit vectors away from the robot and to the left, as columns."""
     cosine, sine = math.cos(angle), math.sin(angle)
     return np.array([[cosine, -sine], [sine, cosine]])
 

@@ -96,7 +96,7 @@ class PanoramicTracker:
         self._persons = self._named(self._kept(known, life), life)
 
     def _checked(self, calibrations: Mapping[str, Calibration]) -> PanoramaCalibration:
-        """Give the camera's calibration, if it is one that the model was trained on."""
+        """Return the camera's calibration, if it is one that the model was trained on."""
         camera = calibrations.get(PANORAMA)
         if camera is self._camera and self._camera is not None:
             return self._camera
@@ -127,7 +127,7 @@ class PanoramicTracker:
     def _with_newcomers(
         self, known: Sequence[PanoramicPerson], scene: PanoramaScene, looker: Onlooker, life: Life
     ) -> list[PanoramicPerson]:
-        """Look where nobody is known; who is found is somebody who was out of sight, or new."""
+        """Look where nobody is known; who is found is a person who was out of sight, or new."""
         config, everybody = self.config.life, list(known)
         for polar in promising_places(scene.figures, config.newcomers):
             seen = looker.at(scene, polar[None])
@@ -172,7 +172,7 @@ class PanoramicTracker:
         return tuple(sorted(known, key=lambda one: (one.id == 0, one.id)))
 
     def _is_believed(self, person: PanoramicPerson, life: Life) -> bool:
-        """Tell whether somebody has been seen for long and surely enough; less will do for who returns."""
+        """Return whether a person has been seen for long and surely enough; less will do for who returns."""
         config = self.config.life
         if not life.is_settled(person) or person.trust < config.return_trust:
             return False
@@ -210,7 +210,7 @@ def _hider(bearing: float, nearer: Sequence[PanoramicPerson], looker: Onlooker) 
 
 
 def _taken(seen: Sighting, scene: PanoramaScene) -> BandColours:
-    """Tell what somebody looks like, and take that one out of the picture."""
+    """Return what a person looks like, and take that one out of the picture."""
     clothing = scene.clothing(seen.bearing_rad, seen.distance_m)
     scene.cover(seen.bearing_rad, seen.distance_m)
     return clothing

@@ -25,11 +25,11 @@ class PanoramicPerson:
         lasting_m2: (2, 2) covariance of the place that further images do not lessen, in room coordinates.
         born_s, seen_s: when it was seen first, and last [s].
         sightings: in how many images.
-        trust: log odds that somebody is there, over the newest images.
+        trust: log odds that a person is there, over the newest images.
         status: how well it is seen; a newcomer is tentative until it is believed.
         looks: its colours, over time.
         newest: its colours in the last image in which it was seen whole.
-        strange_s: for how long it has looked like somebody else [s].
+        strange_s: for how long it has looked like another person [s].
         occluder: id of who hides it.
     """
 
@@ -48,7 +48,7 @@ class PanoramicPerson:
 
     @property
     def confidence(self) -> float:
-        """0..1, how surely somebody is there."""
+        """0..1, how surely a person is there."""
         return 1.0 / (1.0 + math.exp(-self.trust))
 
     @property
@@ -57,7 +57,7 @@ class PanoramicPerson:
         return self.status is not Status.TOTALLY_OCCLUDED
 
     def known_as(self, known: PanoramicPerson) -> PanoramicPerson:
-        """Take somebody new for one who is known: the number, the age and the looks are that one's."""
+        """Take a person new for one who is known: the number, the age and the appearance is that one's."""
         born_s = min(known.born_s, self.born_s)
         return replace(self, id=known.id, born_s=born_s, strange_s=0.0, clothing=known.clothing)
 
@@ -82,7 +82,7 @@ class Life:
     dt_s: float
 
     def initiate(self, seen: Sighting, clothing: BandColours) -> PanoramicPerson:
-        """Begin with somebody who is seen for the first time."""
+        """Begin with a person who is seen for the first time."""
         return PanoramicPerson(
             id=0,
             motion=FloorMotion.begin(seen.place_m, seen.error_m2),
@@ -99,7 +99,7 @@ class Life:
     def seen(
         self, person: PanoramicPerson, seen: Sighting, clothing: BandColours, occluder: int | None
     ) -> PanoramicPerson:
-        """Take in that a person is seen, whole or with somebody in front."""
+        """Take in that a person is seen, whole or with a person in front."""
         is_whole, passed_s = occluder is None, self.time_s - person.seen_s
         is_strange = is_whole and person.clothing.unlikeness(clothing) > self.config.identity.strange
         return replace(
@@ -129,12 +129,12 @@ class Life:
         )
 
     def is_gone(self, person: PanoramicPerson) -> bool:
-        """Tell whether somebody has been out of sight for too long, or was nobody."""
+        """Return whether a person has been out of sight for too long, or was nobody."""
         unseen_s = self.time_s - person.seen_s
         return unseen_s > self._patience_s(person) or person.trust < self.config.life.death_trust
 
     def is_settled(self, person: PanoramicPerson) -> bool:
-        """Tell whether somebody is seen, and has been for long enough to be believed."""
+        """Return whether a person is seen, and has been for long enough to be believed."""
         life = self.config.life
         has_stayed = person.sightings > 1 and self.time_s - person.born_s >= life.birth_s - _ROUNDING_S
         return person.is_seen and (has_stayed or person.sightings >= life.birth_sightings)
@@ -147,7 +147,7 @@ class Life:
         return not person.is_seen and way < reach and person.clothing.unlikeness(clothing) < identity.alike
 
     def _patience_s(self, person: PanoramicPerson) -> float:
-        """Tell for how long somebody may stay unseen."""
+        """Return for how long a person may stay unseen."""
         life = self.config.life
         if person.id == 0:
             return life.newcomer_s
@@ -164,7 +164,7 @@ class Life:
 
 
 class Register:
-    """Hands out numbers, and remembers the looks of those who are gone.
+    """Hands out numbers, and remembers the appearance of those who are gone.
 
     Args:
         config: settings.
@@ -181,7 +181,7 @@ class Register:
         self._gone = tuple(one for one in known if time_s - one.seen_s < self._config.forget_s)
 
     def named(self, person: PanoramicPerson, time_s: float) -> PanoramicPerson:
-        """Give somebody a number: the one that it had before, or a new one."""
+        """Return a person a number: the one that it had before, or a new one."""
         known = self.recognised(person, time_s)
         if known is None:
             self._newest += 1
@@ -190,7 +190,7 @@ class Register:
         return person.known_as(known)
 
     def resolve_swaps(self, persons: Sequence[PanoramicPerson], time_s: float) -> tuple[PanoramicPerson, ...]:
-        """Give people who have looked like somebody else for long the number of that one, or a new one."""
+        """Return people who have looked like another person for long the number of that one, or a new one."""
         strangers = [one for one in persons if one.id and one.strange_s >= self._config.strange_s]
         if not strangers:
             return tuple(persons)
@@ -203,7 +203,7 @@ class Register:
         return tuple(right[one.id] if one in strangers else one for one in persons)
 
     def recognised(self, person: PanoramicPerson, time_s: float) -> PanoramicPerson | None:
-        """Find who of those who are gone this may be, by looks and by the way; None for nobody."""
+        """Find who of those who are gone this may be, by appearance and by the way; None for nobody."""
         best, least = None, self._config.alike
         for one in self._gone:
             way = float(np.linalg.norm(one.motion.place_m - person.motion.place_m))

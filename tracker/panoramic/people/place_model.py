@@ -1,4 +1,4 @@
-"""What was learned of people in patches: whether somebody is there, where exactly, and how sure that is."""
+"""What was learned of people in patches: whether a person is there, where exactly, and how sure that is."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class PlaceModel:
     """Networks that read patches.
 
     Attributes:
-        presence: to the log odds that somebody is there.
+        presence: to the log odds that a person is there.
         place: to the offset of the person [m].
         doubt: to the logarithms of the offset's standard deviations [m].
     """
@@ -54,7 +54,7 @@ class PlaceModel:
     doubt: DenseNetwork
 
     def look(self, patches: Map, distance_m: NDArray[np.float64]) -> PlaceEstimates:
-        """Tell what patches (N, PATCH) at distances (N,) show."""
+        """Return what patches (N, PATCH) at distances (N,) show."""
         inputs = with_distance(patches, distance_m)
         return PlaceEstimates(
             evidence=self.presence.predict(inputs)[:, 0],

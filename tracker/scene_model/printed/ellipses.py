@@ -112,7 +112,7 @@ def propagated(state: Floats, config: EllipseConfig, rng: np.random.Generator) -
 
 
 def inside(state: Floats, places_m: Floats, scale: float) -> Bools:
-    """Tell which places (N, 2) are in an ellipse, made larger by a factor."""
+    """Return which places (N, 2) are in an ellipse, made larger by a factor."""
     return np.asarray((((places_m - state[:2]) / (scale * state[4:6])) ** 2).sum(axis=1) < 1.0)
 
 
