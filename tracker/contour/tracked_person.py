@@ -46,7 +46,7 @@ class TrackedPerson:
         is_behind: whether those in front explain why it is not seen.
         hidden_frames: for how many frames it has been hidden.
         hidden_s: for how long it has been hidden [s].
-        looks: what it looked like of late, by which its samples are compared; None until that was seen.
+        appearance: descriptor learned of late, by which its samples are compared; None until that was seen.
         is_unidentified: whether it may yet turn out to be a person who was lost.
     """
 

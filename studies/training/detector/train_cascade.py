@@ -93,9 +93,9 @@ class CascadeTraining(Specification[CascadeData]):
 
     sequences: int = option(600, "Worlds to train on.", minimum=5, maximum=2000)
     windows: tuple[str, ...] = option(
-        tuple(WindowKind),
+        tuple(kind.value for kind in WindowKind),
         "Train trees for people who are mostly in the image, or cut off; the others stay as they are.",
-        choices=tuple(WindowKind),
+        choices=tuple(kind.value for kind in WindowKind),
     )
     only_boxes: bool = option(
         False, "Train the regression of boxes alone; trees that score windows stay as they are."
