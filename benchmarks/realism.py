@@ -103,7 +103,7 @@ def main(chosen: Sequence[Path], others: Sequence[Path]) -> None:
         for clips, what in ((chosen, "chosen"), (others, "others")):
             found = compare_images([folder], clips)
             write_comparison(found, OUT / f"{folder.name}_{what}.html")
-            row += [describe_auc(found.told), _words(found.told_people)]
+            row += [describe_auc(found.separability), _words(found.of_people)]
         table.add_row(name, *row)
     Console(width=160).print(table)
 
@@ -146,8 +146,8 @@ def _changed(name: str, changes: Sequence[Change]) -> Scenario:
     return parse_scenario(data, source=name, folder=LIBRARY)
 
 
-def _words(told: Separability | None) -> str:
-    return "" if told is None else describe_auc(told)
+def _words(separability: Separability | None) -> str:
+    return "" if separability is None else describe_auc(separability)
 
 
 if __name__ == "__main__":

@@ -48,7 +48,7 @@ class DetectAndAssociate:
         """Detect, and associate."""
         found = self._detector.detect(frame)
         corners = np.concatenate([found.box[:, :2], found.box[:, :2] + found.box[:, 2:]], axis=1)
-        tracked = self._tracker.update(sv.PeerDetections(xyxy=corners, confidence=found.confidence))
+        tracked = self._tracker.update(sv.Detections(xyxy=corners, confidence=found.confidence))
         is_known = np.asarray(tracked.tracker_id).reshape(-1) >= 0
         corners = tracked.xyxy[is_known]
         boxes = np.concatenate([corners[:, :2], corners[:, 2:] - corners[:, :2]], axis=1)

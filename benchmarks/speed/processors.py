@@ -41,12 +41,12 @@ OLD = {
 
 def first_difference(shot: Path, tracker: str, kernels: Path) -> tuple[int | None, int]:
     """Track a film on both: the first frame whose tracks differ, None if none does, and how many tracks."""
-    here, old = _told(shot, tracker, {}), _told(shot, tracker, {**OLD, "NUMBA_CACHE_DIR": str(kernels)})
+    here, old = _tracked(shot, tracker, {}), _tracked(shot, tracker, {**OLD, "NUMBA_CACHE_DIR": str(kernels)})
     differing = [number for number, pair in enumerate(zip(here, old, strict=True)) if pair[0] != pair[1]]
     return (differing[0] if differing else None), sum(count for count, _ in here)
 
 
-def _told(shot: Path, tracker: str, environment: dict[str, str]) -> list[list[object]]:
+def _tracked(shot: Path, tracker: str, environment: dict[str, str]) -> list[list[object]]:
     """Track a film in a process of its own: how many tracks each frame has, and the digest of them."""
     module = "benchmarks.speed.processors"
     command = [sys.executable, "-m", module, "--film", str(shot), "--trackers", tracker]

@@ -17,9 +17,9 @@ def list_command() -> None:
     from peopleboy.scenarios.files.suite import load_suite, suite_names
 
     suites = {name: f"suite: {' '.join(load_suite(name).description.split())}" for name in suite_names()}
-    told = library() | suites
-    width = max(map(len, told))
-    for name, description in told.items():
+    entries = library() | suites
+    width = max(map(len, entries))
+    for name, description in entries.items():
         click.echo(f"{name:{width}} {description}")
 
 

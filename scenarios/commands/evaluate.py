@@ -90,5 +90,5 @@ def evaluate(
         print_runs(groups, note=tell_note)
         print_comfort(comfort)
 
-    told = {tracker: score.to_json() for tracker, score in comfort.items()}
-    output.figures(lambda: figures_of_all(groups) | ({"comfort": told} if told else {}), show)
+    comforts = {tracker: score.to_json() for tracker, score in comfort.items()}
+    output.figures(lambda: figures_of_all(groups) | ({"comfort": comforts} if comforts else {}), show)

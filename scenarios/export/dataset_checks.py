@@ -80,10 +80,10 @@ def _check_images(run: Path) -> list[str]:
     for name, camera in cameras_of(run).items():
         every = about["rate_hz"] // (camera.rate_hz or about["rate_hz"])
         frames = range(1, about["frames"] + 1, every)
-        looks = [_look_into(run / folder) for folder, _, _ in image_folders({name: camera})]
-        wrong += [f"{name}: {fault}" for look in looks for fault in _faults(look, frames)]
+        views = [_look_into(run / folder) for folder, _, _ in image_folders({name: camera})]
+        wrong += [f"{name}: {fault}" for look in views for fault in _faults(look, frames)]
         # What is cold is black in 8 bits, whose other images still have content.
-        plain = set.intersection(*(_plain(look) for look in looks))
+        plain = set.intersection(*(_plain(look) for look in views))
         wrong += [f"{name}: {file} has no content" for file in sorted(plain)]
     return wrong
 

@@ -80,7 +80,7 @@ BODY_M: Final = 0.3
 BEFORE_S: Final = 2.0
 """[s] before something vanished, in which a person may have stood there."""
 
-TOLD_S: Final = 60.0
+REPORTED_S: Final = 60.0
 """[s] from when something vanished until it is told, at most: it may be hidden long before it is missed."""
 
 
@@ -93,7 +93,7 @@ class PersonPositions:
     def look(self, time_s: float, places_m: Iterable[tuple[float, float]]) -> None:
         """Take in where people are at an instant, (x, y) in the frame of the robot's first place."""
         self._places.append((time_s, tuple(places_m)))
-        while self._places[0][0] < time_s - TOLD_S - BEFORE_S:
+        while self._places[0][0] < time_s - REPORTED_S - BEFORE_S:
             self._places.popleft()
 
     def explain(self, happening: Happening) -> bool:

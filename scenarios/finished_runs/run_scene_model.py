@@ -37,7 +37,7 @@ _DIGITS = 3
 
 def scene_line(scene: VistaScene) -> str:
     """Return a frame as a line of JSON: time, who and what is there, and what happened."""
-    told = {
+    record = {
         "time_s": scene.time_s,
         "vista": scene.vista,
         "is_frozen": scene.is_frozen,
@@ -45,7 +45,7 @@ def scene_line(scene: VistaScene) -> str:
         "objects": [asdict(one) for one in scene.objects],
         "happenings": [asdict(one) for one in scene.happenings],
     }
-    return json.dumps(_rounded(told)) + "\n"
+    return json.dumps(_rounded(record)) + "\n"
 
 
 def write_map(surface: Surface, path: Path) -> None:

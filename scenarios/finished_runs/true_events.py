@@ -153,15 +153,15 @@ def thing_names(happenings: Sequence[Happening], events: Sequence[TrueEvent], fi
 
 def _matches(happenings: Sequence[Happening], events: Sequence[TrueEvent], first: Pose2) -> Iterator[_Match]:
     for k, happening in enumerate(happenings):
-        told = {"from": happening.from_m, "to": happening.to_m}
+        ends = {"from": happening.from_m, "to": happening.to_m}
         for n, event in enumerate(events):
             true = {"from": event.from_m, "to": event.to_m}
             ways = {
                 end: math.dist(place[:2], first.to_local(there))
-                for end in told
-                if (place := told[end]) is not None and (there := true[end]) is not None
+                for end in ends
+                if (place := ends[end]) is not None and (there := true[end]) is not None
             }
-            is_whole = len(ways) == sum(place is not None for place in told.values())
+            is_whole = len(ways) == sum(place is not None for place in ends.values())
             if event.is_about(happening.time_s) and is_whole and max(ways.values()) < NEAR_M:
                 is_half = len(ways) < len(event.places_m)
                 yield _Match(is_half, max(ways.values()), k, n, frozenset(ways))

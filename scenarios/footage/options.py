@@ -114,8 +114,8 @@ def check_first(picture: NDArray[Any], options: TrackOptions) -> None:
 def _check_inside(box: Box, width: int, height: int) -> None:
     left, top, right, bottom = corners(box)
     if not (left >= 0 and top >= 0 and right <= width and bottom <= height):
-        told = ",".join(f"{number:g}" for number in box)
-        raise BadInput(f"--start {told}: X,Y,W,H must lie inside the pictures, which are {width}x{height}")
+        given = ",".join(f"{number:g}" for number in box)
+        raise BadInput(f"--start {given}: X,Y,W,H must lie inside the pictures, which are {width}x{height}")
 
 
 def colour_picture(picture: NDArray[Any], where: str) -> NDArray[np.uint8]:

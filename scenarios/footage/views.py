@@ -45,8 +45,8 @@ class RgbdViews:
         self._options, self._rgbd = options, rgbd
         self._counts = DepthCounts(rgbd.depth, rgbd.m_per_count)
         folders = [_folder(path, image) for path, image in _folders(options, rgbd)]
-        told = [*rgbd.camera.notes, *(note for folder in folders for note in folder.notes)]
-        self.notes = list(dict.fromkeys(told))
+        all_notes = [*rgbd.camera.notes, *(note for folder in folders for note in folder.notes)]
+        self.notes = list(dict.fromkeys(all_notes))
         self._pairs = pair_up(*(folder.paths for folder in folders))
         self.expected = len(self._pairs.colour)
         self.numbers = folders[0].numbers
@@ -151,9 +151,9 @@ class ThermalViews:
         self._colour = None if options.colour is None else open_footage(options.colour)
         self.expected, self.is_exact = self._footage.expected, self._footage.is_exact
         self.numbers = self._footage.numbers
-        self.rate_hz = options.rate_hz or self._footage.rate_hz or self._told_rate() or DEFAULT_RATE_HZ
+        self.rate_hz = options.rate_hz or self._footage.rate_hz or self._given_rate() or DEFAULT_RATE_HZ
 
-    def _told_rate(self) -> float | None:
+    def _given_rate(self) -> float | None:
         """Read the rate from what lies beside the pictures."""
         path = find_info(self._options.footage)
         rate = None if path is None else rate_in(path)

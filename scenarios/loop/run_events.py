@@ -213,11 +213,11 @@ class RunEvents:
         if tick.mode != self._mode:
             found.append(("mode", "robot", tick.mode, tick.reason))
         self._mode = tick.mode
-        told = [
+        lines = [
             LogLine(frame=tick.frame, time_s=time_s, kind=kind, who=who, other=other, why=why)
             for kind, who, other, why in found
         ]
-        return told + [
+        return lines + [
             LogLine(
                 frame=tick.frame,
                 time_s=time_s,

@@ -87,7 +87,7 @@ class Recorder(RecordingWriter):
         self._is_lossless = is_lossless
         self._cameras = config.robot.cameras
         self._boxed = with_boxes(self._cameras)
-        self._tells_cameras = bool({*self._boxed} - {"thermal", "colour"})
+        self._reports_cameras = bool({*self._boxed} - {"thermal", "colour"})
         self._width = self._cameras["thermal"].camera.width
         self._colour_from_thermal = colour_from_thermal(self._cameras)
         self._backgrounds: dict[str, NDArray[np.uint8]] = {}
@@ -163,7 +163,7 @@ class Recorder(RecordingWriter):
     def _log_places(self, tick: Tick) -> None:
         self._has_places |= any(track.place is not None for track in tick.tracks)
         if self._has_places:
-            seen = self._sightings.update(tick) if self._tells_cameras else {}
+            seen = self._sightings.update(tick) if self._reports_cameras else {}
             places = marks.places(tick.tracks, seen)
             self.add(
                 PLACES, rr.Ellipsoids3D, centers=rounded(places.centre, METRE_STEP),

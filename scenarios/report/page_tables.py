@@ -174,8 +174,8 @@ def plain_figures(columns: Sequence[Column]) -> PageTable:
 def all_figures(columns: Sequence[Column]) -> PageTable:
     """Show every figure that some run has, with its usual name."""
     every = [scores for column in columns for scores in column.scores]
-    told = [f for f in FIGURES if f.group != FLOOR or any(map(f.is_defined_for, every))]
-    return _figures(columns, [(f.name, f.meaning, f.unit, _values(columns, f)) for f in told])
+    defined = [f for f in FIGURES if f.group != FLOOR or any(map(f.is_defined_for, every))]
+    return _figures(columns, [(f.name, f.meaning, f.unit, _values(columns, f)) for f in defined])
 
 
 def drive_figures(columns: Sequence[Column], group: str) -> PageTable:

@@ -200,9 +200,9 @@ def _unknown(columns: Sequence[Column]) -> list[str]:
     """Describe what tracks that were made elsewhere do not tell, a line a tracker."""
     adopted = {f.run.about.tracker: f.run.about.adopted for column in columns for f in column.runs}
     return [
-        f"the tracks of {name} were made elsewhere: their {listed(told.unknown)} are unknown"
-        for name, told in adopted.items()
-        if told is not None
+        f"the tracks of {name} were made elsewhere: their {listed(imported.unknown)} are unknown"
+        for name, imported in adopted.items()
+        if imported is not None
     ]
 
 

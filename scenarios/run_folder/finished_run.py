@@ -159,8 +159,8 @@ def read_run(folder: Path) -> dict[str, Any]:
     except (OSError, ValueError) as error:
         raise BadInput(f"{path}: cannot be read as a run; give the folder of a finished run") from error
     if isinstance(about, dict) and about.get("status") == "failed":
-        told = about.get("error")
-        why = f": {told['message']}" if isinstance(told, dict) and "message" in told else ""
+        failure = about.get("error")
+        why = f": {failure['message']}" if isinstance(failure, dict) and "message" in failure else ""
         raise BadInput(f"{path}: this run failed{why}; mend that, and run it again")
     if not isinstance(about, dict) or about.get("status") != "complete":
         raise BadInput(

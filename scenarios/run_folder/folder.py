@@ -103,7 +103,7 @@ class RunFolder:
             self._write_tables()
         state: Mapping[str, Any] = {"status": "complete" if self._is_complete and kind is None else "cut off"}
         if isinstance(error, Exception):
-            state = {"status": "failed", "error": _told(error)}
+            state = {"status": "failed", "error": _reported(error)}
         self._write_json("run.json", {**state, "frames": len(self._robot), **self._about})
 
     def write(self, tick: Tick, events: Sequence[Mapping[str, Any]]) -> None:
@@ -167,7 +167,7 @@ class RunFolder:
         (self.path / name).write_text(json.dumps(dict(content), indent=2) + "\n", encoding="utf-8")
 
 
-def _told(error: Exception) -> dict[str, str]:
+def _reported(error: Exception) -> dict[str, str]:
     """Describe what ended a run; bad input is explained in one line, and has no traceback."""
     if isinstance(error, BadInput):
         return {"message": str(error)}

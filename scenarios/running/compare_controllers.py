@@ -144,8 +144,8 @@ def show_comparison(scenario: str, runs: Mapping[Controller, Sequence[Figures]])
     """Print the table."""
     means = _means(runs)
     seeds = len(next(iter(runs.values())))
-    told = f"{seeds} seeds: mean [95 % interval]" if seeds > 1 else "one seed, which has no interval"
-    table = Table(title=f"{scenario}, {told}", title_justify="left", box=None)
+    amount = f"{seeds} seeds: mean [95 % interval]" if seeds > 1 else "one seed, which has no interval"
+    table = Table(title=f"{scenario}, {amount}", title_justify="left", box=None)
     table.add_column("figure")
     for controller in means:
         table.add_column(str(controller), justify="right")
@@ -231,8 +231,8 @@ def _draw(
     figure = Figure(figsize=(3.6 * _COLUMNS, 0.8 + rows * (1.1 + 0.32 * len(runs))), layout="constrained")
     FigureCanvasAgg(figure)
     seeds = len(next(iter(runs.values())))
-    told = "every seed, and the mean with its 95 % interval" if seeds > 1 else "one seed"
-    figure.suptitle(f"{scenario}: {told}")
+    amount = "every seed, and the mean with its 95 % interval" if seeds > 1 else "one seed"
+    figure.suptitle(f"{scenario}: {amount}")
     grid = figure.subplots(rows, _COLUMNS, squeeze=False)
     for axes, name in zip(grid.flat, names, strict=False):
         for row, controller in enumerate(runs):

@@ -248,8 +248,8 @@ def comfort_by_tracker(groups: Groups) -> Mapping[str, ComfortScore]:
         BadInput: a run has other figures than this version.
     """
     found = {tracker: [_figures(Path(run.name)) for run in runs] for tracker, runs in groups.items()}
-    told = {tracker: [figures for figures in runs if figures is not None] for tracker, runs in found.items()}
-    return {tracker: _mean(runs) for tracker, runs in told.items() if runs}
+    known = {tracker: [figures for figures in runs if figures is not None] for tracker, runs in found.items()}
+    return {tracker: _mean(runs) for tracker, runs in known.items() if runs}
 
 
 def _figures(folder: Path) -> list[float] | None:

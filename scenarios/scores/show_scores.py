@@ -121,8 +121,8 @@ def _by_what(groups: Groups) -> str:
     held = {tracker: {str(run.by) for run in runs if run.by} for tracker, runs in groups.items()}
     if len(set().union(*held.values())) < 2:
         return ""
-    told = [f"{tracker} against {' and '.join(sorted(by))}" for tracker, by in held.items() if by]
-    return f" Boxes are held by their own truth: {'; '.join(told)}."
+    references = [f"{tracker} against {' and '.join(sorted(by))}" for tracker, by in held.items() if by]
+    return f" Boxes are held by their own truth: {'; '.join(references)}."
 
 
 def _interval(interval: Interval, unit: str) -> str:

@@ -164,7 +164,7 @@ class SceneStatistics:
     name: str
     pictures: int
     people: int
-    looks: ImageStatistics
+    stats: ImageStatistics
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -178,7 +178,7 @@ class Side:
         people: patches (32, 32) of people to be shown.
     """
 
-    looks: ImageStatistics
+    stats: ImageStatistics
     scenes: tuple[SceneStatistics, ...]
     background: tuple[Grey, ...]
     people: tuple[Grey, ...]
@@ -198,15 +198,15 @@ class Comparison:
 
     rendered: Side
     real: Side
-    told: Separability
-    told_people: Separability | None
+    separability: Separability
+    of_people: Separability | None
     lacking: str
 
     def to_json(self) -> dict[str, Any]:
         """As JSON can hold it."""
         return {
-            "auc": asdict(self.told),
-            "auc_people": None if self.told_people is None else asdict(self.told_people),
+            "auc": asdict(self.separability),
+            "auc_people": None if self.of_people is None else asdict(self.of_people),
             "lacking": self.lacking,
             "rendered": _figures(self.rendered),
             "real": _figures(self.real),
@@ -236,17 +236,17 @@ def compare_images(rendered: Sequence[Path], real: Sequence[Path], seed: int = 0
         BadInput: a folder without pictures or truth, pictures that cannot be used, too few scenes or patches.
     """
     sides = [_cut(find_clips(folders), seed) for folders in (rendered, real)]
-    told = classify_patches(
+    separability = classify_patches(
         [scene.anywhere for scene in sides[0]], [scene.anywhere for scene in sides[1]], seed, "patches"
     )
-    told_people, lacking = None, ""
+    of_people, lacking = None, ""
     try:
-        told_people = classify_patches(
+        of_people = classify_patches(
             [scene.people for scene in sides[0]], [scene.people for scene in sides[1]], seed, "people"
         )
     except BadInput as error:
         lacking = str(error)
-    return Comparison(_side(sides[0], seed), _side(sides[1], seed), told, told_people, lacking)
+    return Comparison(_side(sides[0], seed), _side(sides[1], seed), separability, of_people, lacking)
 
 
 def _cut(clips: Sequence[Clip], seed: int) -> list[_Cut]:
@@ -275,7 +275,7 @@ def _cut_scene(clips: Sequence[Clip], rng: np.random.Generator) -> _Cut:
 def _side(scenes: Sequence[_Cut], seed: int) -> Side:
     rng = np.random.default_rng([seed, 64])
     return Side(
-        looks=measure_images([moment for scene in scenes for moment in scene.moments], rng),
+        stats=measure_images([moment for scene in scenes for moment in scene.moments], rng),
         scenes=tuple(
             SceneStatistics(
                 scene.name, len(scene.moments), len(scene.people), measure_images(scene.moments, rng)
@@ -295,21 +295,21 @@ def _in_turn(scenes: Sequence[Sequence[Grey]], rng: np.random.Generator) -> tupl
 
 
 def _figures(side: Side) -> dict[str, Any]:
-    return figures_of(side.looks) | {
+    return figures_of(side.stats) | {
         "scenes": {
-            scene.name: {"pictures": scene.pictures, "people": scene.people} | figures_of(scene.looks)
+            scene.name: {"pictures": scene.pictures, "people": scene.people} | figures_of(scene.stats)
             for scene in side.scenes
         }
     }
 
 
-def figures_of(looks: ImageStatistics) -> dict[str, float | None]:
+def figures_of(stats: ImageStatistics) -> dict[str, float | None]:
     """The figures of some pictures that are one number each; None where there is none."""
-    has_people = bool(len(looks.contrast))
+    has_people = bool(len(stats.contrast))
     return {
-        "background_deviation": looks.deviation,
-        "noise": None if np.isnan(looks.noise) else looks.noise,
-        "share_clipped": looks.clipped,
-        "contrast_median": float(np.median(looks.contrast)) if has_people else None,
-        "contrast_in_ring_median": float(np.median(looks.contrast_in_ring)) if has_people else None,
+        "background_deviation": stats.deviation,
+        "noise": None if np.isnan(stats.noise) else stats.noise,
+        "share_clipped": stats.clipped,
+        "contrast_median": float(np.median(stats.contrast)) if has_people else None,
+        "contrast_in_ring_median": float(np.median(stats.contrast_in_ring)) if has_people else None,
     }

@@ -54,7 +54,7 @@ def _chart(comparison: Comparison, title: str, across: str, draw: _Draw) -> Mark
     axes = figure.add_subplot()
     sides = (("rendered", comparison.rendered, "-"), ("real", comparison.real, (0, (4, 2))))
     for (name, side, dash), colour in zip(sides, SERIES, strict=False):
-        draw(axes, side.looks, {"color": colour, "ls": dash, "lw": 1.6, "label": name})
+        draw(axes, side.stats, {"color": colour, "ls": dash, "lw": 1.6, "label": name})
     axes.set_xlabel(across)
     axes.grid(color=LINE, lw=0.6)
     axes.spines[["top", "right"]].set_visible(False)
@@ -62,16 +62,16 @@ def _chart(comparison: Comparison, title: str, across: str, draw: _Draw) -> Mark
     return inline(figure, title, f"{title}: rendered beside real")
 
 
-def _grey(axes: Axes, looks: ImageStatistics, style: dict[str, Any]) -> None:
-    axes.step(GREY_EDGES[:-1], 100.0 * looks.grey, where="post", **style)
+def _grey(axes: Axes, stats: ImageStatistics, style: dict[str, Any]) -> None:
+    axes.step(GREY_EDGES[:-1], 100.0 * stats.grey, where="post", **style)
     axes.set_yscale("symlog", linthresh=1.0)
     axes.set_ylim(0.0, 110.0)
     axes.set_yticks([0, 1, 10, 100], ["0", "1", "10", "100"])
     axes.set_ylabel("pixels [%]")
 
 
-def _gradient(axes: Axes, looks: ImageStatistics, style: dict[str, Any]) -> None:
-    axes.step(np.maximum(GRADIENT_EDGES[:-1], 0.4), 100.0 * looks.gradient, where="post", **style)
+def _gradient(axes: Axes, stats: ImageStatistics, style: dict[str, Any]) -> None:
+    axes.step(np.maximum(GRADIENT_EDGES[:-1], 0.4), 100.0 * stats.gradient, where="post", **style)
     axes.set_xscale("log")
     axes.set_xticks([1, 10, 100], ["1", "10", "100"])
     axes.set_yscale("symlog", linthresh=1.0)
@@ -80,12 +80,12 @@ def _gradient(axes: Axes, looks: ImageStatistics, style: dict[str, Any]) -> None
     axes.set_ylabel("pixels [%]")
 
 
-def _spectrum(axes: Axes, looks: ImageStatistics, style: dict[str, Any]) -> None:
-    _power(axes, looks.spectrum, style)
+def _spectrum(axes: Axes, stats: ImageStatistics, style: dict[str, Any]) -> None:
+    _power(axes, stats.spectrum, style)
 
 
-def _noise(axes: Axes, looks: ImageStatistics, style: dict[str, Any]) -> None:
-    _power(axes, looks.noise_spectrum, style)
+def _noise(axes: Axes, stats: ImageStatistics, style: dict[str, Any]) -> None:
+    _power(axes, stats.noise_spectrum, style)
 
 
 def _power(axes: Axes, power: Any, style: dict[str, Any]) -> None:
@@ -98,9 +98,9 @@ def _power(axes: Axes, power: Any, style: dict[str, Any]) -> None:
     axes.set_ylabel("power [grey²]")
 
 
-def _contrast(axes: Axes, looks: ImageStatistics, style: dict[str, Any]) -> None:
-    if len(looks.contrast):
-        shares = np.histogram(looks.contrast, CONTRAST_EDGES)[0] / len(looks.contrast)
+def _contrast(axes: Axes, stats: ImageStatistics, style: dict[str, Any]) -> None:
+    if len(stats.contrast):
+        shares = np.histogram(stats.contrast, CONTRAST_EDGES)[0] / len(stats.contrast)
         axes.step(CONTRAST_EDGES[:-1], 100.0 * shares, where="post", **style)
     axes.set_ylabel("people [%]")
 
@@ -160,22 +160,22 @@ def render_comparison(comparison: Comparison) -> str:
 
 def headline(comparison: Comparison) -> str:
     """Return how well patches are told apart."""
-    told, people = comparison.told, comparison.told_people
-    said = f"Rendered and real patches are told apart with an AUC of {describe_auc(told)}"
+    separability, people = comparison.separability, comparison.of_people
+    said = f"Rendered and real patches are told apart with an AUC of {describe_auc(separability)}"
     return f"{said}, people with {describe_auc(people)}." if people is not None else f"{said}."
 
 
-def describe_auc(told: Separability) -> str:
+def describe_auc(separability: Separability) -> str:
     """A mean and its interval."""
-    return f"{told.auc.mean:.3f} ({told.auc.low:.3f} to {told.auc.high:.3f})"
+    return f"{separability.auc.mean:.3f} ({separability.auc.low:.3f} to {separability.auc.high:.3f})"
 
 
 def table_rows(name: str, side: Side) -> list[tuple[str, ...]]:
     """Figures of a side, then of each of its scenes."""
     pictures = sum(scene.pictures for scene in side.scenes)
     people = sum(scene.people for scene in side.scenes)
-    rows = [(f"{name}, all", pictures, people, figures_of(side.looks))]
-    rows += [(scene.name, scene.pictures, scene.people, figures_of(scene.looks)) for scene in side.scenes]
+    rows = [(f"{name}, all", pictures, people, figures_of(side.stats))]
+    rows += [(scene.name, scene.pictures, scene.people, figures_of(scene.stats)) for scene in side.scenes]
     return [
         (
             label,

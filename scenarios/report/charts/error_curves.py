@@ -112,7 +112,7 @@ def _draw(
     figure = new_figure(_WIDTH_PT, _HEIGHT_PT)
     figure.set_layout_engine("constrained")
     axes = figure.add_subplot()
-    told = []
+    texts = []
     for (name, points), colour, dash in zip(curves.items(), SERIES, _DASHES, strict=False):
         x, mean, sd = ([getattr(p, key) for p in points] for key in ("x", "mean", "sd"))
         axes.errorbar(x, mean, sd, color=colour, ls=dash, lw=1.6, elinewidth=1.0, label=fill(name, 48))
@@ -120,7 +120,7 @@ def _draw(
         for p, said in zip(points, words, strict=True):
             (dot,) = axes.plot(p.x, p.mean, "o", ms=5.5, mfc=colour, mec="#ffffff", zorder=3, clip_on=False)
             set_tooltip(dot, f"{name} {said}")
-        told.append(f"{name}: {'; '.join(words)}")
+        texts.append(f"{name}: {'; '.join(words)}")
     axes.set(xlim=(edges[0], edges[-1]), xticks=ticks, xlabel=label)
     axes.set_ylim(0.0, top)
     axes.locator_params(axis="y", nbins=5)
@@ -130,7 +130,7 @@ def _draw(
     axes.tick_params(length=0.0, pad=5.0)
     if len(curves) > 1:
         figure.legend(loc="outside upper left", frameon=False, ncols=2)
-    return inline(figure, title, f"{title}. {'. '.join(told)}")
+    return inline(figure, title, f"{title}. {'. '.join(texts)}")
 
 
 def _value(point: CurvePoint, unit: str) -> str:

@@ -46,8 +46,8 @@ class TimelineRow:
     @property
     def words(self) -> str:
         """The same in words."""
-        told = [f"{start:.1f} to {end:.1f} s {look.words}" for start, end, look in self.bars]
-        return f"{self.label}: " + "; ".join(told + [words for _, words in self.marks])
+        texts = [f"{start:.1f} to {end:.1f} s {look.words}" for start, end, look in self.bars]
+        return f"{self.label}: " + "; ".join(texts + [words for _, words in self.marks])
 
 
 def truth_row(found: RunFindings, person: PersonHistory) -> TimelineRow:
@@ -60,8 +60,8 @@ def truth_row(found: RunFindings, person: PersonHistory) -> TimelineRow:
         kind = _HIDDEN.get(Visibility(view))
         return None if kind is None else BarStyle(kind, f"{kind} hidden {by}".rstrip() + aside, by)
 
-    looks = map(look, person.view.tolist(), person.is_counted.tolist(), _settled_hiders(person))
-    return TimelineRow("truth", _bars(found, looks))
+    spans = map(look, person.view.tolist(), person.is_counted.tolist(), _settled_hiders(person))
+    return TimelineRow("truth", _bars(found, spans))
 
 
 def track_row(found: RunFindings, person: PersonHistory) -> TimelineRow:
@@ -93,8 +93,8 @@ def track_row(found: RunFindings, person: PersonHistory) -> TimelineRow:
         for one in found.transfers
         if one.receiver == person.name and one.time_s not in changed
     ]
-    looks = map(look, person.state.tolist(), person.track.tolist())
-    return TimelineRow("track", _bars(found, looks), tuple(sorted(marks)))
+    spans = map(look, person.state.tolist(), person.track.tolist())
+    return TimelineRow("track", _bars(found, spans), tuple(sorted(marks)))
 
 
 def false_track_row(found: RunFindings) -> TimelineRow:
@@ -110,18 +110,22 @@ def mode_row(found: RunFindings) -> TimelineRow:
     """What the robot did, if that was more than one thing."""
     modes = found.files.robot["mode"].to_pylist()
     names = list(dict.fromkeys(modes))
-    why, reason, looks = {line.frame: line.why for line in found.run.events if line.kind == "mode"}, "", []
+    why, reason, spans = (
+        {line.frame: line.why for line in found.run.events if line.kind == "mode"},
+        "",
+        [],
+    )
     for frame, mode in enumerate(modes, start=1):
         reason = why.get(frame, reason)
-        looks.append(
+        spans.append(
             BarStyle(f"mode{names.index(mode) % 4}", f"{mode}{': ' if reason else ''}{reason}", mode)
         )
-    return TimelineRow("robot", _bars(found, looks) if len(names) > 1 else ())
+    return TimelineRow("robot", _bars(found, spans) if len(names) > 1 else ())
 
 
 def hidden_words(found: RunFindings, person: PersonHistory) -> str:
     """Return when the person was hidden, by whom, how much, and for how long wholly."""
-    rate, told = found.run.rate_hz, []
+    rate, texts = found.run.rate_hz, []
     for span in spans(np.isin(person.view, tuple(_HIDDEN))):
         if span.value:
             here = slice(span.start, span.end)
@@ -133,8 +137,8 @@ def hidden_words(found: RunFindings, person: PersonHistory) -> str:
                 else f"to {np.nanmax(person.occluded[here]):.0%}"
             )
             when = f"{'in all ' if wholly_s else ''}{span.start / rate:.1f} to {seconds(span.end / rate)}"
-            told.append(f"{how}{' by ' if by else ''}{by} ({when})")
-    return f"Hidden {', '.join(told)}." if told else ""
+            texts.append(f"{how}{' by ' if by else ''}{by} ({when})")
+    return f"Hidden {', '.join(texts)}." if texts else ""
 
 
 def _wholly_hidden(occluded: Floats) -> int:
@@ -143,10 +147,10 @@ def _wholly_hidden(occluded: Floats) -> int:
     return int((occluded[starts[0] :] >= TOTAL_ENDS).sum()) if len(starts) else 0
 
 
-def _bars(found: RunFindings, looks: Iterator[BarStyle | None] | Sequence[BarStyle | None]) -> Any:
+def _bars(found: RunFindings, spans: Iterator[BarStyle | None] | Sequence[BarStyle | None]) -> Any:
     """Make a bar of every longest run of frames that look alike."""
     bars, start, rate = [], 0, found.run.rate_hz
-    for look, alike in groupby(looks):
+    for look, alike in groupby(spans):
         end = start + len(list(alike))
         if look is not None:
             bars.append((start / rate, end / rate, look))

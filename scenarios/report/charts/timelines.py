@@ -35,7 +35,7 @@ from peopleboy.scenarios.report.findings.histories import (
 from peopleboy.scenarios.report.findings.run_findings import RunFindings
 from peopleboy.scenarios.report.findings.sentences import spoken
 
-_LOOKS: Final[dict[str, dict[str, Any]]] = {
+_APPEARANCES: Final[dict[str, dict[str, Any]]] = {
     "seen": {"fc": "#cfdce8"},
     "uncounted": {"fc": "#f1f4f7", "ec": "#b9c4cf", "lw": 0.8},
     "partly": {"fc": "#dfe7ef"},
@@ -176,7 +176,7 @@ def _draw_bar(
     axes: Axes, span_s: tuple[float, float], look: BarStyle, top: float, height: float, points_per_s: float
 ) -> None:
     start, end = span_s
-    style = {"fc": rgb(look.track)} if look.track else _LOOKS[look.kind]
+    style = {"fc": rgb(look.track)} if look.track else _APPEARANCES[look.kind]
     box = Rectangle((start, top), end - start, height, zorder=2, clip_on=False, **({"lw": 0.0} | style))
     set_tooltip(axes.add_patch(box), f"{start:.1f} to {end:.1f} s {look.words}")
     if look.kind in _STRIPES:

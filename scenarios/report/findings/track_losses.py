@@ -50,14 +50,16 @@ class ShortLosses:
     @property
     def words(self) -> str:
         """What is left out and why, in sentences; empty if nothing is."""
-        short, told = f"less than {STEADY_S:g} s", []
+        short, texts = f"less than {STEADY_S:g} s", []
         if self.breaks:
-            told = [
+            texts = [
                 f"Losses of {short} ({self.breaks} of them) are left out: the same number was shown again."
             ]
         if self.ends:
-            told.append(f"Ends of tracks that had been shown for {short} ({self.ends} of them) are left out.")
-        return " ".join([*told, "All of them are in events.jsonl."]) if told else ""
+            texts.append(
+                f"Ends of tracks that had been shown for {short} ({self.ends} of them) are left out."
+            )
+        return " ".join([*texts, "All of them are in events.jsonl."]) if texts else ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.cli import cli
-from peopleboy.scenarios.finished_runs.run_frames import TOLD_S, PersonPositions
+from peopleboy.scenarios.finished_runs.run_frames import REPORTED_S, PersonPositions
 from peopleboy.scenarios.finished_runs.run_scene_model import describe_change, true_events
 from peopleboy.scenarios.finished_runs.true_events import PersonNames, TrueEvent, matching, thing_names
 from peopleboy.scenarios.run_folder.finished_run import open_run
@@ -159,7 +159,7 @@ def test_what_vanishes_where_somebody_stood_was_no_thing() -> None:
     bodies.look(3.0, [(2.8, 0.35)])
     assert bodies.explain(GONE)
     assert not bodies.explain(replace(GONE, time_s=4.5))
-    bodies.look(3.0 + TOLD_S, [])
+    bodies.look(3.0 + REPORTED_S, [])
     assert bodies.explain(GONE)  # which is told late
     assert not bodies.explain(replace(GONE, change=Change.APPEARED, from_m=None, to_m=GONE.from_m))
     bodies.look(200.0, [])

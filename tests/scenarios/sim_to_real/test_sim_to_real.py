@@ -87,9 +87,9 @@ def test_contrast_and_deviation_are_those_that_were_painted() -> None:
     outside = np.ones(grey.shape, bool)
     outside[45:175, 84:136] = False
     assert background_deviation(moment(grey)) == pytest.approx(grey[outside].std())
-    looks = measure_images([moment(grey, grey)], RNG)
-    assert looks.clipped == 0.0
-    assert looks.grey.sum() == pytest.approx(1.0) == looks.gradient.sum()
+    stats = measure_images([moment(grey, grey)], RNG)
+    assert stats.clipped == 0.0
+    assert stats.grey.sum() == pytest.approx(1.0) == stats.gradient.sum()
 
 
 def test_patches_of_background_hold_nobody_and_people_are_all_as_high() -> None:
@@ -191,6 +191,6 @@ def test_one_scene_is_too_few_and_a_folder_must_be_there(
     assert_names(refusal(capsys, "sim-to-real", one, "--real", other, *out), "rendered", "at least 2")
     assert_names(refusal(capsys, "sim-to-real", tmp_path / "no", "--real", other, *out), "no such folder")
     (tmp_path / "mine.html").write_text("do not lose me")
-    told = refusal(capsys, "sim-to-real", one, "--real", other, "--out", tmp_path / "mine.html")
-    assert_names(told, "mine.html", "not be replaced")
+    separability = refusal(capsys, "sim-to-real", one, "--real", other, "--out", tmp_path / "mine.html")
+    assert_names(separability, "mine.html", "not be replaced")
     assert not (tmp_path / "page.html").exists()
