@@ -11,19 +11,24 @@ import click
 
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import OwnCodeFailed
-from peopleboy.scenarios.commands.browse import list_command, schema, show
 from peopleboy.scenarios.commands.evaluate import evaluate
 from peopleboy.scenarios.commands.export import export
 from peopleboy.scenarios.commands.import_tracks import import_tracks
+from peopleboy.scenarios.commands.inspect_commands import (
+    list_command,
+    report,
+    scene_model,
+    schema,
+    show,
+    view,
+)
 from peopleboy.scenarios.commands.many import compare, sweep
 from peopleboy.scenarios.commands.render import render
-from peopleboy.scenarios.commands.report import report
 from peopleboy.scenarios.commands.run import run
 from peopleboy.scenarios.commands.sim_to_real import sim_to_real
 from peopleboy.scenarios.commands.study import datasets, reproduce, tune
 from peopleboy.scenarios.commands.track import track
 from peopleboy.scenarios.commands.train import train
-from peopleboy.scenarios.commands.view import scene_model, view
 from peopleboy.scenarios.running.engine.task import TasksFailed
 
 FAILED = 1

@@ -3,16 +3,43 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 from pydantic import Field
 
 from peopleboy.settings import IN_DEGREES, Point, Share
 from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, ThermalConfig
 from peopleboy.sim.cameras.kinds import check_cameras
-from peopleboy.sim.named import Named
+
+# Cameras by name: an immutable mapping keeps frozen settings hashable.
+
+V = TypeVar("V")
+
+
+class Named(Mapping[str, V]):
+    """Values by name, in their order; unlike a `MappingProxyType` it can be sent to other processes."""
+
+    __slots__ = ("_values",)
+
+    def __init__(self, values: Mapping[str, V]) -> None:
+        self._values = dict(values)
+
+    def __getitem__(self, name: str) -> V:
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __hash__(self) -> int:
+        return hash(tuple(self._values.items()))
+
+    def __repr__(self) -> str:
+        return f"Named({self._values})"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

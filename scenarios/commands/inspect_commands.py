@@ -1,4 +1,4 @@
-"""Commands that look into a run: `view` its recording, `scene-model` runs the scene model over its images."""
+"""Commands that inspect runs and the library: `view`, `report`, `list`, `show`, `schema`."""
 
 from __future__ import annotations
 
@@ -12,6 +12,10 @@ from peopleboy.scenarios.commands.options import FieldsCommand, GivenOptions, Wh
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.running.run_options import RunOptions
+from collections.abc import Sequence
+
+from peopleboy.scenarios.commands.completion import complete_scenario
+from peopleboy.scenarios.commands.options import SEED
 
 
 @click.command()
@@ -69,3 +73,64 @@ def scene_model(folder: Path, no_heat: bool, given: GivenOptions[RunOptions]) ->
     for line in lines or ["Nothing was moved."]:
         click.echo(line)
     click.echo(place)
+
+
+@click.command("list")
+def list_command() -> None:
+    """List the scenarios of the library, and the suites."""
+    from peopleboy.scenarios.files.load import library
+    from peopleboy.scenarios.files.suite import load_suite, suite_names
+
+    suites = {name: f"suite: {' '.join(load_suite(name).description.split())}" for name in suite_names()}
+    entries = library() | suites
+    width = max(map(len, entries))
+    for name, description in entries.items():
+        click.echo(f"{name:{width}} {description}")
+
+
+@click.command()
+@click.argument("scenario", shell_complete=complete_scenario)
+@click.option("--seed", type=WholeNumber(min=0), help=f"What is drawn follows from it.  {SEED}")
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Picture to write.  [default: SCENARIO-plan.png]"
+)
+def show(scenario: str, seed: int | None, out: Path | None) -> None:
+    """Draw the plan of a scenario, with paths and times."""
+    from peopleboy.scenarios.drawing.draw_plan import draw_plan
+    from peopleboy.scenarios.files.load import load_scenario
+
+    loaded = load_scenario(scenario)
+    path = out if out is not None else Path(f"{loaded.name}-plan.png")
+    draw_plan(loaded, loaded.seed if seed is None else seed, path)
+    click.echo(path)
+
+
+@click.command()
+def schema() -> None:
+    """Print the JSON schema of scenario files, for editors."""
+    import json
+
+    from peopleboy.scenarios.files.scenario_file import json_schema
+
+    click.echo(json.dumps(json_schema(), indent=2))
+
+
+@click.command()
+@click.argument("runs", metavar="RUN...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Page to write.  [default: RUN/report.html; report.html here for several]",
+)
+def report(runs: Sequence[Path], out: Path | None) -> None:
+    """Write one HTML page about runs: who was tracked, hidden, lost and swapped, and why.
+
+    Two to four RUNs stand side by side; more are taken together by tracker. A folder that holds folders of
+    runs, such as that of a sweep, is taken together too.
+    """
+    from peopleboy.scenarios.report.report_page import write_report
+
+    page = out if out is not None else (runs[0] / "report.html" if len(runs) == 1 else Path("report.html"))
+    for line in write_report(runs, page):
+        click.echo(f"peopleboy: {line}", err=True)
+    click.echo(page)
