@@ -13,7 +13,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.own_code import OwnCodeFailed
 from peopleboy.scenarios.commands.evaluate import evaluate
 from peopleboy.scenarios.commands.export import export
-from peopleboy.scenarios.commands.import_tracks import import_tracks
+from peopleboy.scenarios.commands.import_command import import_tracks
 from peopleboy.scenarios.commands.inspect_commands import (
     list_command,
     report,
@@ -24,7 +24,7 @@ from peopleboy.scenarios.commands.inspect_commands import (
 )
 from peopleboy.scenarios.commands.many import compare, sweep
 from peopleboy.scenarios.commands.render import render
-from peopleboy.scenarios.commands.run import run
+from peopleboy.scenarios.commands.run_command import run
 from peopleboy.scenarios.commands.sim_to_real import sim_to_real
 from peopleboy.scenarios.commands.study import datasets, reproduce, tune
 from peopleboy.scenarios.commands.track import track

@@ -33,8 +33,8 @@ SMALL_FOLDERS: dict[str, str] = {
     "geometry": "what all rooms share, and nothing else",
 }
 
-# Words that the field does not use, and what it says instead: no name of a module, class, function, argument or
-# attribute contains them.
+# Words that the field does not use, and what it says instead. No name of a module, class, function, argument
+# or attribute contains them.
 WORDS = {
     "told": "reported, confirmed, given",
     "tells": "reports, returns",

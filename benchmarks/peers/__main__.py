@@ -18,7 +18,7 @@ from benchmarks import call
 from benchmarks.peers.compete import Result, SequenceTask
 from benchmarks.peers.contestants import contestants
 from benchmarks.peers.show import draw_occlusions, print_occlusions, print_results, write_results
-from peopleboy.scenarios.commands.options import workers_options
+from peopleboy.scenarios.commands.command_options import workers_options
 from peopleboy.scenarios.files.suite import load_suite
 from peopleboy.scenarios.running.engine.task import Workers, chosen_workers
 from peopleboy.scenarios.running.engine.work_through import work_through

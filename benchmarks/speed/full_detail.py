@@ -25,7 +25,7 @@ from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.scenario_file import to_data
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import make_named_tracker
-from peopleboy.sim.cameras.presets import THERMAL_PRESETS
+from peopleboy.sim.cameras.kinds import THERMAL_PRESETS
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import BOXES, Number, Output, output_options, tell_note
+from peopleboy.scenarios.commands.command_options import BOXES, Number, Output, output_options, tell_note
 
 
 @click.command()

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from peopleboy.scenarios.commands.options import BOXES, Number, tell_note
+from peopleboy.scenarios.commands.command_options import BOXES, Number, tell_note
 from peopleboy.scenarios.export.formats import FORMATS
 
 

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import FieldsCommand, GivenOptions, WholeNumber, options_of
+from peopleboy.scenarios.commands.command_options import FieldsCommand, GivenOptions, WholeNumber, options_of
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.running.run_options import RunOptions
 from collections.abc import Sequence
 
+from peopleboy.scenarios.commands.command_options import SEED
 from peopleboy.scenarios.commands.completion import complete_scenario
-from peopleboy.scenarios.commands.options import SEED
 
 
 @click.command()

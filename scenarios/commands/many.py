@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.completion import complete_scenario
-from peopleboy.scenarios.commands.options import (
+from peopleboy.scenarios.commands.command_options import (
     BEHAVIOUR,
     TRACKER,
     FieldsCommand,
@@ -22,6 +21,7 @@ from peopleboy.scenarios.commands.options import (
     tell_note,
     workers_options,
 )
+from peopleboy.scenarios.commands.completion import complete_scenario
 
 _SEEN: Final = 0.3
 

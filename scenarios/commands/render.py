@@ -9,8 +9,13 @@ from pathlib import Path
 import click
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.commands.command_options import (
+    TRACKERS,
+    WholeNumber,
+    complete_trackers,
+    workers_options,
+)
 from peopleboy.scenarios.commands.completion import complete_scenario
-from peopleboy.scenarios.commands.options import TRACKERS, WholeNumber, complete_trackers, workers_options
 from peopleboy.wording import counted
 
 FAILED = 1

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from peopleboy.scenarios.commands.options import WholeNumber
+from peopleboy.scenarios.commands.command_options import WholeNumber
 
 
 @click.command("sim-to-real")

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import Number, WholeNumber, workers_options
+from peopleboy.scenarios.commands.command_options import Number, WholeNumber, workers_options
 
 
 @click.command()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import FieldsCommand, GivenOptions, options_of, tell_note
+from peopleboy.scenarios.commands.command_options import FieldsCommand, GivenOptions, options_of, tell_note
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import Any, get_type_hints
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.options import WholeNumber, workers_options
+from peopleboy.scenarios.commands.command_options import WholeNumber, workers_options
 
 
 class _Models(click.Group):

@@ -9,7 +9,7 @@ import pytest
 
 from peopleboy.scenarios.files.load import LIBRARY, load_scenario
 from peopleboy.sim.cameras.camera_config import ThermalConfig
-from peopleboy.sim.cameras.presets import THERMAL_PRESETS
+from peopleboy.sim.cameras.kinds import THERMAL_PRESETS
 from peopleboy.sim.world import World
 from tests.helpers.some_of import some_of
 

@@ -9,7 +9,7 @@ from click.shell_completion import ShellComplete
 
 from peopleboy.scenarios.cli import COMMANDS, cli
 from peopleboy.scenarios.commands.completion import BEHAVIOUR_NAMES
-from peopleboy.scenarios.commands.run import run
+from peopleboy.scenarios.commands.run_command import run
 from peopleboy.scenarios.files.load import library
 from peopleboy.scenarios.files.suite import suite_names
 from peopleboy.tracker.trackers import TRACKERS

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 import pytest
 
-from peopleboy.scenarios.commands.options import Number, WholeNumber
+from peopleboy.scenarios.commands.command_options import Number, WholeNumber
 
 
 @pytest.mark.parametrize(

@@ -11,8 +11,7 @@ from peopleboy.scenarios.files.scenario_file import json_schema
 from peopleboy.scenarios.files.validation import validated
 from peopleboy.settings import settings_of
 from peopleboy.sim.cameras.camera_config import CameraConfig, ColourConfig, ThermalConfig
-from peopleboy.sim.cameras.kinds import KINDS
-from peopleboy.sim.cameras.presets import THERMAL_PRESETS
+from peopleboy.sim.cameras.kinds import KINDS, THERMAL_PRESETS
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.robot.robot_config import RobotConfig
 

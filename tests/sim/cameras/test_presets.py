@@ -20,8 +20,7 @@ from peopleboy.sim.cameras.depth import (
     structured_light,
 )
 from peopleboy.sim.cameras.imaging.surfaces import make_material_table
-from peopleboy.sim.cameras.kinds import image_names
-from peopleboy.sim.cameras.presets import DEPTH_PRESETS
+from peopleboy.sim.cameras.kinds import DEPTH_PRESETS, image_names
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.robot.robot_config import RobotConfig

@@ -9,7 +9,7 @@ from scipy import stats
 
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.imaging.noise import PIXEL_SHARE, SMOOTH_SHARE, Drift, gaussian
-from peopleboy.sim.cameras.presets import THERMAL_PRESETS
+from peopleboy.sim.cameras.kinds import THERMAL_PRESETS
 from peopleboy.sim.cameras.thermal import make_detector
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.random_streams import stream

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from peopleboy.scenarios.commands.options import FieldsCommand, GivenOptions, options_of, tell_note
+from peopleboy.scenarios.commands.command_options import FieldsCommand, GivenOptions, options_of, tell_note
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.running.run_options import RunOptions

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.completion import complete_scenario
-from peopleboy.scenarios.commands.options import (
+from peopleboy.scenarios.commands.command_options import (
     BEHAVIOUR,
     SEED,
     TRACKER,
@@ -23,6 +22,7 @@ from peopleboy.scenarios.commands.options import (
     tell_note,
     workers_options,
 )
+from peopleboy.scenarios.commands.completion import complete_scenario
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.files.scenario import Scenario
