@@ -74,7 +74,7 @@ class Behaviour(Protocol):
         ...
 
 
-# A behaviour of a user's own, whose every answer is looked at, so that a mistake is told where it is.
+# A behaviour of a user's own, whose every answer is looked at, so that a mistake is reported where it is.
 
 
 class CheckedBehaviour:
@@ -128,7 +128,7 @@ def checked_behaviour(behaviour: object, name: str) -> CheckedBehaviour:
 def _faults(
     command: object, mode: object, reason: object, following: object, tracks: Set[int]
 ) -> Iterator[str]:
-    """Return what is wrong with what a behaviour gave, who was told of tracks, and what would be right."""
+    """Return what is wrong with a behaviour's answer to these tracks, and what would be right."""
     if not isinstance(command, Command):
         yield f"command(percept) must give a Command, got {command!r}"
     if not (isinstance(mode, str) and mode and mode.isprintable()):

@@ -24,7 +24,7 @@ BEHAVIOURS: Final = Registry("behaviour", "peopleboy.behaviours")
 A behaviour is registered by decorating the function below that makes it.
 """
 SCRIPTED: Final = "scripted"
-"""The behaviour that only a scenario file can ask for, as it tells the commands."""
+"""The behaviour that only a scenario file can ask for, as it holds the commands."""
 
 _CALL: Final = "without an argument"
 

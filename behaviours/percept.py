@@ -45,7 +45,7 @@ class SeenPerson:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Percept:
-    """All that a behaviour is told at one control step.
+    """All that a behaviour receives at one control step.
 
     Attributes:
         time_s: [s] of the image.

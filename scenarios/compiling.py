@@ -1,4 +1,4 @@
-"""What is told while kernels are compiled, which happens once on a machine."""
+"""What is printed while kernels are compiled, which happens once on a machine."""
 
 from __future__ import annotations
 

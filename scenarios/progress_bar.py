@@ -1,4 +1,4 @@
-"""The bar that tells on standard error how far a command is."""
+"""Progress bar on standard error."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def no_progress() -> Iterator[None]:
 
 
 def progress_console() -> Console:
-    """Return the console on which progress is told; it is silent where nobody wants to be told."""
+    """Return the console on which progress is shown; it is silent where nobody reads it."""
     return _console(_IS_HIDDEN.get())
 
 
@@ -45,7 +45,7 @@ def _console(is_hidden: bool) -> Console:
 
 @contextmanager
 def progress_bar(title: str, unit: str | None = None) -> Iterator[Show]:
-    """Have a bar on a terminal; it appears when first moved, so that a mistake found before is told alone.
+    """Have a bar on a terminal; it appears when first moved, so that a mistake found before stands alone.
 
     Args:
         title: stands before the bar.

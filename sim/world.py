@@ -47,7 +47,7 @@ _MOST_PEOPLE = 64  # a view's cover has a bit for each
 class World:
     """A world with a robot, people and cameras; use it as a context manager.
 
-    `observe` tells what the robot senses now; `truth` what is true at the same instant; `step` moves the
+    `observe` returns what the robot senses now; `truth` what is true at the same instant; `step` moves the
     world on by one control step. The same configuration gives the same bytes in every process.
 
     Raises:

@@ -1,4 +1,4 @@
-"""A tracker whose every answer is looked at, so that a mistake is told where it is made."""
+"""A tracker whose every answer is looked at, so that a mistake is reported where it is made."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class CheckedTracker:
             return explanation_of(self._tracker)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Let it take in the next frame, and look at what it tells.
+        """Let it take in the next frame, and check what it returns.
 
         Raises:
             BadInput: that is no tuple of possible tracks.

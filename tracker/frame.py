@@ -130,10 +130,10 @@ class ReadOnlyImages(Mapping[str, NDArray[Any]]):
         self._images = images
 
     def __getitem__(self, camera: str) -> Any:
-        if camera not in self._images:  # told in full, as cameras may be slower than frames
+        if camera not in self._images:  # reported in full, as cameras may be slower than frames
             raise KeyError(_lacking(camera, self._images))
         image: object = self._images[camera]
-        if not isinstance(image, np.ndarray):  # whoever reads it tells of that
+        if not isinstance(image, np.ndarray):  # its reader reports that
             return image
         view = image.view()
         view.setflags(write=False)

@@ -33,7 +33,7 @@ _LAYERS, _FRACTION_BITS = 256, 23
 def _ziggurat() -> tuple[Floats, NDArray[np.uint32], Floats]:
     """Return for each layer (256,) its edge, its share within the next one, and its height.
 
-    Edge and share are told for 23 bits: all layers have the same area, that of the lowest with the tail.
+    Edge and share are given for 23 bits: all layers have the same area, that of the lowest with the tail.
     """
     area = _EDGE * _height(_EDGE) + math.sqrt(math.pi / 2) * math.erfc(_EDGE / math.sqrt(2))
     edge = [_EDGE]
@@ -62,7 +62,7 @@ _EDGES, _REACH, _HEIGHTS = _ziggurat()
 def _fill(
     result: Floats, words: NDArray[np.uint32], edges: Floats, reach: NDArray[np.uint32], heights: Floats
 ) -> tuple[np.int64, np.int64]:
-    """Turn words into normal numbers until one or the other are all; tells how many of both are done with."""
+    """Turn words into normal numbers until either runs out; return how many of both are used."""
     at, end = np.uint64(0), np.uint64(len(words))
     for i in range(np.uint64(len(result))):
         first = at
@@ -119,7 +119,7 @@ def _fraction(word: np.uint32) -> np.float32:
 
 
 def _call(_context: Any, builder: Any, _signature: Any, addresses: Any) -> Any:
-    """Call a function of a pointer that gives 32 bits; both are told by their addresses."""
+    """Call a function of a pointer that gives 32 bits; both are given by their addresses."""
     pointer = ir.IntType(8).as_pointer()
     kind = ir.FunctionType(ir.IntType(32), [pointer]).as_pointer()
     return builder.call(builder.inttoptr(addresses[0], kind), [builder.inttoptr(addresses[1], pointer)])

@@ -11,7 +11,7 @@ Box = tuple[float, float, float, float]
 
 
 class Status(StrEnum):
-    """How well a person is seen right now; unknown where nobody tells, as of tracks made elsewhere."""
+    """How well a person is seen right now; unknown for imported tracks."""
 
     TENTATIVE = "tentative"
     TRACKED = "tracked"
@@ -41,7 +41,7 @@ class Track:
         id: 1 or more; a person who was forgotten and is found again gets a new one.
         boxes: the person's box in the image of each camera that the tracker places it in, by the camera's
             name; none for a tracker that knows people on the floor alone.
-        place: where the person stands; None where that cannot be told, as in footage.
+        place: where the person stands; None where that is unknown, as in footage.
         confidence: 0..1, how well the images speak for the person.
         status: whether the person is confirmed, and how much of it is hidden.
         age_s: time since the track was born [s].

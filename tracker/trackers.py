@@ -38,7 +38,7 @@ class Tracker(Protocol):
 
 @runtime_checkable
 class Introducible(Protocol):
-    """A tracker that can be told where a person is."""
+    """A tracker that can be initialised at a person."""
 
     def introduce(self, box: Box) -> None:
         """Report that a person is at this box [px] of the thermal image in the next frame."""
@@ -149,8 +149,7 @@ def _contour(rng: np.random.Generator) -> Tracker:
 @TRACKERS.register(
     "learned",
     scope="the same, taught",
-    summary="The same, but who is in front is told by the classifier that `peopleboy train occlusion` "
-    "learned.",
+    summary="The same, but depth order comes from the classifier that `peopleboy train occlusion` learned.",
 )
 def _learned(rng: np.random.Generator) -> Tracker:
     return _contour_tracker("learned", rng)

@@ -34,7 +34,7 @@ class ImageCorridorConfig:
     """What counts as a line, and how many must agree.
 
     Attributes:
-        dark: mean grey level below which nothing can be told.
+        dark: mean grey level below which nothing is measured.
         shortest: [image heights] lines that are shorter do not count.
         level_rad, upright_rad: [rad] lines this close to level, or to upright, do not count.
         below: [image heights] lines within this of the horizon do not count: there all meet.
@@ -72,7 +72,7 @@ def corridor_from_image(
     """Find the centre line and heading from the lines of one image.
 
     Lines along the corridor meet at the vanishing point; a level camera has it on the middle row, and its
-    column tells the heading. A line on the floor at d to the left runs from there by -d / (h cos heading)
+    column gives the heading. A line on the floor at d to the left runs from there by -d / (h cos heading)
     columns a row, h being the camera's height.
 
     Args:

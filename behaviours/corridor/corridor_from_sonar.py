@@ -24,7 +24,7 @@ class BeamConfig:
     Attributes:
         half_cone_rad: [rad] half its opening; the echo comes from where in it the wall is nearest.
         reach_m: [m] a range beyond this is no echo.
-        slant_rad: [rad] a beam that meets a wall more obliquely than this tells nothing.
+        slant_rad: [rad] a beam that meets a wall more obliquely than this is useless.
     """
 
     half_cone_rad: float = math.radians(7.5)

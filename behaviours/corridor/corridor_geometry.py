@@ -28,7 +28,7 @@ class Corridor:
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """No corridor can be told.
+    """No corridor was recognised.
 
     Attributes:
         reason: why, for people to read.

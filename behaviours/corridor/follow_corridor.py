@@ -47,7 +47,7 @@ class FollowCorridorConfig:
     """Gains and limits of corridor following.
 
     Attributes:
-        sense: whether walls are told from the sonars, or from the colour image where it can tell.
+        sense: whether walls are measured by the sonars, or by the colour image where it shows them.
         camera: the colour camera; only the image needs it.
         cruise_m_s: [m/s] speed along a free corridor.
         pass_m_s: [m/s] speed past people.
@@ -69,7 +69,7 @@ class FollowCorridorConfig:
         brake_gain: [1/s] speed per metre to such a place.
         sure_frames: images in which a side must be open to be taken for a way.
         dead_end_s: [s] before a wall with no way beside it the robot turns back after this long.
-        search_rad_s: [rad/s] turn rate where no corridor can be told.
+        search_rad_s: [rad/s] turn rate where no corridor is recognised.
         wall_tolerance_m: [m] echoes this little before a wall are the wall's.
     """
 

@@ -1,6 +1,6 @@
 """What a shell completes on the command line: names of scenarios, suites, trackers and behaviours.
 
-A shell that was told to ask `peopleboy` gets them, as docs/tutorial/first-run.md says. Nothing is loaded for
+A shell that is set up to ask `peopleboy` gets them, as docs/tutorial/first-run.md says. Nothing is loaded for
 it that takes time.
 """
 

@@ -53,8 +53,8 @@ def evaluate(
     A folder that holds folders of runs, such as a suite's, stands for all of them. Several runs of one
     tracker give mean and standard deviation over them, beside the figure of all their frames. Runs of several
     trackers stand side by side, with how each differs from the first over runs of the same scenario and seed.
-    Where a tracker says where on the floor people stand, its errors are told in metres; one that gives no
-    boxes is scored on the floor alone. Of runs in which the robot drove among people, it is told how
+    Where a tracker says where on the floor people stand, its errors are printed in metres; one that gives no
+    boxes is scored on the floor alone. Of runs in which the robot drove among people, it prints how
     comfortable they were.
     """
     from peopleboy.scenarios.run_folder.finished_run import runs_in

@@ -80,7 +80,7 @@ def run(
         loaded = options.applied_to(loaded)
     if live and (loaded is None or not options.record or not output.is_wordy):
         raise BadInput(
-            "--live: shows the recording of one run, and tells where; give one scenario, without --no-rrd, "
+            "--live: shows the recording of one run, and prints where; give one scenario, without --no-rrd, "
             "--json and --quiet"
         )
     if options.lossless and (loaded is None or not options.record):
@@ -134,7 +134,7 @@ def _show(scores: RunScores, options: RunOptions) -> None:
 
 
 def _run_shown(scenario: Scenario, options: RunOptions) -> RunScores:
-    """Run a scenario with a bar that tells frames, frame rate and what the robot does."""
+    """Run a scenario with a bar that shows frames, frame rate and what the robot does."""
     from peopleboy.scenarios.progress_bar import progress_bar, progress_console
     from peopleboy.scenarios.running.run import run as run_scenario
 

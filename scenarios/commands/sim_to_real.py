@@ -31,7 +31,7 @@ from peopleboy.scenarios.commands.command_options import WholeNumber
 @click.option("--json", "as_json", is_flag=True, help="Print all figures as JSON.")
 @click.option("--seed", type=WholeNumber(min=0), default=0, show_default=True, help="Of what is chosen.")
 def sim_to_real(rendered: Sequence[Path], real: Sequence[Path], out: Path, as_json: bool, seed: int) -> None:
-    """Set rendered thermal pictures beside real ones, and say how well a classifier tells them apart.
+    """Set rendered thermal pictures beside real ones, and say how well a classifier separates them.
 
     RENDERED are folders of runs with pictures, or sets of them. A real clip is a folder with pictures in it
     or in thermal/, 8-bit grey, and gt.txt of the MOTChallenge format, or VOT's or OTB's. Both sides need two

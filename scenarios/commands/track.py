@@ -56,7 +56,7 @@ _TRACKERS = (
 @click.option(
     "--start",
     metavar="X,Y,W,H|truth",
-    help="Where a person is in the first picture, as trackers of single objects are told.",
+    help="Where a person is in the first picture, to initialise it.",
 )
 def track(
     footage: Path,

@@ -69,7 +69,7 @@ class KeyMoment:
         frame, time_s, mode: as in the tick.
         thermal, colour: (H, W) and (H, W, 3) what the cameras saw, as people are shown it.
         further: what the other cameras saw last.
-        tracks, explanation: what the tracker made of it, and told beyond that.
+        tracks, explanation: what the tracker made of it, and its explanation.
         people: what was true.
         words: what happened, the most telling first.
     """

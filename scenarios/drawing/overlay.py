@@ -153,7 +153,7 @@ def draw_tracks(
         picture: the camera's image, `scale` times enlarged; it stays as it is.
         tracks: what to draw.
         scale: how much the picture is enlarged.
-        explanation: what their tracker told beyond them; None to draw the boxes alone.
+        explanation: their tracker's explanation; None to draw the boxes alone.
         affine: (2, 3) thermal pixels to the picture's, before enlarging; None for the thermal image itself.
         plates: where labels are already, which these give way to; theirs are added.
         camera: whose boxes; tracks without any are left out.

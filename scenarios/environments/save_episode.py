@@ -19,7 +19,7 @@ def save_episode(
 
     Args:
         scenario: what was played.
-        commands: what the robot was told, one a step.
+        commands: the robot's commands, one a step.
         frames: how many images there were.
         options: of the run.
         rate_hz: steps a second.

@@ -73,7 +73,7 @@ class GroupSpec(_Variations):
             strict=False,
             min_length=2,
             max_length=500,
-            description="the points that they walk to; the way between them tells which side is right",
+            description="the points that they walk to; the path between them says which side is right",
         ),
     ]
     names: Annotated[

@@ -26,7 +26,7 @@ _NUMBERS: Final = {
 class _Loader(Composer, yaml.CSafeLoader):
     """Reads YAML as a person expects it: only true and false are booleans; nothing is repeated or shared.
 
-    libyaml parses, and what it tells of is composed here, where each node can be looked at.
+    libyaml parses, and its events are composed here, where each node can be looked at.
     """
 
     def __init__(self, text: str) -> None:

@@ -1,4 +1,4 @@
-"""Recorded drives: what a robot that followed people was told, kept to be repeated without a tracker."""
+"""Recorded drives: the commands of a robot that followed people, repeated without a tracker."""
 
 from __future__ import annotations
 

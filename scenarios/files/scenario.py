@@ -198,7 +198,7 @@ class Scenario:
         return FollowConfig() if keep_height is None else FollowConfig(keep_height=keep_height)
 
     def corridor_config(self) -> FollowCorridorConfig:
-        """The sense that tells a robot the walls of a corridor, and its colour camera."""
+        """The sensor that measures the walls of a corridor, and its colour camera."""
         camera = flat_geometry(self.robot.config().cameras, "colour")
         view = CorridorCamera(focal_px=camera.focal_px, position_m=camera.position_m)
         return FollowCorridorConfig(sense=self.robot.walls_by or "sonar", camera=view)

@@ -188,7 +188,7 @@ def _validator(kind: Any, cameras: tuple[tuple[str, CameraKind], ...]) -> Schema
 
 
 def config_of(kind: Any) -> ConfigDict | None:
-    """Return what `TypeAdapter` needs to be told; classes say themselves how strict they are."""
+    """Return what `TypeAdapter` needs to know; classes say themselves how strict they are."""
     is_class = isinstance(kind, type) and (is_dataclass(kind) or issubclass(kind, BaseModel))
     return None if is_class else STRICT
 

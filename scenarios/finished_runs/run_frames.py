@@ -81,11 +81,11 @@ BEFORE_S: Final = 2.0
 """[s] before something vanished, in which a person may have stood there."""
 
 REPORTED_S: Final = 60.0
-"""[s] from when something vanished until it is told, at most: it may be hidden long before it is missed."""
+"""[s] from when something vanished until it is reported, at most: it may be hidden long before."""
 
 
 class PersonPositions:
-    """Remembers where everybody was, as long as something may be told of it."""
+    """Remembers where everybody was, as long as something may be reported there."""
 
     def __init__(self) -> None:
         self._places: deque[tuple[float, tuple[tuple[float, float], ...]]] = deque()

@@ -106,7 +106,7 @@ class SceneModelOptions:
     """How a scene model runs.
 
     Attributes:
-        has_heat: whether the thermal image tells people from things.
+        has_heat: whether the thermal image separates people from things.
         record: whether to write a recording.
     """
 

@@ -1,4 +1,4 @@
-"""What truly happened to things, and which of it a scene model told."""
+"""What truly happened to things, and which of it a scene model reported."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ KINDS: Final = ("thing moved", "thing appeared", "thing vanished")
 
 EARLY_S: Final = 2.0
 LATE_S: Final = 3.0
-"""[s] by which a happening may be told to be before or after what truly happened."""
+"""[s] by which a happening may be reported before or after what truly happened."""
 
 NEAR_M: Final = 0.75
 """[m] on the floor between the middle of what was seen of a thing, and the middle of the thing."""
@@ -57,7 +57,7 @@ class TrueEvent:
         return tuple(place for place in (self.from_m, self.to_m) if place is not None)
 
     def is_about(self, time_s: float) -> bool:
-        """Whether what is told of a time may be this."""
+        """Whether a reported time may be this."""
         return self.from_s - EARLY_S <= time_s <= self.to_s + LATE_S
 
 
@@ -121,7 +121,7 @@ class PersonNames:
 class _Match(NamedTuple):
     """One happening may tell of one event."""
 
-    is_half: bool  # of a thing that was moved only one end is told
+    is_half: bool  # of a thing that was moved only one end is reported
     way_m: float
     happening: int
     event: int
@@ -129,10 +129,10 @@ class _Match(NamedTuple):
 
 
 def thing_names(happenings: Sequence[Happening], events: Sequence[TrueEvent], first: Pose2) -> dict[int, str]:
-    """Name objects, by their ids, after the things to which truly happened what is told of them.
+    """Name objects, by their ids, after the things to which truly happened what the model reports.
 
     What was taken must have been where a thing was, and what was put down where a thing is. Each end of what
-    truly happened is told once, by the happening that is nearest to it.
+    truly happened is reported once, by the happening that is nearest to it.
 
     Args:
         happenings: in the frame of the robot's first place.

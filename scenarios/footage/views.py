@@ -247,7 +247,7 @@ class Views(Protocol):
 
     @property
     def notes(self) -> list[str]:
-        """What was taken as something else than it is, to be told once; complete after reading."""
+        """What was taken as something else than it is, to be reported once; complete after reading."""
         ...
 
     def __iter__(self) -> Iterator[Frame]:

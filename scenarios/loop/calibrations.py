@@ -1,4 +1,4 @@
-"""What trackers are told of the robot's cameras: where each sits, and which way its pixels look."""
+"""What trackers know of the robot's cameras: where each sits, and which way its pixels look."""
 
 from __future__ import annotations
 

@@ -59,9 +59,9 @@ class Tick:
         truths: what was true, by camera that took an image at this instant; those of other cameras than
             `thermal` are made when first asked for, which must be before the next tick.
         tracks: what the tracker made of the images.
-        explanation: what it told beyond its tracks, to be drawn by its type; None for nothing.
+        explanation: its explanation beyond its tracks, to be drawn by its type; None for nothing.
         mode: what the behaviour was doing, such as "search" or "follow".
-        command: what the robot was told to do next.
+        command: the robot's next command.
         reason: why the behaviour was doing that.
         following: number of the track that the robot follows; None if it follows nobody.
     """

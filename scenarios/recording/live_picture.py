@@ -26,7 +26,7 @@ class LivePicture:
     ones can be gone back to.
 
     Args:
-        say: is told the page's address.
+        say: receives the page's address.
 
     Raises:
         BadInput: the viewer fails.

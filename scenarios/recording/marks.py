@@ -176,7 +176,7 @@ class Sightings:
         self._seen: dict[int, set[str]] = {}
 
     def update(self, tick: Tick) -> Mapping[int, Sequence[str]]:
-        """Return the cameras by track; of one that takes no image at this tick its last image tells."""
+        """Return the cameras by track; of one that takes no image at this tick its last image counts."""
         older = {*self._cameras} - {*tick.observation.images}
         self._seen = {t.id: {*t.boxes} | (older & self._seen.get(t.id, set())) for t in tick.tracks}
         return {number: [c for c in self._cameras if c in seen] for number, seen in self._seen.items()}

@@ -1,4 +1,4 @@
-"""Write a run as a rerun recording, tick by tick; `entities` tells what is in it."""
+"""Write a run as a rerun recording, tick by tick; `entities` lists its contents."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ class SceneRecording(RecordingWriter):
         )
 
     def log_events(self, lines: Sequence[tuple[float, str]]) -> None:
-        """Add what happened, at the times [s] when it was told."""
+        """Add what happened, at the times [s] when it was reported."""
         for time_s, line in lines:
             self.stream.set_time("time", duration=time_s)
             self.stream.log("events", rr.TextLog(line, level="INFO"), strict=True)

@@ -1,7 +1,7 @@
 """Rerun's viewer: in a window, or as a page that only this machine can open.
 
 What rerun offers to Python, `spawn`, `serve_grpc` and `serve_web_viewer`, listens at every address of the
-machine. Its program can be told not to.
+machine. An option of its program prevents that.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ NO_SCREEN = "no screen here: --web serves it to a browser"
 _PROGRAM = "import sys; from rerun_cli.__main__ import main; sys.exit(main())"
 _START_S = 30.0  # within which a viewer is there, or fails
 _POLL_S = 0.1
-# It tells every step of its work otherwise, and over the network how it is used, unless on a build machine.
+# It prints every step of its work otherwise, and over the network how it is used, unless on a build machine.
 _QUIET = {"RUST_LOG": "error", "CI": "true"}
 
 
@@ -55,7 +55,7 @@ def serve(recordings: Sequence[Path], say: Callable[[str], None], port: int | No
 
     Args:
         recordings: the files.
-        say: is told the page's address once it is there.
+        say: receives the page's address once it is there.
         port: of the page; its data comes from the next one. None for any two that are free.
 
     Raises:
@@ -71,7 +71,7 @@ def live_viewer(say: Callable[[str], None], *, is_left_open: bool = True) -> Ite
     """Have a viewer ready: a window, or a page if there is no screen; yield where it takes data.
 
     Args:
-        say: is told where to look.
+        say: receives where to look.
         is_left_open: whether a window stays open afterwards, and a page is served until interrupted.
 
     Raises:

@@ -25,7 +25,7 @@ class Column:
     """One run, or several that are taken together.
 
     Attributes:
-        label: by which it is told from the others.
+        label: which distinguishes it from the others.
         runs: at least one.
         scores: of each run.
         notes: what whoever reads them must know, of the first run of which there is something; a line each.

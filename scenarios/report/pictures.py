@@ -99,7 +99,7 @@ def _of_many(column: Column, is_beside: bool) -> list[PicturedMoment]:
 
 
 def _pictured(moment: BadMoment, whose: str, stills: _Stills, is_beside: bool) -> PicturedMoment:
-    """Return a moment its pictures; where columns stand beside each other, they are told apart."""
+    """Return a moment its pictures; where columns stand beside each other, they are distinguished."""
     seen = [(label, of[frame]) for frame in moment.frames for label, of in stills.items() if frame in of]
     pictures = []
     for label, still in seen:

@@ -64,7 +64,7 @@ def as_squares(
 ) -> tuple[TrueBoxes, TrackBoxes]:
     """Put squares on the floor [m] for the boxes of everybody who is there, and of confirmed tracks.
 
-    Who counts, and how much of a person is visible, is told by the cameras in whose images the tracker gave
+    Who counts, and how much of a person is visible, is taken from the cameras in which the tracker gave
     boxes, or else by the thermal one; who is in no image is nobody to find, and no false alarm either.
 
     Args:

@@ -53,7 +53,7 @@ class RunFolder:
     """Writes one run; use it as a context manager.
 
     `run.json` says "running" from the first moment on, "complete" after `complete`, "cut off" when the block
-    is left by an interrupt, and "failed" when it is left by an error, of which it then tells. The text files
+    is left by an interrupt, and "failed" when it is left by an error, with its message. The text files
     grow line by line, the tables are written at the end, also of a run that was cut off or failed.
     """
 

@@ -113,7 +113,7 @@ class BackgroundQueue:
             self._waiting.popleft().result()
 
     def close(self) -> None:
-        """Do what is left, and end the thread; errors of it are told nobody, who has one already."""
+        """Do what is left, and end the thread; its errors are dropped, as one is raised already."""
         self._thread.shutdown()
 
 

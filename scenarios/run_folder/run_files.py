@@ -31,7 +31,7 @@ from peopleboy.tracker.track import Box, Status, Track
 
 _AGAIN = "run the scenario again"
 _TRUTH_TEXT, _TRACKS_TEXT = Path("truth") / "gt.txt", Path("tracks.txt")
-# What tells which rows of the tables are in the text files too.
+# What says which rows of the tables are in the text files too.
 WRITTEN_TRUTH = ("frame", "id", "left_px", "whole_px", "hidden_by")
 _WRITTEN_TRACKS = ("frame", "id", "status", "left_px")
 

@@ -19,7 +19,7 @@ from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
 
 def record(run: SuiteRun) -> Iterator[Command]:
-    """Play a run with the contour tracker, and yield what the robot was told at each step."""
+    """Play a run with the contour tracker, and yield the robot's command at each step."""
     config = run.scenario.world(run.seed)
     tracker = make_tracker(CONTOUR_TRACKER, stream(run.seed, "tracker"))
     frames = round(run.scenario.duration_s * config.control_hz)

@@ -65,7 +65,7 @@ def _scene(path: Path) -> Mapping[str, Any]:
     """Read what there is to be seen, the robot's own cameras included; nothing of a file that is spoilt."""
     try:
         data = read_yaml(path)
-    except BadInput:  # of which whoever plays the scene again tells
+    except BadInput:  # reported when the scene is played again
         return {}
     if "place" not in data:
         return {}

@@ -39,7 +39,7 @@ from peopleboy.tracker.frame import THERMAL
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ScoredPeople:
-    """How well people were found, and by what that was told.
+    """How well people were found, and by what that was measured.
 
     Attributes:
         scores: the figures.

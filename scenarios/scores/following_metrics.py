@@ -22,7 +22,7 @@ class FollowingTask:
         within_m: [m] by which a distance may be off on either side, and counts as kept.
         facing_rad: [rad] bearing within which the robot faces the person.
         lost_s: [s] a person out of track for this long is lost; shorter gaps are drop-outs.
-        reached_s: [s] last part of the run, which tells whether the person was followed to the end.
+        reached_s: [s] last part of the run, which says whether the person was followed to the end.
     """
 
     keep_m: float = 3.9

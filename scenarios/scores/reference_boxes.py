@@ -76,7 +76,7 @@ def kind_of_boxes(folder: Path, camera: str, tracker: str | None, said: BoxKind)
     Args:
         folder: of the run.
         camera: its name.
-        tracker: its name; None for one that is not told by its name.
+        tracker: its name; None for one that has no name.
         said: of the run.
     """
     if tracker not in TRACKERS.shipped or camera == THERMAL:

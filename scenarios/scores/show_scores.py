@@ -39,7 +39,7 @@ def print_drive(title: str, rows: Sequence[Row]) -> None:
 
 
 def print_comfort(by_tracker: Mapping[str, ComfortScore]) -> None:
-    """Print how comfortable people were, means over the runs of each tracker; nothing if none tells it."""
+    """Print how comfortable people were, means over the runs of each tracker; nothing if none has any."""
     if not by_tracker:
         return
     table = _table("comfort, means over runs", "figure", *by_tracker, "meaning")
@@ -55,7 +55,7 @@ def print_runs(groups: Groups, who: str = "people", note: Callable[[str], None] 
     Args:
         groups: the runs by their trackers.
         who: is to be found, in the tables' titles.
-        note: is told what whoever reads the figures must know of a tracker, once for all its runs.
+        note: receives what readers of the figures must know of a tracker, once for all its runs.
     """
     if len(groups) > 1:
         _print_beside(groups, who)

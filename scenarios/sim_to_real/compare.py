@@ -40,10 +40,10 @@ _GRADIENTS: Final = np.array([0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, np.inf])
 
 @dataclass(frozen=True, slots=True)
 class Separability:
-    """How well patches are told apart.
+    """How well patches are classified.
 
     Attributes:
-        auc: area under the ROC curve, 0.5 where nothing tells them apart, 1 where everything does: mean over
+        auc: area under the ROC curve, 0.5 where nothing separates them, 1 where everything does: mean over
             folds, and the 95 % interval of that mean by the bootstrap over folds.
         folds: of each fold.
         scenes: how many rendered and real scenes there are.
@@ -191,7 +191,7 @@ class Comparison:
     Attributes:
         rendered: one side.
         real: the other.
-        told: how well patches from anywhere are told apart.
+        separability: how well patches from anywhere are classified.
         told_people: how well people are; None if there are too few.
         lacking: why there is no figure for people; empty if there is.
     """

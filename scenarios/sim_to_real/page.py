@@ -159,7 +159,7 @@ def render_comparison(comparison: Comparison) -> str:
 
 
 def headline(comparison: Comparison) -> str:
-    """Return how well patches are told apart."""
+    """Describe how well patches are classified."""
     separability, people = comparison.separability, comparison.of_people
     said = f"Rendered and real patches are told apart with an AUC of {describe_auc(separability)}"
     return f"{said}, people with {describe_auc(people)}." if people is not None else f"{said}."

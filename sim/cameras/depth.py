@@ -55,7 +55,7 @@ def points_of(depth: Millimetres, camera: Pinhole, every: int) -> tuple[Metres, 
 def show_depth(depth: Millimetres) -> NDArray[np.uint8]:
     """Turn an (H, W) depth image into an RGB one: the nearer the brighter, and black where nothing is read.
 
-    A colour tells depth alone, whatever the sensor's range: brightest up to 1 m, darkest from 12 m on, and
+    A colour means a depth, whatever the sensor's range: brightest up to 1 m, darkest from 12 m on, and
     as the logarithm goes between them.
     """
     return _SHADES[depth]

@@ -323,7 +323,7 @@ def check_rate(rate_hz: int | None, control_hz: int) -> None:
 
 
 def check_cameras(cameras: Mapping[str, CameraConfig]) -> None:
-    """Refuse cameras that cannot be told apart by the names of their images and folders.
+    """Refuse cameras that are not distinguished by the names of their images and folders.
 
     Raises:
         BadInput: a name is none or taken, or there is no thermal camera.

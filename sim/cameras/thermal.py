@@ -174,7 +174,7 @@ def radiance_image(
     """Form the image (H, W) of radiance of a `View`, whose parts look as a `MaterialTable` says.
 
     The matrices are those of `part_from_pixel`; the table has the radiance over a span [degC], evenly; the
-    surroundings are told by their radiance.
+    surroundings are given by their radiance.
     """
     height, width = part.shape
     image = np.empty((height, width), np.float32)

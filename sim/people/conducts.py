@@ -63,7 +63,7 @@ class ConductSituation:
 
 
 class Encounter:
-    """Tells from instant to instant whether a person and the robot have met.
+    """Decides from instant to instant whether a person and the robot have met.
 
     They meet when the robot is near enough and in sight, and part when it is a metre farther off; what gets
     between them meanwhile does not part them.

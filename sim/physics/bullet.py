@@ -495,7 +495,7 @@ class Bullet:
         return [visual_shape(row, self._bodies.part_of(row[0], row[1])) for row in rows]
 
     def _visual_rows(self, number: int) -> list[Sequence[Any]]:
-        """What PyBullet tells of all shapes of one of its bodies that are not transparent."""
+        """What PyBullet reports of all shapes of one of its bodies that are not transparent."""
         return [row for row in self._client.getVisualShapeData(number) if row[7][3] > 0.0]
 
     def _set_opacity(self, bodies: Sequence[BulletBody], alpha: float) -> None:

@@ -77,7 +77,7 @@ def footprint(
 
 @njit(cache=True)
 def triangle_footprint(corners: Array, pose: Array, low_m: float, high_m: float, outline: Array) -> int:
-    """Write the outline of a triangle (3, 3), told in a frame with this pose; see `footprint`."""
+    """Write the outline of a triangle (3, 3), given in a frame with this pose; see `footprint`."""
     moved = np.empty((3, 3))
     for k in range(3):
         moved[k, 0], moved[k, 1], moved[k, 2] = map_point(pose, corners[k, 0], corners[k, 1], corners[k, 2])

@@ -1,4 +1,4 @@
-"""Where the models are that come with PyBullet; told without loading it."""
+"""Where the models are that come with PyBullet, found without loading it."""
 
 from __future__ import annotations
 

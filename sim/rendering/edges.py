@@ -228,7 +228,7 @@ def _smooth(  # noqa: C901 (in one function)
 
 @njit(cache=True, error_model="numpy")
 def _set_face(form: Array, face: int, size: Array, pose: Array) -> None:
-    """Set what tells of a ray (x, y, 1) whether it meets a face of a box, and how near, without a division.
+    """Set what decides whether a ray (x, y, 1) meets a face of a box, and how near, without a division.
 
     Args:
         form: (15,) gets five triples whose product with the ray is positive on the inner side of each of the
@@ -266,7 +266,7 @@ def _in_order(one: int, other: int, is_same: bool, z: float, other_z: float) -> 
     """Two pieces by their depths, the nearer first, and how many of their shapes are to be tried.
 
     Only the nearer is if the other is far behind, and of two pieces of one shape the second, where a miss
-    tells nothing.
+    is unknown.
     """
     if is_same and one != _NONE and other != _NONE:
         return other, one, 1

@@ -176,7 +176,7 @@ class PinholeRenderer(Renderer):
 
     def view(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix) -> View:
         """Draw by the scene's renderer."""
-        from peopleboy.sim.rendering.render import render  # here, as kinds are told without PyBullet
+        from peopleboy.sim.rendering.render import render  # here, as kinds are listed without PyBullet
 
         return render(
             scene.renderer, scene.physics, scene.table, camera, world_from_camera, scene.world_from_part,

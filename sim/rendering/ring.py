@@ -171,7 +171,7 @@ def draw_ring(
     depth: NDArray[np.float32],
     normal: NDArray[np.float32],
 ) -> None:
-    """Draw all shapes but those of parts to skip, and turn each column into what `shade` tells.
+    """Draw all shapes but those of parts to skip, and turn each column into what `shade` returns.
 
     Args:
         table: the shapes.

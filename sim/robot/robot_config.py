@@ -114,7 +114,7 @@ class RobotConfig:
     """The robot: where it starts and what it carries.
 
     Raises:
-        BadInput: the cameras cannot be told apart, or there is no thermal one.
+        BadInput: the cameras are not distinguished, or there is no thermal one.
     """
 
     at_m: Annotated[Point, Field(description="where it starts")] = (0.0, 0.0)

@@ -45,7 +45,7 @@ class Event:
 
 
 class EventLog:
-    """Turns a sequence of truths into events, each told once, when it happens.
+    """Turns a sequence of truths into events, each reported once, when it happens.
 
     Each occluder has an occlusion of its own, which ends at the latest when the hidden person leaves the view
     or the image. Who has not entered the view yet is hidden by people alone: whoever waits behind a wall is
@@ -165,7 +165,7 @@ class ThingEvent:
 
 
 class ThingLog:
-    """Turns a sequence of truths into events, each told once: of a move, when the thing stands again."""
+    """Turns a sequence of truths into events, each reported once: a move, when the thing stands again."""
 
     def __init__(self) -> None:
         self._watched: dict[str, _EventWatch] = {}

@@ -1,6 +1,6 @@
 """A robot testbed in simulation: thermal and colour cameras among walking people, with exact truth.
 
-Importing it tells gymnasium the environments; the names below are loaded when they are first used.
+Importing it registers the environments with gymnasium; the names below are loaded when they are first used.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Classes that users bring, by module:Class, and what is told of an error in one."""
+"""Classes that users bring, by module:Class, and how an error in one is reported."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def guarded(what: str, name: str, call: str, make: Callable[..., Any]) -> Callab
 
 
 class Terminated(SystemExit):
-    """The process was told to end by a signal, whatever code it was in."""
+    """The process was ended by a signal, whatever code it was in."""
 
 
 @contextmanager

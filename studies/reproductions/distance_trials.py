@@ -156,7 +156,7 @@ def new_people_trials(
 
 
 def correlations(run: DistanceSamples, taught: Sequence[tuple[Rows, Floats]]) -> Floats:
-    """Return the linear correlation (4,) with the true distance: of each cue, and of what a network tells.
+    """Return the linear correlation (4,) with the true distance: of each cue, and of a network's estimate.
 
     The first network is tested on images that it was not taught on, the cues on all.
 

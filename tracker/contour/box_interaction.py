@@ -93,7 +93,7 @@ def overlap_shares(state: Floats, regions: Regions, config: TrackerConfig) -> Fl
 def detector_factor(state: Floats, regions: Regions, config: TrackerConfig) -> Floats:
     """Return the factor (N,) on a detector's samples: psi_D, once, for those that overlap anybody.
 
-    How much is told by the intersection of sample and region as a share of the smaller of the two.
+    The measure is the intersection of sample and region as a share of the smaller of the two.
 
     Source: thesis, equation 5.1.
     """

@@ -173,7 +173,7 @@ class LifeConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SearchConfig:
-    """How new people are looked for, and of whom it is told sooner or later than by `LifeConfig`.
+    """How new people are looked for, and who is confirmed sooner or later than by `LifeConfig`.
 
     The sources look at each image once, and treat all alike.
     """
@@ -218,7 +218,7 @@ class SmoothingConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AppearanceConfig:
-    """By how much the thermal pattern of one person differs from frame to frame, and what it tells."""
+    """By how much the thermal pattern of one person differs from frame to frame, and its weight."""
 
     grey_spread: tuple[float, float, float] = (0.085, 0.012, 0.06)  # of the mean of head, torso, legs, 0..1
 

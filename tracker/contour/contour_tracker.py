@@ -90,7 +90,7 @@ class ContourTracker:
         return (THERMAL,) if self._config.colour is None else (THERMAL, COLOUR)
 
     def introduce(self, box: Box) -> None:
-        """Report that a person is at this box [px] in the next frame, as trackers of single objects are told.
+        """Report that a person is at this box [px] in the next frame, to initialise it.
 
         The person's filter starts there, and the detector keeps off it.
         """

@@ -85,7 +85,7 @@ class FrameView:
         return turned(x, self.turn)
 
     def describe(self, state: Floats, hiding: Regions | None = None) -> Floats | None:
-        """Describe people (N, 9) as their models do, (N, F), if that can be told.
+        """Describe people (N, 9) as their models do, (N, F), if that is known.
 
         NaN for parts that lie behind people with regions (M, 4).
         """

@@ -93,8 +93,8 @@ THESIS_OCCLUSION = replace(
 )
 """With the occlusion handling of chapter 7; a head is hidden once no point of it is seen.
 
-Who is in front is told by a classifier that was taught on this tracker's own pairs (sections 7.1 and 7.2), by
-`peopleboy train occlusion --tracker thesis`; while it was taught, feet told.
+Depth order comes from a classifier that was trained on this tracker's own pairs (sections 7.1 and 7.2), by
+`peopleboy train occlusion --tracker thesis`; while it was trained, feet decided.
 """
 
 _PAPER_SAMPLES = replace(_THESIS_SAMPLES, fresh_share=0.1, estimate_share=0.3)

@@ -32,7 +32,7 @@ BESIDE: Final = 4
 """Columns on either side likewise."""
 
 _SQUARES: Final = MOTION  # where sums of squares stand until motion does
-_NEAR: Final = 5  # [cells] gradients are told by those around
+_NEAR: Final = 5  # [cells] gradients are normalised by those around
 _AROUND: Final = 21  # [cells] greys likewise
 _LEAST_GREY: Final = 1.0  # of 8 bits
 _NOISES: Final = 1.5

@@ -120,7 +120,7 @@ class PastImages:
         """Return by how much the last one (H, W) differs from that of about 0.2 s before; 0 if there is none.
 
         Args:
-            mount: of the camera, with which odometry tells how pixels moved; without, the images do.
+            mount: of the camera, with which odometry gives how pixels moved; without, the images do.
         """
         *earlier, now = self._past
         if not earlier:

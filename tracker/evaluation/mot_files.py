@@ -2,7 +2,7 @@
 
 Truth: frame, id, left, top, width, height, 1 if counted else 0, class, visible fraction. Ours has
 class 1 (person) alone; of the other classes of MOT16 to MOT20, those that do not count are read as such.
-Others leave the last columns out, or write -1 there for what is not told; all are persons then, who count and
+Others leave the last columns out, or write -1 there for what is unknown; all are persons then, who count and
 are visible. Lines of ten end with a place in the world instead of class and visible fraction, as in MOT15.
 Results: frame, id, left, top, width, height, confidence, -1, -1, -1 (no world position).
 An empty file is a sequence without people, or a tracker that found nobody.
@@ -49,7 +49,7 @@ def read_truth(path: Path, *, keeps_things: bool = False) -> TrueBoxes:
 def read_rows(path: Path) -> Floats:
     """Read the lines of a truth file as numbers (N, 9), without looking at what they are.
 
-    What is not told is 1: people count, are persons, and visible.
+    What is missing is 1: people count, are persons, and visible.
 
     Raises:
         BadInput: the file cannot be read, or a line has other than numbers, or not as many as the first.

@@ -162,7 +162,7 @@ class GivenTruth:
         truth: the boxes.
         is_single: whether one person alone is annotated, whoever else is there.
         path: the file.
-        notes: what was taken as something else than it is, to be told once.
+        notes: what was taken as something else than it is, to be reported once.
     """
 
     truth: TrueBoxes
@@ -221,7 +221,7 @@ def load_truth(path: Path, frames: int | None, numbers: range | None = None) -> 
 
 
 def _of_everybody(path: Path, frames: int | None, numbers: range | None) -> GivenTruth:
-    """Read MOTChallenge's lines; nobody ever visible means that it was not told, but in runs of ours."""
+    """Read MOTChallenge's lines; nobody ever visible means that it is missing, but in runs of ours."""
     rows, notes, is_own = read_rows(path), list[str](), (path.parent.parent / _EXACT).is_file()
     if not len(rows) and not is_own:
         notes.append(f"{path}: it is empty, which says that nobody is there")

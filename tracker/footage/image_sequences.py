@@ -40,7 +40,7 @@ class Footage(Protocol):
         expected: how many pictures there should be; a damaged video has fewer.
         is_exact: whether there are exactly as many.
         numbers: those in the pictures' names, in a row; None if they tell none.
-        notes: what was taken as something else than it is, to be told once; complete after reading.
+        notes: what was taken as something else than it is, to be reported once; complete after reading.
     """
 
     name: str

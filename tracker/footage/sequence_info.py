@@ -58,7 +58,7 @@ COLUMNS: Final = ("advance_m", "aside_m", "turn_deg")
 def load_odometry(path: Path, pictures: int) -> list[Odometry]:
     """Read a CSV file whose first line is `COLUMNS`, then a line for each picture.
 
-    Each line tells how the camera moved since the picture before; that of the first moves nobody.
+    Each line gives how the camera moved since the picture before; that of the first moves nobody.
 
     Args:
         path: the file.

@@ -14,7 +14,7 @@ from peopleboy.tracker.rgbd.observation_model import BINS, Body, bin_of_colour, 
 from peopleboy.tracker.rgbd.pre_detection import PreDetection
 from peopleboy.tracker.track import Box
 
-# How much of what stands somewhere is as warm as people are: depth tells where the thermal one shows it.
+# How much of what stands somewhere is as warm as people are: depth gives where the thermal image shows it.
 
 WARM: Final = 255.0 * (25.0 - 24.0) / (36.0 - 24.0)
 """Grey from which on something is as warm as people are: 25 degC in an image of 24 to 36 degC."""

@@ -15,7 +15,7 @@ from peopleboy.tracker.panoramic.people.floor_motion import FloorMotion
 from peopleboy.tracker.rgbd.observation_model import similarity
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
-# What one of the trackers tells of a person in one frame.
+# What one of the trackers reports for a person in one frame.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -79,7 +79,7 @@ _BEST_FIRST: Final = (Status.TRACKED, Status.PARTLY_OCCLUDED, Status.TOTALLY_OCC
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FusedPerson:
-    """A person of whom at least one of the trackers has told.
+    """A person that at least one of the trackers has reported.
 
     Attributes:
         id: number of the fused track; negative of a guest, of whom it is not decided who it is.
@@ -115,7 +115,7 @@ class FusedPerson:
 
     @property
     def reported(self) -> tuple[SensorTrack, ...]:
-        """What is told of the person in this frame."""
+        """What is reported for the person in this frame."""
         return tuple(one for one in (self.warm, self.deep) if one is not None)
 
     @property
@@ -137,14 +137,14 @@ class FusedPerson:
         return Status.PARTLY_OCCLUDED if is_found else best
 
     def later(self, dt_s: float, config: FusionConfig) -> FusedPerson:
-        """Return the person after it has walked on; nobody has told of it yet."""
+        """Return the person after it has walked on; it is not reported yet."""
         motion = self.motion.later(dt_s, config.restlessness)
         if not self.is_seen:
             motion = motion.slowed(dt_s, config.slow_s)
         return replace(self, motion=motion, warm=None, deep=None, is_guided=False)
 
     def with_depth(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> FusedPerson:
-        """Take in what the tracker by depth tells."""
+        """Update by the depth tracker's track."""
         person = replace(self, depth=reported.id, deep=reported)
         if not reported.is_seen:
             return person
@@ -154,7 +154,7 @@ class FusedPerson:
         return replace(person, motion=self._placed(reported, config), seen_s=time_s)
 
     def with_heat(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> FusedPerson:
-        """Take in what the thermal tracker tells."""
+        """Update by the thermal tracker's track."""
         person = replace(self, heat=reported.id, warm=reported)
         return (
             replace(person, motion=self._placed(reported, config), seen_s=time_s)
@@ -163,7 +163,7 @@ class FusedPerson:
         )
 
     def named(self, other: FusedPerson) -> FusedPerson:
-        """Return who is here, and is told of so, the number, the measures and the appearance of another."""
+        """Return who is here, with the id, the measures and the appearance of another."""
         return replace(
             self,
             id=other.id,
@@ -236,7 +236,7 @@ class FusedPerson:
 
 
 def initiate_person(number: int, reported: SensorTrack, time_s: float) -> FusedPerson:
-    """Begin a person where a tracker tells of one."""
+    """Initiate a person where a tracker reports one."""
     motion = FloorMotion.begin(reported.place_m, reported.error_m2)
     return FusedPerson(id=number, motion=motion, born_s=time_s, seen_s=time_s)
 

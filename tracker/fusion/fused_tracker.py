@@ -41,7 +41,7 @@ from peopleboy.tracker.track import Box, Status, Track
 _LONGEST_STEP_S: Final = 0.5
 _CROWDED_M: Final = (0.5, 0.7)  # in depth and to the side, within which two people's shoulders are mixed up
 _NOBODYS: Final = -1  # the id of no track
-_UNSURE: Final = 0.1  # confidence in who is not told of
+_UNSURE: Final = 0.1  # confidence in a person that is not reported
 
 Own = Callable[[FusedPerson], int | None]
 Take = Callable[[FusedPerson, SensorTrack], FusedPerson]
@@ -50,7 +50,7 @@ Take = Callable[[FusedPerson, SensorTrack], FusedPerson]
 class ThermalDepthTracker:
     """People of whom a thermal tracker and one by depth tell, each with one number.
 
-    Both go on by themselves. A person is told of by at most one track of each, has one place in the room, by
+    Both go on by themselves. A person has at most one track of each, has one place in the room, by
     a Kalman filter over what both say, and is looked for in the depth image while it is hidden in part.
 
     Args:

@@ -31,7 +31,7 @@ class FusionConfig:
         shared_m: [m] error that all images of a person have in common.
         learned: share of a newly measured height, or of new appearance.
         learned_width: the same of the width of the torso, which changes with every step.
-        blink_s: [s] for how long a person is shown whom nothing hides and nobody tells of.
+        blink_s: [s] for how long a person is shown that is neither occluded nor reported.
         hidden_s: [s] the same of who is hidden.
         hidden_share: share of readings before a person, from which on it is hidden.
         remembered_s: [s] for how long a person is known who is away.

@@ -70,7 +70,7 @@ def search_near(place_m: Floats, wide_m: float, tall_m: float, frame: Frame) -> 
         frame: with a depth image, if there is one.
 
     Returns:
-        None where it cannot be told where the person is.
+        None where it is unknown where the person is.
     """
     view = view_of(frame)
     if view is None:

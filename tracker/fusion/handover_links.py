@@ -124,7 +124,7 @@ class LinkEvidence:
 FORGET_S: Final = 3.0
 REACH_M: Final = 1.2  # of errors of both places,
 FASTEST_M_S: Final = 1.4  # and of the way since
-DEPTH_SHARE: Final = 0.3  # by which errors in depth count, as the thermal image tells it badly at its border
+DEPTH_SHARE: Final = 0.3  # weight of errors in depth, which the thermal image measures badly at its border
 
 
 class Departures:
@@ -229,7 +229,7 @@ class Identities:
             camera: its name.
             tracks: all of them.
             known: for ids of tracks that agree with one of the other camera, that one.
-            guess: tells the number of a track that agrees with none that has one, and none of these that
+            guess: returns the id of a track that agrees with none that has one, and none of these that
                 its camera has; None for a new one.
         """
         for track in tracks:
@@ -262,7 +262,7 @@ class Identities:
         return self._newest
 
     def _take(self, taker: Key, number: int) -> list[Key]:
-        """Return a number to one track of a camera alone; who had it there is told, and has none any more."""
+        """Give a number to one track of a camera alone; return its former owner, which has none any more."""
         had = [key for key, one in self.number.items() if one == number and key[0] == taker[0]]
         for key in had:
             del self.number[key]

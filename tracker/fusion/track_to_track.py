@@ -17,7 +17,7 @@ _NEVER: Final = 1e6
 
 
 def distance2(person: FusedPerson, reported: SensorTrack, floor_m: float) -> float:
-    """Return by how much what is told differs from a person's place: squared, in standard deviations.
+    """Return by how much a reported place differs from a person's place: squared, in standard deviations.
 
     A thermal track is sure of its bearing and not of its range; one by depth is sure of both.
     """
@@ -29,11 +29,11 @@ def distance2(person: FusedPerson, reported: SensorTrack, floor_m: float) -> flo
 def cost(
     person: FusedPerson, reported: SensorTrack, own: int | None, time_s: float, config: FusionConfig
 ) -> float:
-    """Return how unlikely it is that a person is told of; infinite if it is out of the question.
+    """Return the cost of a person's report; infinite if it is out of the question.
 
     Args:
         person: where it is expected.
-        reported: what a tracker tells.
+        reported: a tracker's report.
         own: id of that tracker's track that was the person's before.
         time_s: [s] now.
         config: settings.
@@ -74,7 +74,7 @@ def pairs(
     time_s: float,
     config: FusionConfig,
 ) -> dict[int, int]:
-    """Match people and what is told, each at most once, so that all pairs together cost least.
+    """Match people and reports, each at most once, so that all pairs together cost least.
 
     Args:
         people: N.
@@ -84,7 +84,7 @@ def pairs(
         config: settings.
 
     Returns:
-        Index of what is told by index of the person.
+        Index of the report by index of the person.
     """
     costs = [
         [cost(person, one, own, time_s, config) for one in reported]

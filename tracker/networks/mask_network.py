@@ -1,4 +1,4 @@
-"""The network that tells people from background in the panorama: residual layers of dilated convolutions.
+"""The network that separates people from background in the panorama: residual layers of dilated convolutions.
 
 Units are kept with a border round the image, which is 0 above and below, and goes on over the seam: so a step
 to a neighbour is the same step in memory everywhere. Below the image there are as many rows more as make

@@ -68,7 +68,7 @@ class ArraySpec(NamedTuple):
         return f"{finite}{kind} ({shape})"
 
     def is_met(self, array: NDArray[Any], sizes: dict[str, int]) -> bool:
-        """Check an array against known sizes, and add the sizes that it tells."""
+        """Check an array against known sizes, and add its sizes."""
         if array.dtype != self.dtype or array.ndim != len(self.shape):
             return False
         expected = [sizes.setdefault(n, max(found, 1)) if isinstance(n, str) else n

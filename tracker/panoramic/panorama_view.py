@@ -1,4 +1,4 @@
-"""What tells one panoramic camera from another: its image's size, its height, how low its rows look."""
+"""What distinguishes panoramic cameras: size of the image, height, and how low the rows look."""
 
 from __future__ import annotations
 

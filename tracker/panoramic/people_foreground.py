@@ -74,15 +74,15 @@ class ForegroundModel:
 
 
 class Foreground:
-    """Tells people from background, on a robot that stands or drives.
+    """Separates people from background, on a robot that stands or drives.
 
-    It works from the first image on, whoever is in it. A background that goes along with the robot tells what
+    It works from the first image on, whoever is in it. A background that moves with the robot shows what
     is new, and a network judges that by what it looks like; what it takes for people the background leaves
     out.
 
     Attributes:
         network: that judges.
-        squares: (INPUTS, H / BLOCK, W / BLOCK) what it was told about the last image.
+        squares: (INPUTS, H / BLOCK, W / BLOCK) what it knew of the last image.
         novelty: (H, W) how unlike the background each pixel of that is, 0..1; less if that is young.
     """
 

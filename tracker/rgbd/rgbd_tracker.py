@@ -47,9 +47,9 @@ class RgbdTracker:
 
     Args:
         config: settings.
-        model: tells humans by their windows.
+        model: classifies humans by their windows.
         rng: draws particles.
-        is_human: tells humans by something else than their windows; None for nothing else.
+        is_human: classifies humans by something else than their windows; None for nothing else.
     """
 
     def __init__(

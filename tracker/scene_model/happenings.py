@@ -67,7 +67,7 @@ class Ledger:
     ) -> list[Happening]:
         """Take in what settled and what left, and tell what is clear by now.
 
-        What left before it was told was only held still by a person who carries it. What is hidden again
+        What left before it was reported was only held still by a person who carries it. What is hidden again
         waits, as it may have left.
 
         Args:

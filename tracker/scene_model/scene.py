@@ -1,4 +1,4 @@
-"""What a scene model tells: background, people, movable things, and what happened to them."""
+"""What a scene model reports: background, people, movable things, and what happened to them."""
 
 from __future__ import annotations
 

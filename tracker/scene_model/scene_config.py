@@ -26,10 +26,10 @@ class LayersConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PeopleMaskConfig:
-    """How people are told from things.
+    """How people are separated from things.
 
     Attributes:
-        has_heat: whether the thermal image tells them, as far as it sees; by their shape everywhere if not.
+        has_heat: whether the thermal image shows them, as far as it sees; by their shape everywhere if not.
         warm: grey of the thermal image from which on something is as warm as people are.
         grown_px: [px] by which what is warm grows over what is connected with it.
         least_m2: [m^2] area of the smallest piece of a person.
@@ -73,13 +73,13 @@ class ThingsConfig:
         least_m2: [m^2] of the smallest thing.
         beside_m, beside_s: [m] on the floor, and [s], between parts of one thing that are not connected in
             the image.
-        settled_s: [s] for which a thing must stay as it is before it is told.
+        settled_s: [s] for which a thing must stay as it is before it is reported.
         growth: share by which it may grow meanwhile.
         left: share of a thing's largest area below which it is gone.
         pair_s: [s] from a thing's vanishing until it appears elsewhere, at most.
         wait_s: [s] for which a change is held back for its other half.
         hold_s: [s] for which what appears beside a person may still be in their hands.
-        unseen_s: [s] out of sight from which on nothing new is told of a thing.
+        unseen_s: [s] out of sight from which on nothing new is reported of a thing.
         size_ratio: of areas and heights of what may be the same thing.
         colour: distance of mean colours, of 255, that halves how alike two things are.
         hand_m: [m] from a person on the floor to what they move.

@@ -20,7 +20,7 @@ _REACH_M: Final = 0.4  # of correspondences at first; it shrinks
 _CLOSEST_M: Final = 0.08
 _FEWEST: Final = 100
 _EDGE: Final = 0.06  # share of depth by which neighbours on one surface differ at most
-_FLOOR_M: Final = 0.08  # the floor tells nothing of where one stands on it
+_FLOOR_M: Final = 0.08  # the floor does not constrain the position on it
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,7 +72,7 @@ def registered(surface: Surface, known: Surface, guess: Pose2) -> Pose2:
     """Correct the pose from which a surface was seen until it lies on what is known.
 
     Points are drawn to the planes of their nearest neighbours, on the floor plane only: iterative closest
-    points with three unknowns. Where too little is known, or nothing tells how far along a wall one stands,
+    points with three unknowns. Where too little is known, or nothing constrains the position along a wall,
     the guess stays as it is in that direction.
     """
     is_upright = known.points_m[:, 2] > _FLOOR_M
@@ -99,7 +99,7 @@ def registered(surface: Surface, known: Surface, guess: Pose2) -> Pose2:
 
 
 def _stepped(pose: Pose2, points: Floats, targets: Floats, normals: Floats) -> tuple[Pose2, float]:
-    """Move by the least squares of distances to planes; directions that nothing tells are left out."""
+    """Move by the least squares of distances to planes; unconstrained directions are left out."""
     apart = ((targets - points) * normals).sum(axis=1)
     x, y = points[:, 0] - pose.x, points[:, 1] - pose.y
     rows = np.stack([normals[:, 0], normals[:, 1], x * normals[:, 1] - y * normals[:, 0]], axis=1)

@@ -49,7 +49,7 @@ _PARTS: Final = ((0.18, 0.5), (0.55, 0.9))  # of torso and legs, from the top, i
 _WIDE: Final = 0.6  # of the box
 _BINS: Final = (4, 8, 8)  # of brightness and of both opponent colours
 _SPREAD: Final = 60.0  # of the opponent colours that the bins cover
-_DARK: Final = 24.0  # grey up to which nothing is told of colours
+_DARK: Final = 24.0  # grey up to which colours are unknown
 _LEAST_PX: Final = 12
 _LEAST_INSIDE: Final = 0.6
 """Share of a part's height in the image: hips are no legs.

@@ -95,7 +95,7 @@ CLEAR: Final = 0.2
 
 
 def are_overlapped(expected: Floats, is_confirmed: Flags) -> Flags:
-    """Return for K people with boxes (K, 4) who is not seen apart from another person who is told."""
+    """Return for K people with boxes (K, 4) whether each overlaps another confirmed person."""
     mutual = iou(expected[:, None], expected[None]) * ~np.eye(len(expected), dtype=bool)
     return np.asarray((is_confirmed[None] & (mutual > CLEAR)).any(axis=1))
 
@@ -158,7 +158,7 @@ class DescribedDetections:
         return len(self.boxes)
 
     def without_colours(self, rows: NDArray[np.bool_]) -> DescribedDetections:
-        """Return these, nothing told of the colours of some (M,), which may be another one's."""
+        """Return these without the colours of some (M,), which may be another person's."""
         return replace(self, colours=np.where(rows[:, None], np.float32(0.0), self.colours))
 
     def likeness(self, targets: list[TrackState]) -> tuple[Floats, NDArray[np.bool_]]:
@@ -166,7 +166,7 @@ class DescribedDetections:
 
         Returns:
             (K, M) -1 to 1, by colours where they are known, else by warmth, and whether they are (K, M).
-            Colours of the same clothes are mostly above 0.6, and of others below -0.2; warmth tells little.
+            Colours of the same clothes are mostly above 0.6, and of others below -0.2; warmth says little.
         """
         warm = np.stack([target.pattern for target in targets]) @ self.pattern.T
         worn = np.stack([target.colours for target in targets])

@@ -71,7 +71,7 @@ class _Instant(NamedTuple):
 class DetectionTracker:
     """Follows people in metres round the camera by what a detector proposes, and by portraits in between.
 
-    A track is told once enough speaks for it, and who is whom is decided late.
+    A track is confirmed by enough evidence, and identities are decided late.
     """
 
     def __init__(self, config: DetectionTrackerConfig | None = None, find: Finder | None = None) -> None:
@@ -241,7 +241,7 @@ class DetectionTracker:
         return target.is_confirmed and target.seen_s < now.time_s - now.association.lost_s
 
     def _known(self, found: dict[int, int]) -> list[int]:
-        """Return the numbers of the proposals that are of those who are told."""
+        """Return the numbers of the detections of confirmed tracks."""
         return [column for row, column in found.items() if self._targets[row].is_confirmed]
 
     def _initiate(self, found: dict[int, int], proposed: DescribedDetections, now: _Instant) -> None:

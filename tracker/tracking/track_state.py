@@ -52,11 +52,11 @@ class TrackState:
         searched_s: when trees last found it among all.
         log_odds: that it is a person.
         surest: most that a single image said.
-        id: 0 as long as it is not told.
+        id: 0 as long as it is tentative.
         sightings: images in which it was found.
         confidence: 0..1, of the last images in which it was seen.
         occluder: id of who hides it.
-        confirmed_s: since when it is told.
+        confirmed_s: since when it is confirmed.
         recent: what it wears since it was last seen apart from others.
         clear_s: for how long that is.
     """
@@ -171,6 +171,6 @@ class TrackState:
         return gone > (config.forget_s if self.watched_s > config.brief_s else config.brief_forget_s)
 
     def has_enough_evidence(self, config: ExistenceConfig) -> bool:
-        """Return whether enough speaks for it to be told."""
+        """Return whether it has enough evidence to be confirmed."""
         is_enough = self.sightings >= config.sightings or self.surest >= config.at_once
         return is_enough and self.log_odds > config.confirmed

@@ -15,7 +15,7 @@ from peopleboy.scenarios.report.findings.run_findings import RunFindings
 from peopleboy.scenarios.report.findings.sentences import spoken
 
 _WIDTH_IN = 4.3  # such that its letters are as large as the page's on a phone
-# Told apart with any colour vision.
+# Distinct with any colour vision.
 _COLOURS = ("#0072b2", "#a8327a", "#2f7d32", "#b35c00", "#5d4a1f", "#00798c", "#7b3fa0", "#4a4a4a", "#6d7500")
 _ROBOT = "#c0392b"
 _MARK_EVERY_S = 5.0

@@ -169,7 +169,7 @@ class RunHistory:
     def shown(self) -> dict[int, Flags]:
         """For each confirmed track the frames (F,) in which it is shown.
 
-        Where tracks are told at images alone, as those made elsewhere, they are shown until the next image.
+        Where tracks exist at images alone, as those made elsewhere, they are shown until the next image.
         """
         frames, (_, tracks) = np.arange(self.run.frames), self.boxes
         at = self.newest if np.isin(tracks.frame - 1, self.newest).all() else frames
@@ -189,7 +189,7 @@ class RunHistory:
 
     @cached_property
     def camera(self) -> str:
-        """By whose images it is told who was to be seen; if scored on the floor, one with boxes."""
+        """The camera whose images say which people were visible; if scored on the floor, one with boxes."""
         if self.is_on_floor:
             return (*boxed_cameras(self.run.folder), THERMAL)[0]
         return self.yardstick.camera

@@ -22,7 +22,7 @@ class ChangeKind(Enum):
     """What a change of numbers means."""
 
     LOST = auto()  # a fresh number, which stayed
-    TAKEN = auto()  # that of another person, told as a `Transfer`
+    TAKEN = auto()  # that of another person, reported as a `Transfer`
     FOR_A_MOMENT = auto()  # an own one came back within `REIDENTIFIED_S`
     BACK = auto()  # to a number that the person had before
 

@@ -61,7 +61,7 @@ class RunFindings(RunHistory):
 
     @cached_property
     def short_losses(self) -> ShortLosses:
-        """Losses that are not told one by one."""
+        """Losses that are not listed one by one."""
         return count_short_losses(self)
 
     @cached_property

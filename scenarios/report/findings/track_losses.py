@@ -42,7 +42,7 @@ class Loss:
 
 @dataclass(frozen=True, slots=True)
 class ShortLosses:
-    """Losses that are not told one by one."""
+    """Losses that are not listed one by one."""
 
     breaks: int  # after which the same number was shown again within `STEADY_S`
     ends: int  # of tracks that had been shown for less than that

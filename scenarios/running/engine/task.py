@@ -18,7 +18,7 @@ from peopleboy.own_code import OwnCodeFailed, in_one_line
 Result_co = TypeVar("Result_co", covariant=True)
 
 Tell = Callable[[int], None]
-"""Told how much of a task is done."""
+"""Receives how much of a task is done."""
 
 
 class Task(Protocol[Result_co]):

@@ -135,7 +135,7 @@ def _push_of(
     It falls off with ellipses that reach out along the coming step. Our change to eq. 4: the step is that of
     the velocity relative to the walker, half as long (Johansson, Helbing and Shukla 2007), so that a robot
     that stands still is avoided like a person who comes. What comes from ahead is turned by an angle, whose
-    cosine and sine are told; what lies out of sight weighs less (eqs. 8 and 9).
+    cosine and sine are given; what lies out of sight weighs less (eqs. 8 and 9).
     """
     sight = _sight_weight(heading, -gap_x, -gap_y)
     distance = max(math.hypot(gap_x, gap_y), 1e-3)

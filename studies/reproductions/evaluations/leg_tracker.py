@@ -13,7 +13,7 @@ from peopleboy.sim.observation import Observation
 from peopleboy.tracker.frame import Floats, Odometry
 
 HEIGHT_M: Final = 0.3
-FARTHEST_M: Final = 5.0  # SA 4.7.7: legs are told from other things up to 3 to 5 m
+FARTHEST_M: Final = 5.0  # SA 4.7.7: legs are separated from other things up to 3 to 5 m
 FORWARD_M: Final = 0.3
 
 _COLUMNS, _ROWS = 361, 16

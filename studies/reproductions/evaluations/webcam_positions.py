@@ -171,7 +171,7 @@ def measure_webcams(seed: int) -> WebcamErrors:
     """Play the scene, calibrate the webcams at known places, and measure.
 
     Raises:
-        BadInput: a webcam sees the hat too seldom; if the path tells, before the scene is played.
+        BadInput: a webcam sees the hat too seldom; if the path shows it, before the scene is played.
     """
     scenario = load_scenario(SCENE)
     config = with_panorama(scenario.world(seed))

@@ -230,7 +230,7 @@ def draw_fields_of_view() -> Figure:
 
 
 def draw_correlations(run: DistanceSamples, names: Sequence[str]) -> Figure:
-    """Draw each cue of a film, and what the network tells, over the true distance."""
+    """Draw each cue of a film, and the network's estimate, over the true distance."""
     predicted = predicted_in_turn(run, SplitTrial(split="random"))
     figure = canvas(5.6)
     for axes, name, values in zip(figure.subplots(2, 2).flat, names, (*run.cues.T, predicted), strict=True):

@@ -52,10 +52,10 @@ class Attended:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AttentiveExplanation:
-    """What the tracker below believes, and how much people look like who they are told to be.
+    """What the tracker below believes, and how similar people are to their identities.
 
     Attributes:
-        below: of its own kind, by the numbers that are told.
+        below: of its own kind, by the track ids.
         likeness: 0..1, mean score of late of those who are seen well enough, by number.
         attended: who was learned first, in the newest image of a colour camera; None before, or without one.
     """
@@ -72,7 +72,7 @@ class AttentiveExplanation:
 
 @singledispatch
 def renumbered(explanation: object, number: Mapping[int, int]) -> object:  # noqa: ARG001
-    """Return an explanation by the numbers that tracks are told by; a kind without numbers stays as it is."""
+    """Return an explanation by the ids of the tracks; a kind without ids stays as it is."""
     return explanation
 
 

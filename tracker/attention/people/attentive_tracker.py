@@ -128,7 +128,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
 
     Args:
         below: finds people.
-        recogniser: tells them by their appearance.
+        recogniser: identifies them by their appearance.
         config: how sure it must be.
 
     Source: situation-awareness thesis, chapter 5 and its outlook, which proposes it: the first box is the
@@ -188,7 +188,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
 
     @property
     def explanation(self) -> AttentiveExplanation:
-        """What the tracker below believes, by the numbers that are told, and how sure these are."""
+        """What the tracker below believes, by the track ids, and how sure these are."""
         likeness = {}
         for wearer in self._wearers.values():
             mean = None if wearer.number is None else wearer.mean(wearer.number, least=1)

@@ -71,7 +71,7 @@ def box_in(camera: str, track: Track, frame: Frame) -> Box | None:
     Without calibrations colours are taken to show what the thermal image shows.
 
     Returns:
-        left, top, width, height [px], which may lie outside; None where it cannot be told.
+        left, top, width, height [px], which may lie outside; None where it is unknown.
     """
     for name in (camera, _SAME_LENS.get(camera, camera)):
         if name in track.boxes:
@@ -100,7 +100,7 @@ def _same_view(camera: str, track: Track, frame: Frame) -> Box | None:
 
 
 def _place_by_height(track: Track, thermal: Calibration | None) -> FloorPlace | None:
-    """Return where a person stands of whom a tracker tells no more than a box in the thermal image."""
+    """Return where a person stands for whom a tracker has only a box in the thermal image."""
     if thermal is None or THERMAL not in track.boxes:
         return None
     return places_on_floor([track.boxes[THERMAL]], [Status.TRACKED], thermal)[0]

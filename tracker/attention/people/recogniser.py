@@ -97,7 +97,7 @@ Seen = TypeVar("Seen")
 
 
 class Recogniser(Protocol[Appearance, Seen]):
-    """Whatever tells people by their appearance."""
+    """Identifies people by their appearance."""
 
     def see(self, view: PersonView) -> Seen | None:
         """Look at a person in one image; None where there is not enough of the person in it."""
@@ -113,7 +113,7 @@ class Recogniser(Protocol[Appearance, Seen]):
 
 
 class ByColour:
-    """Tells people by the colours of head and torso, with the light divided out."""
+    """Identifies people by the colours of head and torso, with the light divided out."""
 
     def see(self, view: PersonView) -> ColourLook | None:
         """Look at a person."""
@@ -142,7 +142,7 @@ class Spotted:
 
 
 class ByFocus:
-    """Tells people by the focus of attention: who is there has the score of the place, others have none.
+    """Identifies people by the focus of attention: who is there has the score of the place, others have none.
 
     Args:
         config: how attention is directed.

@@ -119,7 +119,7 @@ class ColourModel:
     mean: Floats = field(init=False)
 
     def __post_init__(self) -> None:
-        # Later descriptions hold no NaN where an earlier one had a value, so the newest tells what is known.
+        # Later descriptions hold no NaN where an earlier one had a value, so the newest has what is known.
         object.__setattr__(self, "mean", _mean_of_known(self.recent))
         self.recent.setflags(write=False)
 

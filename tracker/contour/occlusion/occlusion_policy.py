@@ -102,7 +102,7 @@ class StayBehind:
 
 
 class OcclusionPolicy(Protocol):
-    """Supposes where people are who are not seen, and tells when that begins and ends."""
+    """Supposes where people are who are not seen, and says when that begins and ends."""
 
     def motion_of(self, person: TrackedPerson) -> MotionConfig:
         """Return how a person's samples move."""

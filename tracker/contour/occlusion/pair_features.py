@@ -17,7 +17,7 @@ FEATURES = ("strength", "top", "bottom", "colour", "colour_o", "colour_no")
 
 THERMAL, COLOUR = FEATURES[:3], FEATURES[3:]
 
-_SLIVER = 0.1  # share of a part below which an area of it tells nothing
+_SLIVER = 0.1  # share of a part below which an area of it says nothing
 
 Pairs = NDArray[np.int64]
 Features = NDArray[np.float64]

@@ -107,7 +107,7 @@ class PanoramicPaperTracker:
     Between two images, and for a while when nobody is seen, the filter only predicts, and the track has no
     box. A person who was gone has a new id; one who takes another's place between two images has not. Room
     coordinates are those of the robot's frame at the start. There are no networks of single persons (section
-    6.1), as nothing here tells who it is.
+    6.1), as nothing here identifies the person.
 
     Args:
         models: one or more appearance models, each for one mirror; that of the camera is taken.

@@ -11,7 +11,7 @@ class SightingConfig:
 
     Attributes:
         least_evidence: log odds from which a patch shows the person.
-        error_share: the part of the error that the model tells which counts: it was taught with more examples
+        error_share: weight of the error that the model reports: it was trained with more examples
             than those by which its errors were learned.
         gate: squared Mahalanobis distance from which a sighting is of another person.
         wide_m: standard deviation of a predicted place from which its neighbourhood is looked at, too [m].
