@@ -1,4 +1,4 @@
-"""What the learned follower is told: nine numbers about the person whom it follows, and six sonars.
+"""The observation of the learned follower: nine numbers about the person whom it follows, and six sonars.
 
 Where `tracks` and `truth` differ only in who made them, a policy trained on one can be tried on the other.
 """
@@ -29,7 +29,7 @@ class FollowerView(gymnasium.Wrapper):  # type: ignore[type-arg]
         self.observation_space = spaces.Box(-2.0, 2.0, (SIZE,), np.float32)
 
     def reset(self, **settings: Any) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begin an episode, following nobody yet."""
+        """Begin an episode, without a person to follow."""
         self._id, self._unseen, self._side = 0.0, 0, 0.0
         self._last = np.zeros(2)
         observation, info = self.env.reset(**settings)

@@ -21,7 +21,7 @@ FIGURES = {
     "mean_distance_error_m": ("distance error", 1.0, "m"),
     "collided": ("episodes with a collision", 100.0, "%"),
     "lost": ("episodes in which the person was lost", 100.0, "%"),
-    "personal_s": ("somebody within 1.2 m", 1.0, "s"),
+    "personal_s": ("a person within 1.2 m", 1.0, "s"),
     "jerk_m_s3": ("jerk", 1.0, "m/s3"),
 }
 """What is printed of an episode: its name, factor and unit; see `FollowingScore` and `ComfortScore`."""

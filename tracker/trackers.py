@@ -126,9 +126,8 @@ def _fused_tracker(rng: np.random.Generator) -> FusedTracker:
 @TRACKERS.register(
     DETECTION_TRACKER,
     scope="the default: any camera, any room, recorded video",
-    summary="A detector that has seen nothing but rendered random worlds proposes people, and a Kalman "
-    "filter in metres follows each. No temperature matters, only contrast; colours tell who came "
-    "back.",
+    summary="A detector trained on rendered random worlds only, and a Kalman filter in metres for each "
+    "person. Needs contrast, not temperatures; re-identifies people by the colours of their clothes.",
 )
 def _detection(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
     from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
@@ -139,8 +138,8 @@ def _detection(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
 @TRACKERS.register(
     CONTOUR_TRACKER,
     scope="thesis, chapters 4 to 7, and beyond",
-    summary="Particles, contour, colour and thermal looks. People who overlap are sorted by depth, those "
-    "in front are explained away, hidden people walk on. It knows how the robot moved.",
+    summary="Particles, contour, colour and thermal appearance. People who overlap are sorted by depth, "
+    "those in front are explained away, occluded people coast. Uses odometry.",
 )
 def _contour(rng: np.random.Generator) -> Tracker:
     return _contour_tracker(CONTOUR_TRACKER, rng)
@@ -148,8 +147,8 @@ def _contour(rng: np.random.Generator) -> Tracker:
 
 @TRACKERS.register(
     "learned",
-    scope="the same, taught",
-    summary="The same, but depth order comes from the classifier that `peopleboy train occlusion` learned.",
+    scope="the same, trained",
+    summary="The same, but the classifier of `peopleboy train occlusion` decides which person is in front.",
 )
 def _learned(rng: np.random.Generator) -> Tracker:
     return _contour_tracker("learned", rng)

@@ -22,7 +22,7 @@ NEVER_SEEN: Final = ("leads_robot", "reacts_ignores", "follow_at_distance", "wai
 _STEPS: Final = 675  # of an episode: 45 s
 _HEIGHT, _X = 0.04, 0.02  # how far a tracker's heights (as shares) and columns are off
 _KEPT = 0.8  # of an error, from one image to the next
-_OVERLOOKED = 0.02  # share of images in which somebody is overlooked
+_OVERLOOKED = 0.02  # share of images in which a person is overlooked
 
 
 def earn(weights: Weights | None, scenario: str, seed: int) -> float:
@@ -46,7 +46,7 @@ def _world(scenario: str) -> PeopleBoyEnv:
 
 
 class Unsure:
-    """Blurs what the truth tells, so that nobody learns to rely on it to the millimetre."""
+    """Adds noise to the truth, so that no controller learns to rely on it to the millimetre."""
 
     def __init__(self, seed: int) -> None:
         self._rng = stream(seed, "examples.learning.unsure")
