@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 from docs.generate.markdown import table
 from peopleboy.sim.people.body.clothes import BOTTOMS, HAIR, SHOES, TOPS, Garment
-from peopleboy.sim.places.furniture.thing_kinds import KINDS, Kind
+from peopleboy.sim.places.furniture.thing_kinds import KINDS
+from peopleboy.sim.places.pieces import Kind
 from peopleboy.sim.places.place_config import (
     CorridorConfig,
     LCorridorConfig,

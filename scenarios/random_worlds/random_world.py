@@ -24,7 +24,8 @@ from peopleboy.scenarios.random_worlds.draw_scene import (
     rounded,
     with_one_more,
 )
-from peopleboy.sim.places.furniture.thing_kinds import KINDS, Kind
+from peopleboy.sim.places.furniture.thing_kinds import KINDS
+from peopleboy.sim.places.pieces import Kind
 from peopleboy.sim.random_streams import stream
 
 _USUAL_AIR_C: Final = 21.5  # to which the kinds' own temperatures belong

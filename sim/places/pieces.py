@@ -6,7 +6,9 @@ A thing's frame: x forward, y left, z up; origin on the floor below its middle, 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 from peopleboy.sim.shapes.materials import Covering, Pattern, Rgb
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
@@ -21,7 +23,7 @@ WOOD: Rgb = (0.40, 0.26, 0.14)
 ALONG_Y: Quaternion = (math.sin(math.pi / 4.0), 0.0, 0.0, math.cos(math.pi / 4.0))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Piece:
     """Shapes of one look in the frame of their thing; see `Material` for what the rest means."""
 
@@ -38,6 +40,56 @@ class Piece:
     covering: Covering = Covering.BARE
     gradient_k_per_m: float = 0.0
     uneven_k: float = 0.0
+
+
+Builder = Callable[[Vector, float, Rgb], tuple[Piece, ...]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Kind:
+    """A kind of thing, with its usual size (depth, width, height), temperature and colour.
+
+    Attributes:
+        build: size [m] and main temperature [degC] and colour to pieces, the main one first.
+        is_hung: whether it hangs on a wall, its back against it.
+        is_from_ceiling: whether it hangs under the ceiling.
+        is_to_ceiling: whether its usual height is that of the place.
+        is_seat: whether a person may sit on it, and so be where it is.
+        base_m: [m] usual height of its foot.
+        is_heated: whether its main piece is warm by itself, and not as the air has it.
+    """
+
+    build: Builder
+    size_m: Vector
+    temperature_c: float
+    rgb: Rgb
+    base_m: float = 0.0
+    is_hung: bool = False
+    is_from_ceiling: bool = False
+    is_to_ceiling: bool = False
+    is_seat: bool = False
+    is_heated: bool = False
+
+
+_KINDS_BY_MODULE: dict[str, dict[str, Kind]] = {}
+
+
+def thing_kind(name: str, **usual: Any) -> Callable[[Builder], Builder]:
+    """Register a builder as a kind of thing, with the attributes of `Kind`.
+
+    A builder with several kinds registers the lowest decorator first.
+    """
+
+    def register(build: Builder) -> Builder:
+        _KINDS_BY_MODULE.setdefault(build.__module__, {})[name] = Kind(build=build, **usual)
+        return build
+
+    return register
+
+
+def kinds_of(module: str) -> dict[str, Kind]:
+    """Return the kinds that the builders of a module register, in the order of their definition."""
+    return _KINDS_BY_MODULE[module]
 
 
 def box(size: Vector, position: Vector) -> Shape:
@@ -62,3 +114,12 @@ def tube(length: float, radius: float, position: Vector, orientation: Quaternion
 def ball(radius: float, position: Vector) -> Shape:
     """A sphere [m]."""
     return Shape(kind=ShapeKind.SPHERE, size=(radius, 0.0, 0.0), position=position)
+
+
+def corner_legs(thick: float, top: float, x: float, y: float) -> tuple[Shape, ...]:
+    """Four square legs from below the floor to a height, this far [m] from the middle on both axes."""
+    return tuple(
+        standing_box(thick, thick, -SINK_M, top, x=sx * x, y=sy * y)
+        for sx in (-1.0, 1.0)
+        for sy in (-1.0, 1.0)
+    )

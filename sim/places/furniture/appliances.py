@@ -7,7 +7,21 @@ from __future__ import annotations
 
 import math
 
-from peopleboy.sim.places.pieces import ALONG_Y, BLACK, SINK_M, STEEL, Piece, ball, box, standing_box, tube
+from peopleboy.sim.places.pieces import (
+    ALONG_Y,
+    BLACK,
+    SINK_M,
+    STEEL,
+    WHITE,
+    WOOD,
+    Piece,
+    ball,
+    box,
+    corner_legs,
+    standing_box,
+    thing_kind,
+    tube,
+)
 from peopleboy.sim.shapes.materials import Covering, Rgb
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind, Vector
 
@@ -21,6 +35,42 @@ def capsule(length: float, radius: float, position: Vector, orientation: Quatern
     )
 
 
+@thing_kind(
+    "light_panel",
+    size_m=(0.6, 0.6, 0.04),
+    temperature_c=31.0,
+    rgb=(1.0, 1.0, 0.97),
+    is_from_ceiling=True,
+    is_heated=True,
+)
+def lit_shade(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A flat panel of light-emitting diodes under the ceiling, hardly warmer than a hand."""
+    depth, width, height = size
+    panel = standing_box(depth, width, 0.0, height + SINK_M)
+    return (Piece("panel", (panel,), temperature, rgb, glow=1.0, uneven_k=0.8, is_solid=False),)
+
+
+@thing_kind(
+    "screen",
+    size_m=(0.06, 1.25, 0.72),
+    temperature_c=33.0,
+    rgb=(0.3, 0.45, 0.7),
+    base_m=1.2,
+    is_hung=True,
+    is_heated=True,
+)
+def screen(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A large flat screen on a wall, warmest above."""
+    depth, width, height = size
+    glass = standing_box(0.5 * depth, width - 0.03, 0.015, height - 0.015, x=0.75 * depth + 0.002)
+    case = standing_box(0.8 * depth + SINK_M, width, 0.0, height, x=0.4 * depth - SINK_M / 2.0)
+    return (
+        Piece("glass", (glass,), temperature, rgb, glow=0.7, gradient_k_per_m=5.0, uneven_k=0.9, shine=0.8),
+        Piece("case", (case,), temperature - 3.0, BLACK),
+    )
+
+
+@thing_kind("kettle", size_m=(0.25, 0.18, 0.26), temperature_c=70.0, rgb=STEEL, is_heated=True)
 def kettle(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A kettle that has boiled, on its base."""
     depth, width, height = size
@@ -31,18 +81,12 @@ def kettle(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     handle = standing_box(0.02, 0.025, 0.3 * height, 0.9 * height, x=0.5 * depth - 0.01)
     bridge = standing_box(depth - width, 0.02, 0.82 * height, 0.88 * height, x=0.5 * width - 0.006)
     return (
-        Piece(
-            name="jug",
-            shapes=(jug,),
-            temperature_c=temperature,
-            rgb=rgb,
-            gradient_k_per_m=-60.0,
-            uneven_k=2.0,
-        ),
-        Piece(name="base", shapes=(base, handle, bridge, lid), temperature_c=28.0, rgb=BLACK),
+        Piece("jug", (jug,), temperature, rgb, gradient_k_per_m=-60.0, uneven_k=2.0),
+        Piece("base", (base, handle, bridge, lid), 28.0, BLACK),
     )
 
 
+@thing_kind("fridge", size_m=(0.62, 0.6, 1.8), temperature_c=20.0, rgb=WHITE)
 def fridge(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A fridge over a freezer: cool doors, cold seals, and warm air from below."""
     depth, width, height = size
@@ -56,20 +100,14 @@ def fridge(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
         for low, high in ((0.2, 0.34), (0.4, 0.6))
     )
     return (
-        Piece(
-            name="body",
-            shapes=(body,),
-            temperature_c=temperature,
-            rgb=rgb,
-            gradient_k_per_m=-1.2,
-            uneven_k=0.4,
-        ),
-        Piece(name="seals", shapes=seals, temperature_c=temperature - 4.5, rgb=STEEL, is_solid=False),
-        Piece(name="grille", shapes=(grille,), temperature_c=33.0, rgb=BLACK, uneven_k=1.5),
-        Piece(name="handles", shapes=handles, temperature_c=temperature, rgb=STEEL, is_solid=False),
+        Piece("body", (body,), temperature, rgb, gradient_k_per_m=-1.2, uneven_k=0.4),
+        Piece("seals", seals, temperature - 4.5, STEEL, is_solid=False),
+        Piece("grille", (grille,), 33.0, BLACK, uneven_k=1.5),
+        Piece("handles", handles, temperature, STEEL, is_solid=False),
     )
 
 
+@thing_kind("oven", size_m=(0.6, 0.6, 0.9), temperature_c=46.0, rgb=WHITE, is_heated=True)
 def oven(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A stove: a hot pane in front, and on top plates, one of them hot."""
     depth, width, height = size
@@ -82,32 +120,64 @@ def oven(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     )
     rail = box((0.02, 0.8 * width, 0.02), (depth / 2.0 + 0.02, 0.0, 0.76 * height))
     return (
-        Piece(
-            name="glass", shapes=(pane,), temperature_c=temperature, rgb=BLACK, uneven_k=2.0, is_solid=False
-        ),
-        Piece(name="body", shapes=(body,), temperature_c=26.0, rgb=rgb, gradient_k_per_m=6.0, uneven_k=0.6),
-        Piece(
-            name="hot_plate", shapes=plates[:1], temperature_c=temperature + 25.0, rgb=BLACK, is_solid=False
-        ),
-        Piece(name="plates", shapes=plates[1:], temperature_c=29.0, rgb=BLACK, is_solid=False),
-        Piece(name="rail", shapes=(rail,), temperature_c=27.0, rgb=STEEL, is_solid=False),
+        Piece("glass", (pane,), temperature, BLACK, uneven_k=2.0, is_solid=False),
+        Piece("body", (body,), 26.0, rgb, gradient_k_per_m=6.0, uneven_k=0.6),
+        Piece("hot_plate", plates[:1], temperature + 25.0, BLACK, is_solid=False),
+        Piece("plates", plates[1:], 29.0, BLACK, is_solid=False),
+        Piece("rail", (rail,), 27.0, STEEL, is_solid=False),
     )
 
 
-def screen(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A large flat screen on a wall, warmest above."""
+@thing_kind("counter", size_m=(0.6, 2.4, 0.9), temperature_c=21.2, rgb=WHITE)
+def counter(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A counter or kitchen unit: doors below a board."""
     depth, width, height = size
-    glass = standing_box(0.5 * depth, width - 0.03, 0.015, height - 0.015, x=0.75 * depth + 0.002)
-    case = standing_box(0.8 * depth + SINK_M, width, 0.0, height, x=0.4 * depth - SINK_M / 2.0)
+    doors = max(2, min(round(width / 0.6), 12))
+    pitch = width / doors
+    fronts = tuple(
+        standing_box(
+            0.03, pitch - 0.02, 0.12, height - 0.06, x=depth / 2.0 - 0.03, y=(k + 0.5) * pitch - width / 2.0
+        )
+        for k in range(doors)
+    )
+    body = standing_box(depth - 0.06, width - 0.02, -SINK_M, height - 0.03, x=-0.02)
+    board = standing_box(depth, width, height - 0.04, height)
     return (
-        Piece(
-            name="glass", shapes=(glass,), temperature_c=temperature, rgb=rgb, glow=0.7, gradient_k_per_m=5.0,
-            uneven_k=0.9, shine=0.8,
-        ),
-        Piece(name="case", shapes=(case,), temperature_c=temperature - 3.0, rgb=BLACK),
-    )  # fmt: skip
+        Piece("fronts", fronts, temperature, rgb, uneven_k=0.4, gradient_k_per_m=0.8),
+        Piece("body", (body,), temperature - 1.0, BLACK, gradient_k_per_m=1.0),
+        Piece("board", (board,), temperature + 0.6, STEEL, uneven_k=0.7),
+    )
 
 
+@thing_kind("shelf", size_m=(0.45, 1.2, 1.9), temperature_c=21.5, rgb=(0.45, 0.33, 0.2))
+def shelf_of_boxes(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A rack with boxes on its boards."""
+    depth, width, height = size
+    levels = 4
+    boards = tuple(
+        standing_box(depth, width, at - 0.03, at)
+        for at in (0.08, *(0.08 + (height - 0.08) * k / (levels - 1) for k in range(1, levels)))
+    )
+    posts = corner_legs(0.03, height - 0.012, depth / 2.0 - 0.02, width / 2.0 - 0.02)
+    gap = (height - 0.08) / (levels - 1)
+    boxes = tuple(
+        standing_box(
+            0.8 * depth,
+            (0.16 + 0.05 * ((k + j) % 3)) * width,
+            0.075 + j * gap,
+            0.08 + j * gap + (0.4 + 0.13 * ((2 * k + j) % 3)) * gap,
+            y=(0.3 * k - 0.3) * width,
+        )
+        for j in range(levels - 1)
+        for k in range(3)
+    )
+    return (
+        Piece("boxes", boxes, temperature, rgb, uneven_k=1.0, gradient_k_per_m=0.8),
+        Piece("rack", (*boards, *posts), temperature - 1.0, STEEL, emissivity=0.7),
+    )
+
+
+@thing_kind("vending_machine", size_m=(0.8, 0.95, 1.85), temperature_c=24.5, rgb=(0.5, 0.05, 0.06))
 def vending_machine(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A vending machine: a lit cool pane, and below it warm air and a slot."""
     depth, width, height = size
@@ -120,19 +190,24 @@ def vending_machine(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, 
     grille = standing_box(0.02, 0.8 * width, 0.04, 0.16 * height, x=depth / 2.0 - 0.003)
     body = standing_box(depth - 0.01, width, -SINK_M, height, x=-0.005)
     return (
+        Piece("body", (body,), temperature, rgb, gradient_k_per_m=2.0, uneven_k=0.6),
         Piece(
-            name="body", shapes=(body,), temperature_c=temperature, rgb=rgb, gradient_k_per_m=2.0,
-            uneven_k=0.6,
+            "window",
+            (pane,),
+            temperature - 6.0,
+            (0.7, 0.75, 0.8),
+            glow=0.6,
+            emissivity=0.87,
+            gradient_k_per_m=2.0,
+            uneven_k=0.8,
+            is_solid=False,
         ),
-        Piece(
-            name="window", shapes=(pane,), temperature_c=temperature - 6.0, rgb=(0.7, 0.75, 0.8), glow=0.6,
-            emissivity=0.87, gradient_k_per_m=2.0, uneven_k=0.8, is_solid=False,
-        ),
-        Piece(name="panel", shapes=(panel,), temperature_c=34.0, rgb=BLACK, glow=0.2, is_solid=False),
-        Piece(name="grille", shapes=(grille,), temperature_c=38.0, rgb=BLACK, uneven_k=2.0, is_solid=False),
-    )  # fmt: skip
+        Piece("panel", (panel,), 34.0, BLACK, glow=0.2, is_solid=False),
+        Piece("grille", (grille,), 38.0, BLACK, uneven_k=2.0, is_solid=False),
+    )
 
 
+@thing_kind("machine", size_m=(0.9, 2.0, 1.35), temperature_c=44.0, rgb=(0.12, 0.25, 0.2), is_heated=True)
 def machine(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A machine tool: a bed, a head stock, and a hot motor with ribs behind."""
     depth, width, height = size
@@ -150,21 +225,14 @@ def machine(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     )
     panel = standing_box(0.04, 0.2 * width, 0.72 * height, 0.94 * height, x=0.44 * depth, y=0.33 * width)
     return (
-        Piece(name="motor", shapes=(motor, *ribs), temperature_c=temperature, rgb=STEEL, uneven_k=2.5),
-        Piece(
-            name="bed",
-            shapes=bed,
-            temperature_c=22.0,
-            rgb=rgb,
-            emissivity=0.85,
-            gradient_k_per_m=4.0,
-            uneven_k=0.8,
-        ),
-        Piece(name="head", shapes=(head,), temperature_c=27.5, rgb=rgb, gradient_k_per_m=5.0, uneven_k=1.2),
-        Piece(name="panel", shapes=(panel,), temperature_c=31.0, rgb=BLACK, glow=0.2, is_solid=False),
+        Piece("motor", (motor, *ribs), temperature, STEEL, uneven_k=2.5),
+        Piece("bed", bed, 22.0, rgb, emissivity=0.85, gradient_k_per_m=4.0, uneven_k=0.8),
+        Piece("head", (head,), 27.5, rgb, gradient_k_per_m=5.0, uneven_k=1.2),
+        Piece("panel", (panel,), 31.0, BLACK, glow=0.2, is_solid=False),
     )
 
 
+@thing_kind("glass_wall", size_m=(0.08, 2.4, 2.4), temperature_c=19.5, rgb=(0.45, 0.55, 0.55))
 def glass_wall(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A pane from floor to top in a frame of posts, which mirrors who walks past."""
     depth, width, height = size
@@ -180,42 +248,21 @@ def glass_wall(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     )
     return (
         Piece(
-            name="pane", shapes=(pane,), temperature_c=temperature, rgb=rgb, emissivity=0.85, uneven_k=0.5,
-            gradient_k_per_m=0.8, covering=Covering.GLASS, shine=1.0,
-        ),
-        Piece(
-            name="frame", shapes=(*posts, *rails), temperature_c=temperature + 1.5, rgb=STEEL, emissivity=0.7
-        ),
-    )  # fmt: skip
-
-
-def counter(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A counter or kitchen unit: doors below a board."""
-    depth, width, height = size
-    doors = max(2, min(round(width / 0.6), 12))
-    pitch = width / doors
-    fronts = tuple(
-        standing_box(
-            0.03, pitch - 0.02, 0.12, height - 0.06, x=depth / 2.0 - 0.03, y=(k + 0.5) * pitch - width / 2.0
-        )
-        for k in range(doors)
-    )
-    body = standing_box(depth - 0.06, width - 0.02, -SINK_M, height - 0.03, x=-0.02)
-    board = standing_box(depth, width, height - 0.04, height)
-    return (
-        Piece(
-            name="fronts",
-            shapes=fronts,
-            temperature_c=temperature,
-            rgb=rgb,
-            uneven_k=0.4,
+            "pane",
+            (pane,),
+            temperature,
+            rgb,
+            emissivity=0.85,
+            uneven_k=0.5,
             gradient_k_per_m=0.8,
+            covering=Covering.GLASS,
+            shine=1.0,
         ),
-        Piece(name="body", shapes=(body,), temperature_c=temperature - 1.0, rgb=BLACK, gradient_k_per_m=1.0),
-        Piece(name="board", shapes=(board,), temperature_c=temperature + 0.6, rgb=STEEL, uneven_k=0.7),
+        Piece("frame", (*posts, *rails), temperature + 1.5, STEEL, emissivity=0.7),
     )
 
 
+@thing_kind("dog", size_m=(0.75, 0.28, 0.6), temperature_c=28.5, rgb=(0.3, 0.18, 0.08), is_heated=True)
 def dog(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A dog that stands: as warm as a person, and half as tall as a child."""
     depth, width, height = size
@@ -231,12 +278,13 @@ def dog(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     muzzle = capsule(0.1 * depth, 0.17 * width, (0.43 * depth, 0.0, height - 0.48 * width), ALONG_X)
     tail = capsule(0.14 * depth, 0.08 * width, (-0.41 * depth, 0.0, 0.78 * height), ALONG_X)
     return (
-        Piece(name="fur", shapes=(trunk, neck, tail), temperature_c=temperature, rgb=rgb, uneven_k=1.0),
-        Piece(name="legs", shapes=legs, temperature_c=temperature - 1.5, rgb=rgb, uneven_k=0.8),
-        Piece(name="head", shapes=(head, muzzle), temperature_c=temperature + 2.5, rgb=rgb, uneven_k=1.0),
+        Piece("fur", (trunk, neck, tail), temperature, rgb, uneven_k=1.0),
+        Piece("legs", legs, temperature - 1.5, rgb, uneven_k=0.8),
+        Piece("head", (head, muzzle), temperature + 2.5, rgb, uneven_k=1.0),
     )
 
 
+@thing_kind("bench", size_m=(0.55, 1.6, 0.85), temperature_c=21.0, rgb=WOOD, is_seat=True)
 def bench(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A bench of boards with a back."""
     depth, width, height = size
@@ -256,11 +304,12 @@ def bench(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
         for y in (-0.38, 0.38)
     )
     return (
-        Piece(name="boards", shapes=(*boards, *backs), temperature_c=temperature, rgb=rgb, uneven_k=0.6),
-        Piece(name="legs", shapes=legs, temperature_c=temperature - 1.0, rgb=BLACK),
+        Piece("boards", (*boards, *backs), temperature, rgb, uneven_k=0.6),
+        Piece("legs", legs, temperature - 1.0, BLACK),
     )
 
 
+@thing_kind("railing", size_m=(0.04, 2.0, 1.05), temperature_c=19.5, rgb=STEEL)
 def railing(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A barrier of two rails and upright bars, through which one sees."""
     depth, width, height = size
@@ -279,52 +328,4 @@ def railing(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
         )
         for y in (-0.5, 0.5)
     )
-    return (
-        Piece(name="bars", shapes=(*rails, *bars, *posts), temperature_c=temperature, rgb=rgb, uneven_k=0.3),
-    )
-
-
-def lit_shade(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A flat panel of light-emitting diodes under the ceiling, hardly warmer than a hand."""
-    depth, width, height = size
-    panel = standing_box(depth, width, 0.0, height + SINK_M)
-    return (
-        Piece(
-            name="panel", shapes=(panel,), temperature_c=temperature, rgb=rgb, glow=1.0, uneven_k=0.8,
-            is_solid=False,
-        ),
-    )  # fmt: skip
-
-
-def shelf_of_boxes(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A rack with boxes on its boards."""
-    depth, width, height = size
-    levels = 4
-    boards = tuple(
-        standing_box(depth, width, at - 0.03, at)
-        for at in (0.08, *(0.08 + (height - 0.08) * k / (levels - 1) for k in range(1, levels)))
-    )
-    posts = tuple(
-        standing_box(
-            0.03, 0.03, -SINK_M, height - 0.012, x=sx * (depth / 2.0 - 0.02), y=sy * (width / 2.0 - 0.02)
-        )
-        for sx in (-1.0, 1.0)
-        for sy in (-1.0, 1.0)
-    )
-    gap = (height - 0.08) / (levels - 1)
-    boxes = tuple(
-        standing_box(
-            0.8 * depth, (0.16 + 0.05 * ((k + j) % 3)) * width, 0.075 + j * gap,
-            0.08 + j * gap + (0.4 + 0.13 * ((2 * k + j) % 3)) * gap, y=(0.3 * k - 0.3) * width,
-        )
-        for j in range(levels - 1)
-        for k in range(3)
-    )  # fmt: skip
-    return (
-        Piece(
-            name="boxes", shapes=boxes, temperature_c=temperature, rgb=rgb, uneven_k=1.0, gradient_k_per_m=0.8
-        ),
-        Piece(
-            name="rack", shapes=(*boards, *posts), temperature_c=temperature - 1.0, rgb=STEEL, emissivity=0.7
-        ),
-    )
+    return (Piece("bars", (*rails, *bars, *posts), temperature, rgb, uneven_k=0.3),)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from peopleboy.sim.places.pieces import BLACK, SINK_M, STEEL, Piece, ball, box, standing_box, tube
+from peopleboy.sim.places.pieces import BLACK, SINK_M, STEEL, Piece, ball, box, standing_box, thing_kind, tube
 from peopleboy.sim.shapes.materials import Rgb
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, Vector
 
@@ -15,6 +15,7 @@ _BOARD_M = 0.02
 _SHELF_EVERY_M = 0.45
 
 
+@thing_kind("bear", size_m=(0.42, 0.42, 0.5), temperature_c=21.5, rgb=(0.32, 0.17, 0.07))
 def bear(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A teddy bear that sits, made of balls."""
     depth, width, height = size
@@ -34,12 +35,10 @@ def bear(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
         ),
     )
     snout = (ball(0.10 * height, (x + 0.04 * depth + 0.18 * height, 0.0, top - 0.05 * height)),)
-    return (
-        Piece(name="fur", shapes=fur, temperature_c=temperature, rgb=rgb),
-        Piece(name="snout", shapes=snout, temperature_c=temperature, rgb=(0.62, 0.5, 0.36)),
-    )
+    return (Piece("fur", fur, temperature, rgb), Piece("snout", snout, temperature, (0.62, 0.5, 0.36)))
 
 
+@thing_kind("can", size_m=(0.6, 0.26, 0.4), temperature_c=20.5, rgb=(0.05, 0.18, 0.35))
 def can(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A watering can: a round body with a spout to the front and a bow behind."""
     depth, width, height = size
@@ -54,9 +53,10 @@ def can(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
         box((1.2 * radius, 0.16 * radius, thick), (x - 0.15 * radius, 0.0, height - 0.7 * thick)),
     )
     pot = tube(body + SINK_M, radius, (x, 0.0, (body - SINK_M) / 2.0))
-    return (Piece(name="body", shapes=(pot, neck, *bow), temperature_c=temperature, rgb=rgb),)
+    return (Piece("body", (pot, neck, *bow), temperature, rgb),)
 
 
+@thing_kind("flower", size_m=(0.5, 0.5, 1.0), temperature_c=20.5, rgb=(0.05, 0.22, 0.06))
 def flower(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A bush on a stem, in a pot that one can carry."""
     _, width, height = size
@@ -71,11 +71,12 @@ def flower(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     stem = tube(0.5 * height, 0.025, (0.0, 0.0, 0.45 * height))
     bowl = tube(pot + SINK_M, 0.3 * width, (0.0, 0.0, (pot - SINK_M) / 2.0))
     return (
-        Piece(name="leaves", shapes=(*bush, stem), temperature_c=temperature, rgb=rgb),
-        Piece(name="pot", shapes=(bowl,), temperature_c=temperature + 0.5, rgb=(0.45, 0.2, 0.1)),
+        Piece("leaves", (*bush, stem), temperature, rgb),
+        Piece("pot", (bowl,), temperature + 0.5, (0.45, 0.2, 0.1)),
     )
 
 
+@thing_kind("door_leaf", size_m=(0.04, 0.93, 2.03), temperature_c=21.0, rgb=(0.45, 0.3, 0.16))
 def door_leaf(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A leaf of a door, with a handle on both sides near the edge that is on the left, looking along x."""
     depth, width, height = size
@@ -85,11 +86,12 @@ def door_leaf(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
         box((0.03, 0.1, 0.02), (side * (depth / 2.0 + 0.015), width / 2.0 - 0.08, at)) for side in (-1.0, 1.0)
     )
     return (
-        Piece(name="leaf", shapes=(leaf,), temperature_c=temperature, rgb=rgb),
-        Piece(name="handles", shapes=handles, temperature_c=temperature, rgb=STEEL, is_solid=False),
+        Piece("leaf", (leaf,), temperature, rgb),
+        Piece("handles", handles, temperature, STEEL, is_solid=False),
     )
 
 
+@thing_kind("cupboard", size_m=(0.45, 0.9, 1.8), temperature_c=21.2, rgb=(0.55, 0.45, 0.33))
 def cupboard(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A cupboard with shelves, open to the front."""
     depth, width, height = size
@@ -97,21 +99,16 @@ def cupboard(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     shelves = max(round(height / _SHELF_EVERY_M), 2)
     lowest, highest = _BOARD_M / 2.0, height - _BOARD_M / 2.0 - 0.003
     boards = tuple(
-        box(
-            (depth - 0.012, inner, _BOARD_M),
-            (-0.003, 0.0, lowest + k * (highest - lowest) / shelves),
-        )
+        box((depth - 0.012, inner, _BOARD_M), (-0.003, 0.0, lowest + k * (highest - lowest) / shelves))
         for k in range(shelves + 1)
     )
     sides = tuple(standing_box(depth, _BOARD_M, -SINK_M, height, y=sign * side) for sign in (-1.0, 1.0))
     back = standing_box(_BOARD_M, inner - 0.002, lowest, highest, x=-depth / 2.0 + _BOARD_M / 2.0 + 0.006)
     dark: Rgb = (0.7 * rgb[0], 0.7 * rgb[1], 0.7 * rgb[2])
-    return (
-        Piece(name="sides", shapes=sides, temperature_c=temperature, rgb=rgb),
-        Piece(name="shelves", shapes=(*boards, back), temperature_c=temperature, rgb=dark),
-    )
+    return (Piece("sides", sides, temperature, rgb), Piece("shelves", (*boards, back), temperature, dark))
 
 
+@thing_kind("drawer", size_m=(0.42, 0.8, 0.2), temperature_c=21.2, rgb=(0.6, 0.5, 0.38))
 def drawer(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A drawer: a box without a lid behind a front with a knob."""
     depth, width, height = size
@@ -127,8 +124,8 @@ def drawer(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     )
     knob = box((0.025, 0.12, 0.02), (depth / 2.0 + 0.012, 0.0, height / 2.0))
     return (
-        Piece(name="front", shapes=(front, *tray), temperature_c=temperature, rgb=rgb),
-        Piece(name="knob", shapes=(knob,), temperature_c=temperature, rgb=BLACK, is_solid=False),
+        Piece("front", (front, *tray), temperature, rgb),
+        Piece("knob", (knob,), temperature, BLACK, is_solid=False),
     )
 
 

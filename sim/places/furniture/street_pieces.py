@@ -17,7 +17,9 @@ from peopleboy.sim.places.pieces import (
     Piece,
     ball,
     box,
+    corner_legs,
     standing_box,
+    thing_kind,
     tube,
 )
 from peopleboy.sim.shapes.materials import Covering, Rgb
@@ -25,13 +27,26 @@ from peopleboy.sim.shapes.shapes import Quaternion, Shape, Vector
 
 # Where each ball of a crown touches the outline, as a direction, and its radius as a share of the crown's.
 _CROWN = (
-    (0.0, 0.0, 1.0, 0.5), (1.0, 0.0, 0.0, 0.5), (-1.0, 0.0, 0.0, 0.46), (0.0, 1.0, 0.0, 0.5),
-    (0.0, -1.0, 0.0, 0.46), (0.0, 0.0, -0.5, 0.6), (0.6, 0.6, 0.5, 0.4), (-0.6, 0.5, 0.6, 0.38),
-    (0.5, -0.6, 0.6, 0.42), (-0.6, -0.6, 0.5, 0.36), (0.7, 0.5, -0.5, 0.36), (-0.6, 0.6, -0.5, 0.4),
-    (0.6, -0.7, -0.4, 0.32), (-0.7, -0.5, -0.5, 0.34), (0.9, -0.2, 0.4, 0.28), (-0.3, 0.9, 0.4, 0.26),
-)  # fmt: skip
+    (0.0, 0.0, 1.0, 0.5),
+    (1.0, 0.0, 0.0, 0.5),
+    (-1.0, 0.0, 0.0, 0.46),
+    (0.0, 1.0, 0.0, 0.5),
+    (0.0, -1.0, 0.0, 0.46),
+    (0.0, 0.0, -0.5, 0.6),
+    (0.6, 0.6, 0.5, 0.4),
+    (-0.6, 0.5, 0.6, 0.38),
+    (0.5, -0.6, 0.6, 0.42),
+    (-0.6, -0.6, 0.5, 0.36),
+    (0.7, 0.5, -0.5, 0.36),
+    (-0.6, 0.6, -0.5, 0.4),
+    (0.6, -0.7, -0.4, 0.32),
+    (-0.7, -0.5, -0.5, 0.34),
+    (0.9, -0.2, 0.4, 0.28),
+    (-0.3, 0.9, 0.4, 0.26),
+)
 
 
+@thing_kind("car", size_m=(4.2, 1.75, 1.45), temperature_c=36.0, rgb=(0.08, 0.12, 0.3), is_heated=True)
 def car(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A car that has been driven: warm bonnet, grille, tyres and exhaust, cool panes and roof."""
     depth, width, height = size
@@ -68,33 +83,19 @@ def car(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     )
     body_c = 20.5
     return (
-        Piece(name="bonnet", shapes=(bonnet,), temperature_c=temperature, rgb=rgb, uneven_k=2.5),
-        Piece(
-            name="body",
-            shapes=(lower, *pillars),
-            temperature_c=body_c,
-            rgb=rgb,
-            emissivity=0.88,
-            gradient_k_per_m=-3.0,
-            uneven_k=0.9,
-        ),
-        Piece(name="grille", shapes=(grille,), temperature_c=temperature + 4.0, rgb=BLACK, uneven_k=2.5),
-        Piece(
-            name="glass",
-            shapes=(glass,),
-            temperature_c=body_c - 3.0,
-            rgb=(0.06, 0.07, 0.09),
-            emissivity=0.85,
-            uneven_k=0.8,
-        ),
-        Piece(name="roof", shapes=(roof,), temperature_c=body_c - 4.0, rgb=rgb, uneven_k=0.5),
-        Piece(name="tyres", shapes=wheels, temperature_c=27.0, rgb=BLACK, uneven_k=1.0),
-        Piece(name="hubs", shapes=hubs, temperature_c=33.0, rgb=STEEL, emissivity=0.8, is_solid=False),
-        Piece(name="lamps", shapes=lamps, temperature_c=25.0, rgb=(0.8, 0.8, 0.75), glow=0.2),
-        Piece(name="exhaust", shapes=(exhaust,), temperature_c=temperature + 18.0, rgb=STEEL, is_solid=False),
+        Piece("bonnet", (bonnet,), temperature, rgb, uneven_k=2.5),
+        Piece("body", (lower, *pillars), body_c, rgb, emissivity=0.88, gradient_k_per_m=-3.0, uneven_k=0.9),
+        Piece("grille", (grille,), temperature + 4.0, BLACK, uneven_k=2.5),
+        Piece("glass", (glass,), body_c - 3.0, (0.06, 0.07, 0.09), emissivity=0.85, uneven_k=0.8),
+        Piece("roof", (roof,), body_c - 4.0, rgb, uneven_k=0.5),
+        Piece("tyres", wheels, 27.0, BLACK, uneven_k=1.0),
+        Piece("hubs", hubs, 33.0, STEEL, emissivity=0.8, is_solid=False),
+        Piece("lamps", lamps, 25.0, (0.8, 0.8, 0.75), glow=0.2),
+        Piece("exhaust", (exhaust,), temperature + 18.0, STEEL, is_solid=False),
     )
 
 
+@thing_kind("bicycle", size_m=(1.75, 0.55, 1.05), temperature_c=20.0, rgb=(0.05, 0.25, 0.12))
 def bicycle(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A bicycle on its stand: two rings and a frame, cooler than the air under a clear sky."""
     depth, width, height = size
@@ -103,15 +104,18 @@ def bicycle(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     wheels = tuple(_chord(x, radius, k) for x in hubs for k in range(8))
     seat, bar, crank = (-0.13 * depth, 0.85 * height), (0.24 * depth, height - 0.03), (-0.05 * depth, radius)
     frame = (
-        _strut((hubs[0], radius), crank), _strut((hubs[0], radius), seat), _strut(crank, seat),
-        _strut(crank, (bar[0], 0.75 * height)), _strut(seat, (bar[0], 0.75 * height)),
+        _strut((hubs[0], radius), crank),
+        _strut((hubs[0], radius), seat),
+        _strut(crank, seat),
+        _strut(crank, (bar[0], 0.75 * height)),
+        _strut(seat, (bar[0], 0.75 * height)),
         _strut((hubs[1], radius), bar),
         tube(width, 0.018, (bar[0], 0.0, bar[1]), ALONG_Y),
         box((0.24, 0.14, 0.06), (seat[0], 0.0, seat[1])),
-    )  # fmt: skip
+    )
     return (
-        Piece(name="frame", shapes=frame, temperature_c=temperature, rgb=rgb, uneven_k=0.4),
-        Piece(name="tyres", shapes=wheels, temperature_c=temperature - 0.5, rgb=BLACK, uneven_k=0.3),
+        Piece("frame", frame, temperature, rgb, uneven_k=0.4),
+        Piece("tyres", wheels, temperature - 0.5, BLACK, uneven_k=0.3),
     )
 
 
@@ -132,6 +136,7 @@ def _strut(start: tuple[float, float], end: tuple[float, float], radius: float =
     return capsule(math.hypot(across, up), radius, middle, turn)
 
 
+@thing_kind("tree", size_m=(3.2, 3.2, 5.5), temperature_c=21.0, rgb=(0.06, 0.2, 0.05))
 def tree(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A trunk and a crown of leaves, as warm as the air."""
     _, width, height = size
@@ -145,21 +150,8 @@ def tree(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
         0.5 * radius, 0.03 * width, (0.2 * radius, 0.0, middle - 0.8 * radius), (0.0, 0.25, 0.0, 0.968)
     )
     return (
-        Piece(
-            name="crown",
-            shapes=crown,
-            temperature_c=temperature,
-            rgb=rgb,
-            covering=Covering.LEAVES,
-            is_solid=False,
-        ),
-        Piece(
-            name="trunk",
-            shapes=(trunk, bough),
-            temperature_c=temperature + 0.8,
-            rgb=(0.2, 0.14, 0.09),
-            uneven_k=0.8,
-        ),
+        Piece("crown", crown, temperature, rgb, covering=Covering.LEAVES, is_solid=False),
+        Piece("trunk", (trunk, bough), temperature + 0.8, (0.2, 0.14, 0.09), uneven_k=0.8),
     )
 
 
@@ -168,6 +160,9 @@ def _beside(height: float, x: float, y: float, z: float, away_m: float) -> Vecto
     return (away_m * x, away_m * y, height + 0.85 * away_m * z)
 
 
+@thing_kind(
+    "street_lamp", size_m=(0.45, 0.45, 4.2), temperature_c=33.0, rgb=(0.08, 0.1, 0.09), is_heated=True
+)
 def street_lamp(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A lamp on a pole with a wide foot."""
     depth, _, height = size
@@ -177,25 +172,12 @@ def street_lamp(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]
     head = tube(0.5, 0.42 * depth, (0.0, 0.0, height - 0.35))
     cap = tube(0.1, 0.5 * depth, (0.0, 0.0, height - 0.05))
     return (
-        Piece(
-            name="head",
-            shapes=(head,),
-            temperature_c=temperature,
-            rgb=(0.9, 0.85, 0.7),
-            glow=0.9,
-            is_solid=False,
-        ),
-        Piece(
-            name="pole",
-            shapes=(pole, foot, base, cap),
-            temperature_c=20.0,
-            rgb=rgb,
-            gradient_k_per_m=-0.6,
-            uneven_k=0.6,
-        ),
+        Piece("head", (head,), temperature, (0.9, 0.85, 0.7), glow=0.9, is_solid=False),
+        Piece("pole", (pole, foot, base, cap), 20.0, rgb, gradient_k_per_m=-0.6, uneven_k=0.6),
     )
 
 
+@thing_kind("market_stall", size_m=(1.6, 2.6, 2.5), temperature_c=62.0, rgb=(0.55, 0.1, 0.08), is_heated=True)
 def market_stall(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A stall under an awning, with a hot plate, goods and a counter."""
     depth, width, height = size
@@ -207,37 +189,21 @@ def market_stall(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...
         )
         for k in range(4)
     )
-    posts = tuple(
-        standing_box(
-            0.05, 0.05, -SINK_M, height - 0.1, x=sx * (depth / 2.0 - 0.06), y=sy * (width / 2.0 - 0.04)
-        )
-        for sx in (-1.0, 1.0)
-        for sy in (-1.0, 1.0)
-    )
+    posts = corner_legs(0.05, height - 0.1, depth / 2.0 - 0.06, width / 2.0 - 0.04)
     awning = standing_box(depth, width, height - 0.14, height)
     return (
-        Piece(name="plate", shapes=(plate,), temperature_c=temperature, rgb=STEEL, uneven_k=5.0),
-        Piece(
-            name="table", shapes=(table,), temperature_c=21.5, rgb=WOOD, uneven_k=0.8, gradient_k_per_m=1.5
-        ),
-        Piece(name="goods", shapes=goods, temperature_c=19.0, rgb=(0.5, 0.25, 0.1), uneven_k=1.2),
-        Piece(name="posts", shapes=posts, temperature_c=20.0, rgb=STEEL),
-        Piece(name="awning", shapes=(awning,), temperature_c=18.0, rgb=rgb, uneven_k=0.9, is_solid=False),
+        Piece("plate", (plate,), temperature, STEEL, uneven_k=5.0),
+        Piece("table", (table,), 21.5, WOOD, uneven_k=0.8, gradient_k_per_m=1.5),
+        Piece("goods", goods, 19.0, (0.5, 0.25, 0.1), uneven_k=1.2),
+        Piece("posts", posts, 20.0, STEEL),
+        Piece("awning", (awning,), 18.0, rgb, uneven_k=0.9, is_solid=False),
     )
 
 
+@thing_kind("bin", size_m=(0.5, 0.5, 0.95), temperature_c=20.5, rgb=BLACK)
 def bin_(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A litter bin with a lid."""
     depth, _, height = size
     drum = tube(height - 0.1 + SINK_M, 0.46 * depth, (0.0, 0.0, 0.5 * (height - 0.1 - SINK_M)))
     lid = tube(0.14, 0.5 * depth, (0.0, 0.0, height - 0.07))
-    return (
-        Piece(
-            name="drum",
-            shapes=(drum, lid),
-            temperature_c=temperature,
-            rgb=rgb,
-            gradient_k_per_m=1.0,
-            uneven_k=0.5,
-        ),
-    )
+    return (Piece("drum", (drum, lid), temperature, rgb, gradient_k_per_m=1.0, uneven_k=0.5),)

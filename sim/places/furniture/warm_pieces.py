@@ -16,6 +16,7 @@ from peopleboy.sim.places.pieces import (
     ball,
     box,
     standing_box,
+    thing_kind,
     tube,
 )
 from peopleboy.sim.shapes.materials import Rgb
@@ -24,6 +25,15 @@ from peopleboy.sim.shapes.shapes import Vector
 _MOST_RIBS = 14  # with the panel they fit into one body of 16 shapes
 
 
+@thing_kind(
+    "radiator",
+    size_m=(0.09, 1.2, 0.6),
+    temperature_c=48.0,
+    rgb=WHITE,
+    base_m=0.12,
+    is_hung=True,
+    is_heated=True,
+)
 def radiator(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A ribbed panel on a wall: two straight warm sides, as a standing person has."""
     depth, width, height = size
@@ -38,35 +48,47 @@ def radiator(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     )
     return (
         Piece(
-            name="panel",
-            shapes=(panel, *ribs),
-            temperature_c=temperature,
-            rgb=rgb,
-            variation_k=1.5,
-            gradient_k_per_m=14.0,
-            uneven_k=1.0,
+            "panel", (panel, *ribs), temperature, rgb, variation_k=1.5, gradient_k_per_m=14.0, uneven_k=1.0
         ),
     )
 
 
+@thing_kind(
+    "pipe",
+    size_m=(0.06, 0.06, 2.7),
+    temperature_c=44.0,
+    rgb=WHITE,
+    is_hung=True,
+    is_to_ceiling=True,
+    is_heated=True,
+)
 def pipe(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A heating pipe that runs up a wall."""
     depth, _, height = size
     shape = tube(height + 2.0 * SINK_M, depth / 2.0, (depth / 2.0 + 0.02, 0.0, height / 2.0))
-    return (Piece(name="pipe", shapes=(shape,), temperature_c=temperature, rgb=rgb, variation_k=0.6),)
+    return (Piece("pipe", (shape,), temperature, rgb, variation_k=0.6),)
 
 
+@thing_kind(
+    "ceiling_lamp",
+    size_m=(0.22, 1.25, 0.1),
+    temperature_c=62.0,
+    rgb=(1.0, 1.0, 0.95),
+    is_from_ceiling=True,
+    is_heated=True,
+)
 def ceiling_lamp(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A bright tube under its housing."""
     depth, width, height = size
     glass = tube(0.92 * width, 0.3 * height, (0.0, 0.0, 0.3 * height), ALONG_Y)
     housing = standing_box(depth, width, 0.55 * height, height + SINK_M)
     return (
-        Piece(name="tube", shapes=(glass,), temperature_c=temperature, rgb=rgb, glow=1.0, is_solid=False),
-        Piece(name="housing", shapes=(housing,), temperature_c=30.0, rgb=WHITE, is_solid=False),
+        Piece("tube", (glass,), temperature, rgb, glow=1.0, is_solid=False),
+        Piece("housing", (housing,), 30.0, WHITE, is_solid=False),
     )
 
 
+@thing_kind("floor_lamp", size_m=(0.36, 0.36, 1.6), temperature_c=75.0, rgb=(1.0, 0.95, 0.8), is_heated=True)
 def floor_lamp(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A hot bulb in a warm shade on a pole."""
     depth, _, height = size
@@ -76,14 +98,13 @@ def floor_lamp(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     pole = tube(height - 0.3, 0.015, (0.0, 0.0, (height - 0.3) / 2.0))
     foot = tube(0.03 + SINK_M, 0.9 * radius, (0.0, 0.0, (0.03 - SINK_M) / 2.0))
     return (
-        Piece(name="bulb", shapes=(bulb,), temperature_c=temperature, rgb=rgb, glow=1.0),
-        Piece(
-            name="shade", shapes=(shade,), temperature_c=36.0, rgb=(0.8, 0.7, 0.5), glow=0.6, variation_k=1.0
-        ),
-        Piece(name="pole", shapes=(pole, foot), temperature_c=23.0, rgb=STEEL, emissivity=0.6),
+        Piece("bulb", (bulb,), temperature, rgb, glow=1.0),
+        Piece("shade", (shade,), 36.0, (0.8, 0.7, 0.5), glow=0.6, variation_k=1.0),
+        Piece("pole", (pole, foot), 23.0, STEEL, emissivity=0.6),
     )
 
 
+@thing_kind("monitor", size_m=(0.2, 0.55, 0.46), temperature_c=35.0, rgb=(0.35, 0.5, 0.75), is_heated=True)
 def monitor(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A flat screen on a foot, warm all over in front."""
     depth, width, height = size
@@ -94,20 +115,13 @@ def monitor(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     stem = standing_box(0.03, 0.06, -SINK_M, bottom + 0.05, x=-0.01)
     foot = standing_box(depth, 0.45 * width, -SINK_M, 0.02)
     return (
-        Piece(
-            name="screen",
-            shapes=(screen,),
-            temperature_c=temperature,
-            rgb=rgb,
-            glow=0.7,
-            variation_k=0.8,
-            shine=1.0,
-        ),
-        Piece(name="case", shapes=(case,), temperature_c=temperature - 3.0, rgb=BLACK),
-        Piece(name="foot", shapes=(stem, foot), temperature_c=23.0, rgb=BLACK),
+        Piece("screen", (screen,), temperature, rgb, glow=0.7, variation_k=0.8, shine=1.0),
+        Piece("case", (case,), temperature - 3.0, BLACK),
+        Piece("foot", (stem, foot), 23.0, BLACK),
     )
 
 
+@thing_kind("robot", size_m=(0.47, 0.38, 1.12), temperature_c=27.0, rgb=(0.5, 0.04, 0.05), is_heated=True)
 def robot(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     """A robot like the PeopleBot: base, column with warm electronics, and a deck with a camera."""
     depth, width, height = size
@@ -120,10 +134,10 @@ def robot(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     deck = tube(0.1, 0.42 * width, (-0.05, 0.0, height - 0.13))
     camera = standing_box(0.1, 0.12, height - 0.1, height, x=0.05)
     return (
-        Piece(name="base", shapes=base, temperature_c=temperature, rgb=rgb),
-        Piece(name="wheels", shapes=wheels, temperature_c=22.0, rgb=BLACK, emissivity=0.95),
-        Piece(name="column", shapes=(column,), temperature_c=temperature - 1.0, rgb=STEEL),
-        Piece(name="electronics", shapes=(bay,), temperature_c=temperature + 2.5, rgb=BLACK, variation_k=0.8),
-        Piece(name="deck", shapes=(deck,), temperature_c=temperature - 0.5, rgb=rgb),
-        Piece(name="camera", shapes=(camera,), temperature_c=temperature + 1.5, rgb=BLACK),
+        Piece("base", base, temperature, rgb),
+        Piece("wheels", wheels, 22.0, BLACK, emissivity=0.95),
+        Piece("column", (column,), temperature - 1.0, STEEL),
+        Piece("electronics", (bay,), temperature + 2.5, BLACK, variation_k=0.8),
+        Piece("deck", (deck,), temperature - 0.5, rgb),
+        Piece("camera", (camera,), temperature + 1.5, BLACK),
     )
