@@ -56,7 +56,7 @@ def test_the_lesson_leaves_films_and_trees_and_says_how_good_they_are(tmp_path: 
     assert run_cli("train", "cascade", "--sequences", 5, "--out", tmp_path, "--workers", 1) == 0
     names = {path.name for path in (tmp_path / "sequences").iterdir()}
     assert names == {f"world_{seed}.npz" for seed in (0, 1, 1000, 1001, 2000, 3000, 3001, 4000, 5000)}
-    about = PeopleModel.load(tmp_path / "train_cascade.npz").about
+    about = PeopleModel.load(tmp_path / "cascade.npz").about
     trained_on = (
         "2 random worlds from seed 1000, 1 crowds from seed 2000, 2 worlds in the robot's own span "
         "from seed 3000, 1 plain worlds as warm as people from seed 4000, 1 crowds in the robot's own span "
@@ -71,7 +71,7 @@ def test_the_lesson_leaves_films_and_trees_and_says_how_good_they_are(tmp_path: 
 def test_trees_that_are_not_taught_stay_as_they_are(tmp_path: Path) -> None:
     chosen = ("--sequences", 5, "--windows", "cut", "--workers", 1)
     assert run_cli("train", "cascade", *chosen, "--out", tmp_path) == 0
-    taught, shipped = PeopleModel.load(tmp_path / "train_cascade.npz"), shipped_people_trees()
+    taught, shipped = PeopleModel.load(tmp_path / "cascade.npz"), shipped_people_trees()
     before, after = (model.trees[WindowKind.WHOLE].cascade for model in (shipped, taught))
     np.testing.assert_array_equal(after.leaf, before.leaf, strict=True)
     assert len(taught.trees[WindowKind.CUT].cascade.leaf) == 4
@@ -84,7 +84,7 @@ def test_trees_that_are_not_taught_stay_as_they_are(tmp_path: Path) -> None:
 def test_places_alone_are_taught_for_the_trees_that_are_there(tmp_path: Path) -> None:
     chosen = ("--sequences", 5, "--windows", "whole", "--only-boxes", "--workers", 1)
     assert run_cli("train", "cascade", *chosen, "--out", tmp_path) == 0
-    taught, shipped = PeopleModel.load(tmp_path / "train_cascade.npz"), shipped_people_trees()
+    taught, shipped = PeopleModel.load(tmp_path / "cascade.npz"), shipped_people_trees()
     before, after = (model.trees[WindowKind.WHOLE] for model in (shipped, taught))
     np.testing.assert_array_equal(after.cascade.leaf, before.cascade.leaf, strict=True)
     assert not np.array_equal(after.regression.leaf, before.regression.leaf)
