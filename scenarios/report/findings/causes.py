@@ -81,7 +81,7 @@ def steady_due(history: RunHistory, person: PersonHistory) -> Ints:
 
 
 def _is_hidden_to_end(history: RunHistory, person: PersonHistory) -> bool:
-    """Whether a person whom no track lies on any more was wholly hidden to the end, but for moments."""
+    """Return whether a person without a track stayed wholly hidden to the end, but for moments."""
     after = person.view[np.flatnonzero(person.track)[-1] + 1 :]
     hidden = np.flatnonzero(after == Visibility.WHOLLY)
     if len(hidden) == 0:

@@ -261,7 +261,7 @@ def read_files(run: FinishedRun) -> RunFiles:
 
 
 def _match_boxes(truth: TrueBoxes, tracks: TrackBoxes) -> Any:
-    """Which track lies on whom: records frame (from 0), person, number, iou, offset [px]."""
+    """Tracks assigned to people: records frame (from 0), person, number, iou, offset [px]."""
     pairs = pair_up(truth, tracks)
     chosen = associate(pairs)
     target, candidate = pairs.target[chosen], pairs.candidate[chosen]

@@ -95,7 +95,7 @@ class RunFindings(RunHistory):
 
     @property
     def contacts(self) -> list[LogLine]:
-        """When the robot touched whom or what."""
+        """Times at which the robot touched a person or an object."""
         return [line for line in self.run.events if line.kind == "contact starts"]
 
 

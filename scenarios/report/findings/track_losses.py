@@ -242,7 +242,7 @@ def _confidence(history: RunHistory, number: int, end: int) -> str:
 
 
 def _owner(people: Sequence[PersonHistory], number: int, end: int) -> PersonHistory | None:
-    """On whom a track lay last before an index."""
+    """Return the person that a track followed last before an index."""
     last = {person.id: np.flatnonzero(person.track[:end] == number) for person in people}
     found = [person for person in people if len(last[person.id])]
     return max(found, key=lambda person: int(last[person.id][-1]), default=None)
