@@ -66,7 +66,7 @@ class Behaviour(Protocol):
 
     @property
     def following(self) -> int | None:
-        """Whom it follows."""
+        """Number of the track that it follows; None if there is none."""
         ...
 
     def command(self, percept: Percept) -> Command:

@@ -72,7 +72,7 @@ class Patrol:
 
     @property
     def following(self) -> int | None:
-        """Whom the robot follows; nobody on its round."""
+        """Number of the track that the robot follows; None on its round."""
         return None if self._follower is None else self._follower.following
 
     def command(self, percept: Percept) -> Command:

@@ -1,1 +1,1 @@
-"""The PeopleBot: body, wheels, encoders, sonars, settings and how it looks."""
+"""The PeopleBot: body, wheels, encoders, sonars, settings and appearance."""

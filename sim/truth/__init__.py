@@ -1,1 +1,1 @@
-"""The exact truth: who is where, what the cameras see of them, who hides whom, what happens."""
+"""The exact truth: poses of people, what the cameras see of them, occlusion, and events."""

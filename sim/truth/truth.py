@@ -1,4 +1,4 @@
-"""The exact truth about one instant: who is where, what the camera sees of them, and who hides whom."""
+"""The exact truth about one instant: poses of people, what the camera sees of them, and occlusion."""
 
 from __future__ import annotations
 

@@ -245,7 +245,7 @@ class InteractionConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DepthOrderConfig:
-    """Who is in front of whom, and what that means for the evidence."""
+    """Depth order of people, and its effect on the evidence."""
 
     # By whose feet are lower ("foot"), by looks as well ("appearance"), by a boosted classifier ("learned");
     # None: nobody is in front of anybody.
