@@ -11,10 +11,10 @@ import click
 
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import OwnCodeFailed
-from peopleboy.scenarios.commands.evaluate import evaluate
-from peopleboy.scenarios.commands.export import export
-from peopleboy.scenarios.commands.import_command import import_tracks
+from peopleboy.scenarios.commands.dataset_commands import export, render
+from peopleboy.scenarios.commands.footage_commands import import_tracks, sim_to_real, track
 from peopleboy.scenarios.commands.inspect_commands import (
+    evaluate,
     list_command,
     report,
     scene_model,
@@ -22,13 +22,8 @@ from peopleboy.scenarios.commands.inspect_commands import (
     show,
     view,
 )
-from peopleboy.scenarios.commands.many import compare, sweep
-from peopleboy.scenarios.commands.render import render
-from peopleboy.scenarios.commands.run_command import run
-from peopleboy.scenarios.commands.sim_to_real import sim_to_real
-from peopleboy.scenarios.commands.study import datasets, reproduce, tune
-from peopleboy.scenarios.commands.track import track
-from peopleboy.scenarios.commands.train import train
+from peopleboy.scenarios.commands.run_commands import compare, run, sweep
+from peopleboy.scenarios.commands.study_commands import datasets, reproduce, train, tune
 from peopleboy.scenarios.running.engine.task import TasksFailed
 
 FAILED = 1

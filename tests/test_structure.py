@@ -23,7 +23,6 @@ MOST_TWICE = 10
 # A small module with a single importer is a part of that importer, unless there is a reason here.
 SMALL_MODULES: dict[str, str] = {
     "behaviours.scripted": "a behaviour that the registry loads by its name",
-    "scenarios.commands.sim_to_real": "a command, loaded when it is called",
     "scenarios.compiling": "imports numba, which a progress bar needs on a terminal only",
     "scenarios.environments.save_episode": "imports the recorder, which only saved episodes need",
 }

@@ -9,7 +9,7 @@ from typing import Any
 from click.testing import CliRunner, Result
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.track import track
+from peopleboy.scenarios.commands.footage_commands import track
 
 
 def call(*arguments: Any) -> Result:

@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 from PIL import Image
 
-from peopleboy.scenarios.commands.evaluate import evaluate
+from peopleboy.scenarios.commands.inspect_commands import evaluate
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.track_footage import pictures_a_second, track_footage
 from peopleboy.tracker.evaluation.table import NEED_EVERYBODY

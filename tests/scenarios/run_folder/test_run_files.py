@@ -13,8 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.commands.evaluate import evaluate
-from peopleboy.scenarios.commands.inspect_commands import report
+from peopleboy.scenarios.commands.inspect_commands import evaluate, report
 from peopleboy.scenarios.run_folder.finished_run import open_run, runs_in
 from peopleboy.scenarios.run_folder.run_tables import ROBOT, TRACKS, TRUTH
 from tests.helpers.runs.toy_runs import write_run

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from peopleboy.scenarios.commands.evaluate import evaluate
+from peopleboy.scenarios.commands.inspect_commands import evaluate
 from peopleboy.tracker.evaluation.mot_files import read_truth
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.footage.footage_truth import doubts, load_truth
