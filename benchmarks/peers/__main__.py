@@ -20,7 +20,7 @@ from benchmarks.peers.contestants import contestants
 from benchmarks.peers.show import draw_occlusions, print_occlusions, print_results, write_results
 from peopleboy.scenarios.commands.command_options import workers_options
 from peopleboy.scenarios.files.suite import load_suite
-from peopleboy.scenarios.running.engine.task import Workers, chosen_workers
+from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.wording import hint
 
@@ -45,11 +45,8 @@ _USUAL = (
     show_default=True,
     help="What is kept.",
 )
-def main(
-    scenarios: str, seeds: int, trackers: str, workers: int | None, scheduler: str | None, out: Path
-) -> None:
+def main(scenarios: str, seeds: int, trackers: str, workers: Workers, out: Path) -> None:
     """Let peers and our trackers see the same frames, and print how they do."""
-    who = chosen_workers(workers, scheduler)
     names = trackers.split(",")
     for name in names:
         if name not in contestants():
@@ -60,7 +57,7 @@ def main(
         else scenarios.split(",")
     )
     console = Console(width=130)
-    results = _compete_all(names, played, seeds, who, out)
+    results = _compete_all(names, played, seeds, workers, out)
     print_results(results, console)
     console.print()
     print_occlusions(results, console)

@@ -15,7 +15,7 @@ from enum import Enum
 from functools import wraps
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar, cast, get_args
 
 import click
 
@@ -29,6 +29,8 @@ TRACKERS = f"{', '.join(TRACKER_NAMES)}; truth, the true positions; or module:Cl
 TRACKER = f"One of {TRACKERS}.  [default: the scenario's, or detection]"
 BEHAVIOURS = f"{', '.join(BEHAVIOUR_NAMES)}; or module:Class, your own"
 BEHAVIOUR = f"What drives the robot: {BEHAVIOURS}.  [default: the scenario's]"
+
+PATH: Final = click.Path(path_type=Path)
 
 C = TypeVar("C")
 Command = TypeVar("Command", bound=Callable[..., None])
@@ -177,20 +179,30 @@ def _option(setting: Setting, meaning: str, *, is_required: bool) -> click.Optio
         return click.Option([flag, setting.field], is_flag=True, help=meaning)
     if setting.default is not MISSING and setting.default is not None and "[default:" not in meaning:
         # Click does not get the default itself, so that a command knows what the user gave.
-        meaning += f"  [default: {setting.default}]"
+        default = ", ".join(map(str, setting.default)) if _is_many(setting) else setting.default
+        meaning += f"  [default: {default}]"
+    choices = _choices(setting)
     return click.Option(
         [flag, setting.field],
-        type=_type(setting),
+        type=click.Choice(choices) if choices else _type(setting),
         required=is_required,
         metavar=setting.metavar,
-        shell_complete=_COMPLETED.get(setting.field),
+        multiple=_is_many(setting),
+        shell_complete=None if choices else _COMPLETED.get(setting.field),
         help=meaning,
     )
 
 
+def _is_many(setting: Setting) -> bool:
+    """Return whether the option can be given several times."""
+    return get_args(setting.kind)[1:] == (...,)
+
+
+def _choices(setting: Setting) -> list[str]:
+    return [str(choice) for choice in (get_args(setting.kind)[0] if _is_many(setting) else setting.choices)]
+
+
 def _type(setting: Setting) -> Any:
-    if setting.choices:
-        return click.Choice([str(choice) for choice in setting.choices])
     low, high = setting.limits.get("ge"), setting.limits.get("le", setting.limits.get("lt"))
     if setting.kind is int:
         # The limits are kept as numbers of any kind; those of a whole number are whole.
@@ -198,7 +210,7 @@ def _type(setting: Setting) -> Any:
     if setting.kind is float:
         return Number(low, high, max_open="lt" in setting.limits) if low is not None else float
     if setting.kind is Path:
-        return click.Path(path_type=Path)
+        return PATH
     # A pair of numbers is two words of the command line.
     return (float, float) if setting.kind == tuple[float, float] else str
 
@@ -206,6 +218,8 @@ def _type(setting: Setting) -> Any:
 def _taken(setting: Setting, value: Any) -> Any:
     if setting.kind is bool:
         return not setting.default if value else None
+    if _is_many(setting):
+        return tuple(map(get_args(setting.kind)[0], value)) or None
     is_enum = isinstance(setting.kind, type) and issubclass(setting.kind, Enum)
     return setting.kind(value) if is_enum and value is not None else value
 
@@ -213,15 +227,30 @@ def _taken(setting: Setting, value: Any) -> Any:
 complete_trackers = complete_names((*TRACKER_NAMES, "truth"))
 _COMPLETED: Final = {"tracker": complete_trackers, "behaviour": complete_names(BEHAVIOUR_NAMES)}
 
-BOXES = click.Choice(["torso", "whole"])
 _COUNT = "Processes at the same time; 1 for none but this one.  [default: one a core]"
 _ADDRESS = "Work on the cluster of this Dask scheduler instead."
 
 
 def workers_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Add the options that choose who does the work; `chosen_workers` takes both."""
-    scheduler = click.option("--scheduler", metavar="tcp://...", help=_ADDRESS)
-    return click.option("--workers", type=WholeNumber(min=1), help=_COUNT)(scheduler(command))
+    """Add the options that choose who does the work; the command takes `Workers` named workers."""
+
+    @wraps(command)
+    def with_workers(*arguments: Any, workers: int | None, scheduler: str | None, **options: Any) -> None:
+        from peopleboy.scenarios.running.engine.task import chosen_workers
+
+        command(*arguments, workers=chosen_workers(workers, scheduler), **options)
+
+    scheduler_option = click.option("--scheduler", metavar="tcp://...", help=_ADDRESS)
+    return click.option("--workers", type=WholeNumber(min=1), help=_COUNT)(scheduler_option(with_workers))
+
+
+films_option = click.option(
+    "--films",
+    type=PATH,
+    default=Path("runs/films"),
+    show_default=True,
+    help="Where rendered frames are kept; for a cluster, a folder that all share.",
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,16 +6,16 @@ import sys
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.command_options import (
-    BOXES,
+    PATH,
     TRACKERS,
-    Number,
-    WholeNumber,
-    complete_trackers,
+    FieldsCommand,
+    GivenOptions,
+    options_of,
     tell_note,
     workers_options,
 )
@@ -23,75 +23,35 @@ from peopleboy.scenarios.commands.completion import complete_scenario
 from peopleboy.scenarios.export.formats import FORMATS
 from peopleboy.wording import counted
 
+if TYPE_CHECKING:
+    from peopleboy.scenarios.export.export_runs import ExportOptions
+    from peopleboy.scenarios.export.make_dataset import SetOptions
+    from peopleboy.scenarios.running.engine.task import Workers
+
 FAILED = 1
 
 
-@click.command()
+@click.command(cls=FieldsCommand)
 @click.argument("scenarios", metavar="[SCENARIO...]", nargs=-1, shell_complete=complete_scenario)
-@click.option("--frames", is_flag=True, help="Write every image too, as for `run`; else truth alone.")
-@click.option(
-    "--seeds",
-    type=WholeNumber(min=1),
-    help="How many, from 0 on; from 7 on every split has runs.  [default: 100]",
-)
-@click.option(
-    "--randomise",
-    metavar="N",
-    type=WholeNumber(min=1),
-    help="In place of scenarios: how many worlds, each drawn at random.",
-)
-@click.option(
-    "--seed",
-    type=WholeNumber(min=0),
-    help="Of the first random world; the next one has the next.  [default: 0]",
-)
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Folder of the set.  [default: sets/SCENARIO-SCENARIO..., or sets/worlds]",
-)
-@click.option(
-    "--tracker",
-    shell_complete=complete_trackers,
-    default="truth",
-    show_default=True,
-    help=f"Whose eyes steer robots that follow people: {TRACKERS}.",
+@options_of(
+    "scenarios.export.make_dataset:SetOptions",
+    *("frames", "seeds", "randomise", "seed", "out", "tracker"),
+    tracker=f"Tracker that steers robots that follow people: {TRACKERS}.  [default: truth]",
 )
 @workers_options
-def render(
-    scenarios: Sequence[str],
-    frames: bool,
-    seeds: int | None,
-    randomise: int | None,
-    seed: int | None,
-    out: Path | None,
-    tracker: str,
-    workers: int | None,
-    scheduler: str | None,
-) -> None:
+def render(scenarios: tuple[str, ...], given: GivenOptions[SetOptions], workers: Workers) -> None:
     """Render a data set: scenarios with many seeds, split, counted and checked, with a datasheet.
 
     Or, with --randomise, worlds of which each has its own place, things, temperatures, people and cameras. A
     killed call goes on where it was; with more --seeds, or worlds, the set grows, and no run changes its
     split.
     """
-    from peopleboy.scenarios.export.make_dataset import of_scenarios, of_worlds, render_set
-    from peopleboy.scenarios.running.engine.task import chosen_workers
+    from peopleboy.scenarios.export.make_dataset import render_set
 
-    who = chosen_workers(workers, scheduler)
-    if randomise is None:
-        if seed is not None or not scenarios:
-            raise BadInput("render: give scenarios, or --randomise N, which --seed goes with")
-        contents = of_scenarios(scenarios, 100 if seeds is None else seeds)
-        usual = "-".join(contents.about["scenarios"])
-    else:
-        if seeds is not None or scenarios:
-            raise BadInput(
-                "render: --randomise draws worlds in place of scenarios and --seeds; leave these out"
-            )
-        contents, usual = of_worlds(randomise, 0 if seed is None else seed), "worlds"
-    folder = out if out is not None else Path("sets") / usual
-    done = render_set(contents, folder, frames=frames, tracker=tracker, workers=who)
+    options = given.make(scenarios=scenarios)
+    contents, name = options.contents()
+    folder = options.out or Path("sets") / name
+    done = render_set(contents, folder, frames=options.frames, tracker=options.tracker, workers=workers)
     for check in done.checks:
         click.echo(f"{'holds' if not check.failures else 'FAILS'}: {check.what}")
         for failure in check.failures[:5]:
@@ -120,39 +80,15 @@ class FormatName(click.Choice[str]):
         return tuple(FORMATS)
 
 
-@click.command()
-@click.argument("runs", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.command(cls=FieldsCommand)
+@click.argument("runs", nargs=-1, required=True, type=PATH)
 @click.option("--format", "form", type=FormatName(), required=True, help="What to write.")
-@click.option(
-    "--camera",
-    metavar="NAME",
-    help="Whose images and boxes mot, yolo, viper or mp4 tell.  [default: thermal; mp4: thermal and colour]",
+@options_of(
+    "scenarios.export.export_runs:ExportOptions",
+    *("camera", "least_px", "boxes", "out", "overwrite"),
+    out="Folder to leave.  [default: beside the run, RUN-FORMAT(-CAMERA); of several, export-FORMAT]",
 )
-@click.option(
-    "--least-px",
-    type=Number(0.0),
-    help="How wide and high boxes of yolo and yolo-pose are at least, in pixels; 0 for all.  [default: 3]",
-)
-@click.option(
-    "--boxes",
-    type=BOXES,
-    help="What boxes of mot's truth are drawn round: the torso, or all of a person.  [default: torso]",
-)
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Folder to leave.  [default: beside the run, RUN-FORMAT(-CAMERA); of several, export-FORMAT]",
-)
-@click.option("--overwrite", is_flag=True, help="Replace an earlier export in the folder.")
-def export(
-    runs: Sequence[Path],
-    form: str,
-    camera: str | None,
-    least_px: float | None,
-    boxes: str | None,
-    out: Path | None,
-    overwrite: bool,
-) -> None:
+def export(runs: Sequence[Path], form: str, given: GivenOptions[ExportOptions]) -> None:
     """Hand runs over to other tools; a folder that holds folders of runs stands for all of them.
 
     Runs of a rendered set go to coco, yolo and mot split by split, as its folder `splits` says; export.json
@@ -169,7 +105,6 @@ def export(
     from peopleboy.scenarios.export.splits import refuse_unfinished
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.scenarios.run_folder.finished_run import open_whole_runs, runs_in
-    from peopleboy.tracker.footage.box_kinds import BoxKind
 
     for folder in runs:
         refuse_unfinished(folder)
@@ -178,14 +113,12 @@ def export(
         are_named_apart=form != "mot",  # which names sequences by scenario and seed, for several trackers
     )
     first = opened[0].folder
-    what = form if camera is None else f"{form}-{camera}"
+    what = form if given.camera is None else f"{form}-{given.camera}"
     name = f"{first.name}-{what}" if len(opened) == 1 else f"export-{what}"
-    folder = out if out is not None else first.parent / name
-    kind = None if boxes is None else BoxKind(boxes)
+    options = given.make(form=form, out=given.out or first.parent / name)
     frames = sum(run.frames for run in opened)
     with progress_bar(form, unit="frames") as show:
-        play = counted(lambda frame: show(frame, frames))
-        write(opened, form, folder, play, camera=camera, least_px=least_px, boxes=kind, overwrite=overwrite)
-    for note in notes_on(opened, form, camera, kind):
+        write(opened, options, counted(lambda frame: show(frame, frames)))
+    for note in notes_on(opened, options):
         tell_note(note)
-    click.echo(folder)
+    click.echo(options.out)

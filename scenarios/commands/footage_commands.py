@@ -11,6 +11,7 @@ import click
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.command_options import (
+    PATH,
     FieldsCommand,
     GivenOptions,
     WholeNumber,
@@ -33,7 +34,7 @@ _TRACKERS = (
 
 
 @click.command(cls=FieldsCommand)
-@click.argument("footage", metavar="FOLDER|TIFF|VIDEO", type=click.Path(path_type=Path))
+@click.argument("footage", metavar="FOLDER|TIFF|VIDEO", type=PATH)
 @options_of("scenarios.footage.options:TrackOptions", "out", "colour", into="files")
 @click.option(
     "--temperature-range",
@@ -142,8 +143,8 @@ def _tell(tracked: Tracked, options: TrackOptions) -> None:
 
 
 @click.command("import-tracks", cls=FieldsCommand)
-@click.argument("run", metavar="RUN", type=click.Path(path_type=Path))
-@click.argument("tracks", metavar="TRACKS", type=click.Path(path_type=Path))
+@click.argument("run", metavar="RUN", type=PATH)
+@click.argument("tracks", metavar="TRACKS", type=PATH)
 @click.option("--name", required=True, help="What their tracker is called.")
 @click.option("--camera", default="thermal", show_default=True, help="Camera in whose images the boxes are.")
 @options_of(
@@ -194,18 +195,18 @@ def _title(run: Path, tracks: Path) -> str:
 
 
 @click.command("sim-to-real")
-@click.argument("rendered", metavar="RENDERED...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument("rendered", metavar="RENDERED...", nargs=-1, required=True, type=PATH)
 @click.option(
     "--real",
     metavar="FOLDER",
     multiple=True,
     required=True,
-    type=click.Path(path_type=Path),
+    type=PATH,
     help="A real clip, or a folder of some; can be given again.",
 )
 @click.option(
     "--out",
-    type=click.Path(path_type=Path),
+    type=PATH,
     default=Path("comparison.html"),
     show_default=True,
     help="The page.",

@@ -10,11 +10,10 @@ import click
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.commands.command_options import (
-    BOXES,
+    PATH,
     SEED,
     FieldsCommand,
     GivenOptions,
-    Number,
     Output,
     WholeNumber,
     options_of,
@@ -25,10 +24,11 @@ from peopleboy.scenarios.commands.completion import complete_scenario
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.running.run_options import RunOptions
+    from peopleboy.scenarios.scores.evaluate_runs import ScoreOptions
 
 
 @click.command()
-@click.argument("folder", metavar="RUN", type=click.Path(path_type=Path))
+@click.argument("folder", metavar="RUN", type=PATH)
 @click.option("--web", is_flag=True, help="Serve it to a browser on this machine, until Ctrl-C.")
 @click.option(
     "--port",
@@ -54,7 +54,7 @@ def view(folder: Path, web: bool, port: int | None) -> None:
 
 
 @click.command("scene-model", cls=FieldsCommand)
-@click.argument("folder", metavar="RUN", type=click.Path(path_type=Path))
+@click.argument("folder", metavar="RUN", type=PATH)
 @options_of(
     "scenarios.running.run_options:RunOptions", "out", "record", out="Folder to leave.  [default: RUN/scene]"
 )
@@ -100,9 +100,7 @@ def list_command() -> None:
 @click.command()
 @click.argument("scenario", shell_complete=complete_scenario)
 @click.option("--seed", type=WholeNumber(min=0), help=f"What is drawn follows from it.  {SEED}")
-@click.option(
-    "--out", type=click.Path(path_type=Path), help="Picture to write.  [default: SCENARIO-plan.png]"
-)
+@click.option("--out", type=PATH, help="Picture to write.  [default: SCENARIO-plan.png]")
 def show(scenario: str, seed: int | None, out: Path | None) -> None:
     """Draw the plan of a scenario, with paths and times."""
     from peopleboy.scenarios.drawing.draw_plan import draw_plan
@@ -125,10 +123,10 @@ def schema() -> None:
 
 
 @click.command()
-@click.argument("runs", metavar="RUN...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument("runs", metavar="RUN...", nargs=-1, required=True, type=PATH)
 @click.option(
     "--out",
-    type=click.Path(path_type=Path),
+    type=PATH,
     help="Page to write.  [default: RUN/report.html; report.html here for several]",
 )
 def report(runs: Sequence[Path], out: Path | None) -> None:
@@ -145,41 +143,19 @@ def report(runs: Sequence[Path], out: Path | None) -> None:
     click.echo(page)
 
 
-@click.command()
-@click.argument("runs", nargs=-1, type=click.Path(path_type=Path))
+@click.command(cls=FieldsCommand)
+@click.argument("runs", nargs=-1, type=PATH)
 @click.option(
-    "--truth",
-    type=click.Path(path_type=Path),
-    help="MOTChallenge truth, such as RUN/truth/gt.txt; or one person's, VOT or OTB.",
+    "--truth", type=PATH, help="MOTChallenge truth, such as RUN/truth/gt.txt; or one person's, VOT or OTB."
 )
-@click.option(
-    "--tracks", type=click.Path(path_type=Path), help="MOTChallenge results, such as RUN/tracks.txt."
-)
-@click.option(
-    "--min-visible",
-    type=Number(0.0, 1.0, max_open=True),
-    default=0.0,
-    show_default=True,
-    help="People count if more than this share of them is seen; 0.3 leaves out slivers at the border.",
-)
-@click.option(
-    "--camera",
-    help="In whose image boxes are scored.  [default: thermal, or the only one in which there are some]",
-)
-@click.option(
-    "--boxes",
-    type=BOXES,
-    help="Against which of the truth's boxes: as wide as the torso, or as all of a person.  "
-    "[default: what each run was scored by]",
-)
+@click.option("--tracks", type=PATH, help="MOTChallenge results, such as RUN/tracks.txt.")
+@options_of("scenarios.scores.evaluate_runs:ScoreOptions", "min_visible", "camera", "boxes")
 @output_options
 def evaluate(
     runs: Sequence[Path],
     truth: Path | None,
     tracks: Path | None,
-    min_visible: float,
-    camera: str | None,
-    boxes: str | None,
+    given: GivenOptions[ScoreOptions],
     output: Output,
 ) -> None:
     """Score tracks against truth: one pair of files, or the folders of any number of runs.
@@ -200,11 +176,11 @@ def evaluate(
     )
     from peopleboy.scenarios.scores.evaluate_runs import evaluate_files
     from peopleboy.scenarios.scores.show_scores import print_comfort, print_runs
-    from peopleboy.tracker.footage.box_kinds import BoxKind
 
-    if camera is not None and not runs:
+    options = given.make()
+    if options.camera is not None and not runs:
         raise BadInput("evaluate: --camera goes with folders of runs; give --truth RUN/truth/CAMERA.gt.txt")
-    if boxes is not None and not runs:
+    if options.boxes is not None and not runs:
         raise BadInput(
             "evaluate: --boxes goes with folders of runs; boxes in --truth are of one kind; leave it out"
         )
@@ -212,11 +188,11 @@ def evaluate(
         raise BadInput("evaluate: give folders of runs, or --truth with --tracks")
     if runs:
         found = [run for folder in runs for run in runs_in(folder)]
-        groups = score_by_tracker(found, min_visible, camera, None if boxes is None else BoxKind(boxes))
+        groups = score_by_tracker(found, options)
     elif truth is None or tracks is None:
         raise BadInput("evaluate: --truth and --tracks go together")
     else:
-        scores = evaluate_files(truth, tracks, min_visible=min_visible, note=tell_note)
+        scores = evaluate_files(truth, tracks, min_visible=options.min_visible, note=tell_note)
         groups = {str(tracks): [ScoredRun(str(tracks), str(tracks), None, scores)]}
     comfort = comfort_by_tracker(groups)
 

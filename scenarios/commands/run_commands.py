@@ -54,8 +54,7 @@ def run(
     scenario: str,
     given: GivenOptions[RunOptions],
     live: bool,
-    workers: int | None,
-    scheduler: str | None,
+    workers: Workers,
     output: Output,
 ) -> None:
     """Run a scenario headless, and leave a folder with truth, tracks, scores and a recording.
@@ -67,7 +66,6 @@ def run(
     from peopleboy.scenarios.files.load import load_scenario
     from peopleboy.scenarios.files.suite import suite_names
     from peopleboy.scenarios.recording.viewer import live_viewer
-    from peopleboy.scenarios.running.engine.task import chosen_workers
 
     is_suite = scenario in suite_names()
     if is_suite and given.seed is not None:
@@ -88,9 +86,10 @@ def run(
     if options.lossless and (loaded is None or not options.record):
         raise BadInput(f"{scenario}: --lossless is for the recording, which a suite and --no-rrd leave out")
     if loaded is None:
-        _run_suite(scenario, options, chosen_workers(workers, scheduler), output)
+        _run_suite(scenario, options, workers, output)
         return
-    if workers is not None or scheduler is not None:
+    given_words = click.get_current_context().params
+    if given_words["workers"] is not None or given_words["scheduler"] is not None:
         raise BadInput(f"{scenario}: is one run, which has no use for --workers or --scheduler; leave it out")
     with ExitStack() as stack:
         if live:
@@ -190,8 +189,7 @@ def sweep(
     seeds: int | None,
     randomise: int | None,
     given: GivenOptions[RunOptions],
-    workers: int | None,
-    scheduler: str | None,
+    workers: Workers,
     output: Output,
 ) -> None:
     """Run a scenario with many seeds, or many random worlds, without recordings, and score them together.
@@ -199,25 +197,24 @@ def sweep(
     A killed call goes on where it was. For random worlds, where many people stand behind things, scores are
     given for all people, and for those of whom more than 30 % is visible.
     """
-    from peopleboy.scenarios.running.engine.task import chosen_workers
     from peopleboy.scenarios.running.many_runs import sweep as run_seeds
     from peopleboy.scenarios.running.many_runs import sweep_worlds
     from peopleboy.scenarios.scores.by_tracker import figures_of_all, score_by_tracker
+    from peopleboy.scenarios.scores.evaluate_runs import ScoreOptions
     from peopleboy.scenarios.scores.show_scores import print_runs
 
-    who = chosen_workers(workers, scheduler)
     options = given.make(seed=0, out=given.out or Path("runs"))
     if (scenario is None) == (randomise is None) or (randomise is not None and seeds is not None):
         raise BadInput("sweep: give a scenario, with --seeds or without, or --randomise N")
     if scenario is None:
-        runs = sweep_worlds(range(randomise or 0), options, who)
+        runs = sweep_worlds(range(randomise or 0), options, workers)
     else:
-        runs = run_seeds(scenario, range(10 if seeds is None else seeds), options, who)
+        runs = run_seeds(scenario, range(10 if seeds is None else seeds), options, workers)
     groups = score_by_tracker(runs)
     if randomise is None:
         output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups, note=tell_note))
         return
-    seen = score_by_tracker(runs, _SEEN)
+    seen = score_by_tracker(runs, ScoreOptions(min_visible=_SEEN))
 
     def show() -> None:
         print_runs(groups, note=tell_note)
@@ -257,8 +254,7 @@ def compare(
     scenarios: Sequence[str],
     seeds: int,
     given: GivenOptions[RunOptions],
-    workers: int | None,
-    scheduler: str | None,
+    workers: Workers,
     output: Output,
 ) -> None:
     """Let controllers drive through the same scenes, and print how they did, with confidence intervals.
@@ -272,14 +268,12 @@ def compare(
         parse_controller,
         show_comparison,
     )
-    from peopleboy.scenarios.running.engine.task import chosen_workers
 
-    who = chosen_workers(workers, scheduler)
     chosen = [parse_controller(text) for text in controllers.split(",")]
     names = [load_scenario(scenario).name for scenario in scenarios]
     out, found = given.out or Path("runs") / "compare", []
     for scenario, name in zip(scenarios, names, strict=True):
-        runs = compare(scenario, chosen, range(seeds), given.make(seed=0, out=out / name), who)
+        runs = compare(scenario, chosen, range(seeds), given.make(seed=0, out=out / name), workers)
         found.append(keep_comparison(name, runs, out / name))
         if output.is_wordy:
             show_comparison(name, runs)

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.export.formats import FORMATS, takes
@@ -14,35 +17,57 @@ from peopleboy.scenarios.run_folder.atomic_output import atomic_folder
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.scores.reference_boxes import CALLED, boxed_cameras, kind_of_boxes
+from peopleboy.settings import Metavar
 from peopleboy.tracker.footage.box_kinds import BoxKind
 
 
-def export(
-    runs: Sequence[FinishedRun],
-    form: str,
-    out: Path,
-    play: Play,
-    *,
-    camera: str | None = None,
-    least_px: float | None = None,
-    boxes: BoxKind | None = None,
-    overwrite: bool,
-) -> None:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportOptions:
+    """How runs are exported.
+
+    Attributes:
+        form: name of the format, one of `FORMATS`.
+    """
+
+    form: str
+    camera: Annotated[
+        str | None,
+        Field(
+            description="Camera whose images and boxes mot, yolo, viper or mp4 hold.  [default: thermal; "
+            "mp4: thermal and colour]"
+        ),
+        Metavar("NAME"),
+    ] = None
+    least_px: Annotated[
+        float | None,
+        Field(
+            ge=0.0,
+            description="Least width and height of boxes of yolo and yolo-pose, in pixels; 0 for all.  "
+            "[default: 3]",
+        ),
+    ] = None
+    boxes: Annotated[
+        BoxKind | None,
+        Field(
+            description="What boxes of mot's truth enclose: the torso, or all of a person.  [default: torso]"
+        ),
+    ] = None
+    out: Annotated[Path, Field(description="Folder to leave.")]
+    overwrite: Annotated[bool, Field(description="Replace an earlier export in the folder.")] = False
+
+
+def export(runs: Sequence[FinishedRun], options: ExportOptions, play: Play) -> None:
     """Write runs in one of the formats, whole or not at all.
 
     Args:
         runs: which.
-        form: name of the format, one of `FORMATS`.
-        out: the folder to leave.
+        options: the format, and what it takes.
         play: gives a run's ticks, as `replay` does.
-        camera: whose images and boxes, for a format of one camera; None for its usual one.
-        least_px: how wide and high boxes must be [px], for a format to train on; None for its usual value.
-        boxes: what the truth's are drawn round, for a format with either kind; None for torsos.
-        overwrite: whether an earlier export there may be replaced.
 
     Raises:
         BadInput: the runs cannot be written so, or there.
     """
+    form, camera, least_px, boxes = options.form, options.camera, options.least_px, options.boxes
     if camera is not None and not takes(form, "camera"):
         raise BadInput(f"--camera {camera}: {form} has the images of every camera; leave it out")
     if least_px is not None and not takes(form, "least_px"):
@@ -57,17 +82,15 @@ def export(
     about |= {"splits": splits} if splits else {}
     asked: dict[str, Any] = {"camera": camera, "least_px": least_px, "boxes": boxes}
     chosen = {name: value for name, value in asked.items() if value is not None}
-    with atomic_folder(out, about | chosen, overwrite=overwrite) as folder:
+    with atomic_folder(options.out, about | chosen, overwrite=options.overwrite) as folder:
         FORMATS[form](runs, folder, play, **chosen)
 
 
-def notes_on(
-    runs: Sequence[FinishedRun], form: str, camera: str | None, boxes: BoxKind | None
-) -> Iterator[str]:
+def notes_on(runs: Sequence[FinishedRun], options: ExportOptions) -> Iterator[str]:
     """Say, once a tracker, whose boxes are of another kind than those of the truth beside which they lie."""
-    if not takes(form, "boxes"):
+    if not takes(options.form, "boxes"):
         return
-    there, name = boxes or BoxKind.TORSO, camera or "thermal"
+    there, name = options.boxes or BoxKind.TORSO, options.camera or "thermal"
     kinds = {
         run.about.tracker: kind_of_boxes(run.folder, name, run.about.tracker, BoxKind(run.about.boxes))
         for run in runs

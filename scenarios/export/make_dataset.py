@@ -6,7 +6,9 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Annotated, Any, Final
+
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.export.dataset_checks import Check, check_set
@@ -29,6 +31,7 @@ from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import RunTask, play, unfinished
 from peopleboy.scenarios.running.run_options import RunOptions
+from peopleboy.settings import Metavar
 from peopleboy.sim.physics.physics_engine import check_physics
 
 
@@ -97,6 +100,51 @@ def of_worlds(count: int, first: int) -> SetContents:
 
 DRAWN: Final = "drawn.json"
 """The file in which a set of random worlds says what was drawn for each."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SetOptions:
+    """What a set holds, and how it is rendered: scenarios with many seeds, or random worlds."""
+
+    scenarios: tuple[str, ...] = ()
+    frames: Annotated[bool, Field(description="Write every image too, as for `run`; else truth alone.")] = (
+        False
+    )
+    seeds: Annotated[
+        int | None,
+        Field(ge=1, description="How many, from 0 on; from 7 on every split has runs.  [default: 100]"),
+    ] = None
+    randomise: Annotated[
+        int | None,
+        Field(ge=1, description="In place of scenarios: how many worlds, each drawn at random."),
+        Metavar("N"),
+    ] = None
+    seed: Annotated[
+        int | None,
+        Field(ge=0, description="Of the first random world; the next one has the next.  [default: 0]"),
+    ] = None
+    out: Annotated[
+        Path | None,
+        Field(description="Folder of the set.  [default: sets/SCENARIO-SCENARIO..., or sets/worlds]"),
+    ] = None
+    tracker: Annotated[str, Field(description="Tracker that steers robots that follow people.")] = "truth"
+
+    def contents(self) -> tuple[SetContents, str]:
+        """Choose the runs, and return them with the usual name of the set.
+
+        Raises:
+            BadInput: options contradict each other, or a scenario cannot be played.
+        """
+        if self.randomise is None:
+            if self.seed is not None or not self.scenarios:
+                raise BadInput("render: give scenarios, or --randomise N, which --seed goes with")
+            contents = of_scenarios(self.scenarios, 100 if self.seeds is None else self.seeds)
+            return contents, "-".join(contents.about["scenarios"])
+        if self.seeds is not None or self.scenarios:
+            raise BadInput(
+                "render: --randomise draws worlds in place of scenarios and --seeds; leave these out"
+            )
+        return of_worlds(self.randomise, self.seed or 0), "worlds"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

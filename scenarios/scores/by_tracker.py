@@ -16,12 +16,10 @@ from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.run_folder.finished_run import read_run
 from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
-from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
+from peopleboy.scenarios.scores.evaluate_runs import ScoreOptions, evaluate_runs
 from peopleboy.scenarios.scores.reference_boxes import BoxReference
-from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.evaluation.table import FIGURES, spread, to_json
-from peopleboy.tracker.footage.box_kinds import BoxKind
 
 Scene = tuple[str, int]
 """Scenario, or footage, and seed."""
@@ -137,26 +135,15 @@ class Difference:
 Groups = Mapping[str, Sequence[ScoredRun]]
 
 
-def score_by_tracker(
-    folders: Sequence[Path],
-    min_visible: float = MIN_VISIBLE,
-    camera: str | None = None,
-    boxes: BoxKind | None = None,
-) -> Groups:
+def score_by_tracker(folders: Sequence[Path], options: ScoreOptions | None = None) -> Groups:
     """Score the runs in these folders, and sort them by tracker, in the order in which these come first.
-
-    Args:
-        folders: of the runs.
-        min_visible: as for `evaluate_runs`.
-        camera: the same.
-        boxes: the same.
 
     Raises:
         BadInput: as for `evaluate_runs`, or a run does not say what its tracker was, or trackers saw
             different scenes of one name.
     """
     groups: dict[str, list[ScoredRun]] = {}
-    for folder, people in zip(folders, evaluate_runs(folders, min_visible, camera, boxes), strict=True):
+    for folder, people in zip(folders, evaluate_runs(folders, options), strict=True):
         about = read_run(folder)
         tracker, seed = about.get("tracker"), about.get("seed")
         if not isinstance(tracker, str):

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.finished_run import cameras_of, read_run
@@ -120,52 +122,65 @@ def evaluate_files(
     return _score(given, read_tracks(tracks), frames, min_visible)
 
 
-def evaluate_runs(
-    folders: Sequence[Path],
-    min_visible: float = MIN_VISIBLE,
-    camera: str | None = None,
-    boxes: BoxKind | None = None,
-) -> list[ScoredPeople]:
-    """Score the runs in these folders, one by one; min_visible as for files.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScoreOptions:
+    """Which people and boxes of runs are scored; with thermal boxes come places on the floor."""
 
-    Args:
-        folders: of the runs.
-        min_visible: people of whom no more than this is seen do not count.
-        camera: in whose images boxes are scored; those of the thermal one come with places on the floor. None
-            for that one, or the only one in whose images the tracker gave boxes.
-        boxes: what the truth's boxes are drawn round; None for what each run was scored by.
+    min_visible: Annotated[
+        float,
+        Field(
+            ge=0.0,
+            lt=1.0,
+            description="People count if more than this share of them is seen; 0.3 leaves out slivers at the "
+            "border.",
+        ),
+    ] = MIN_VISIBLE
+    camera: Annotated[
+        str | None,
+        Field(
+            description="Camera in whose images boxes are scored.  [default: thermal, or the only one in "
+            "which there are some]"
+        ),
+    ] = None
+    boxes: Annotated[
+        BoxKind | None,
+        Field(
+            description="Which of the truth's boxes are the reference: as wide as the torso, or as all of a "
+            "person.  [default: what each run was scored by]"
+        ),
+    ] = None
+
+
+def evaluate_runs(folders: Sequence[Path], options: ScoreOptions | None = None) -> list[ScoredPeople]:
+    """Score the runs in these folders, one by one.
 
     Raises:
         BadInput: a folder holds no run, or one that was cut off, or whose files do not belong together, or
             one of footage without truth.
     """
-    return [_evaluate_run(folder, min_visible, camera, boxes) for folder in folders]
+    return [_evaluate_run(folder, options or ScoreOptions()) for folder in folders]
 
 
-def _evaluate_run(
-    folder: Path, min_visible: float, camera: str | None, boxes: BoxKind | None
-) -> ScoredPeople:
+def _evaluate_run(folder: Path, options: ScoreOptions) -> ScoredPeople:
     about = read_run(folder)
     if "footage" in about or not (folder / "truth.parquet").is_file():
-        return _evaluate_texts(folder, about["frames"], min_visible, camera, boxes)
-    image = camera or own_camera(folder)
-    by = BoxReference(image, boxes or _said(folder, image, about))
+        return _evaluate_texts(folder, about["frames"], options)
+    image = options.camera or own_camera(folder)
+    by = BoxReference(image, options.boxes or _said(folder, image, about))
     if by == BoxReference():
         given, found = _read_texts(folder, about["frames"])
         held = (given.truth, found)
     else:
         held = read_reference_boxes(folder, by)
-    return score_people(folder, held, about["frames"], by, min_visible)
+    return score_people(folder, held, about["frames"], by, options.min_visible)
 
 
-def _evaluate_texts(
-    folder: Path, frames: int, min_visible: float, camera: str | None, boxes: BoxKind | None
-) -> ScoredPeople:
+def _evaluate_texts(folder: Path, frames: int, options: ScoreOptions) -> ScoredPeople:
     """Score a run of footage, which has one camera and boxes of one kind."""
-    for option, value in (("--camera", camera), ("--boxes", boxes)):
+    for option, value in (("--camera", options.camera), ("--boxes", options.boxes)):
         if value is not None and value != THERMAL:
             raise BadInput(f"{option} {value}: {folder} has no tables of a scenario; leave it out")
-    return ScoredPeople(_score(*_read_texts(folder, frames), frames, min_visible))
+    return ScoredPeople(_score(*_read_texts(folder, frames), frames, options.min_visible))
 
 
 def _read_texts(folder: Path, frames: int) -> tuple[GivenTruth, TrackBoxes]:

@@ -9,8 +9,9 @@ import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
+from pydantic import Field
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
@@ -150,40 +151,85 @@ def _mean_values(outcomes: Sequence[ExperimentOutcome]) -> dict[str, Any]:
     return tables
 
 
-def reproduce_named(
-    names: Sequence[str],
-    paper: str | None,
-    out: Path,
-    films: Path,
-    workers: Workers,
-    *,
-    repeats: int | None,
-    works: bool = True,
-) -> Path:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReproduceOptions:
+    """What is reproduced, and how often.
+
+    Attributes:
+        films: folder of rendered frames.
+    """
+
+    paper: Annotated[
+        str | None,
+        Field(
+            description="Only what is of one source: thesis, of 2007; 2005, its evaluation; panoramic, of "
+            "2003; situation, a thesis on depth and colour."
+        ),
+    ] = None
+    quick: Annotated[
+        bool, Field(description="A little of everything, in minutes; the page says of what.")
+    ] = False
+    repeats: Annotated[
+        int | None,
+        Field(
+            ge=1,
+            description="How many random streams, or seeds, everything is repeated with; a later call with "
+            "more uses what is there.  [default: 10, as in the sources]",
+        ),
+    ] = None
+    out: Annotated[
+        Path | None,
+        Field(
+            description="Folder of the page and the results.  [default: runs/reproduce, or "
+            "runs/reproduce-quick]"
+        ),
+    ] = None
+    films: Path
+    so_far: Annotated[
+        bool,
+        Field(
+            description="Do no work: write the page of what the folder has, each part with as many repeats "
+            "as it has."
+        ),
+    ] = False
+
+    def __post_init__(self) -> None:
+        """Refuse a quick run with a number of repeats.
+
+        Raises:
+            BadInput: both are given.
+        """
+        if self.quick and self.repeats is not None:
+            raise BadInput("reproduce: --quick has its own number of repeats; give either it or --repeats")
+
+    @property
+    def folder(self) -> Path:
+        """Folder of the page and the results."""
+        return self.out or Path("runs") / ("reproduce-quick" if self.quick else "reproduce")
+
+
+def reproduce_named(names: Sequence[str], options: ReproduceOptions, workers: Workers) -> Path:
     """Reproduce what has these names in a source, or all, print it, and return the page.
 
     Args:
         names: ids or numbers; all there are if left out.
-        paper: the source to which they are limited.
-        out: folder of the page and the results.
-        films: folder of rendered frames.
+        options: how.
         workers: who does the work.
-        repeats: of everything; None for a quick run.
-        works: whether what is missing runs; otherwise what is there is shown.
 
     Raises:
         BadInput: an unknown name, or a folder or cluster that cannot be used.
         TasksFailed: some units failed, after all else was done.
     """
+    paper, repeats = options.paper, None if options.quick else options.repeats or REPEATS
     experiments = choose(names, paper)
     # Workers may have another working directory.
-    cache = films.resolve()
+    cache = options.films.resolve()
     plan = quick_plan(cache) if repeats is None else full_plan(cache, repeats)
     chosen = [] if paper is None else ["--paper", paper]
     fewer = [] if repeats == REPEATS else ["--quick"] if repeats is None else ["--repeats", str(repeats)]
     command = shlex.join(["peopleboy", "reproduce", *chosen, *fewer, *names])
-    means = Means(out=out, workers=workers, command=command)
-    page, sections = (reproduce if works else show_so_far)(experiments, plan, means)
+    means = Means(out=options.folder, workers=workers, command=command)
+    page, sections = (show_so_far if options.so_far else reproduce)(experiments, plan, means)
     print_sections(sections)
     return page
 

@@ -8,13 +8,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
 import matplotlib
 import numpy as np
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+from pydantic import Field
 from rich.console import Console
 from rich.table import Table
 
@@ -59,13 +60,11 @@ class TrainingFilms:
 
     Attributes:
         cache: where rendered frames are kept.
-        seeds: clips of each scenario.
-        seconds: of each clip, at most.
     """
 
     cache: Path
-    seeds: int = 4
-    seconds: float = 45.0
+    seeds: Annotated[int, Field(ge=1, description="Films of each scenario.")] = 4
+    seconds: Annotated[float, Field(ge=5.0, description="How long a film is at most.")] = 45.0
 
     def plays(self, scenario: str) -> list[SuiteRun]:
         """List the clips of a scenario."""

@@ -6,11 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from itertools import islice
 from pathlib import Path
-from typing import Any, ClassVar, Final
+from typing import Annotated, Any, ClassVar, Final
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
@@ -21,7 +22,7 @@ from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.scenarios.running.frame_cache import film_key
 from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.sim.world_config import WorldConfig
-from peopleboy.studies.training.specification import Specification, option
+from peopleboy.studies.training.specification import Specification
 from peopleboy.tracker.frame import PANORAMA, Frame
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
 from peopleboy.tracker.panoramic.paper.depth_cues import (
@@ -311,9 +312,9 @@ class DistanceTraining(Specification[list[dict[str, Any]]]):
 
     HINT: ClassVar[str] = "`peopleboy reproduce --paper panoramic` measures it by the paper's experiments"
 
-    sequences: int = option(10, "Runs of the scenario.", minimum=1)
-    scenario: str = option("room_long", "Scenario, by name or path.")
-    epochs: int = option(2000, "How often the network goes through its samples.", minimum=1)
+    sequences: Annotated[int, Field(ge=1, description="Runs of the scenario.")] = 10
+    scenario: Annotated[str, Field(description="Scenario, by name or path.")] = "room_long"
+    epochs: Annotated[int, Field(ge=1, description="How often the network goes through its samples.")] = 2000
 
     def default_folder(self, model: str) -> Path:
         """Return a folder of the scenario's own."""

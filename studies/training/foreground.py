@@ -7,13 +7,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
 import cv2
 import jax
 import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.engine.task import Workers
@@ -26,7 +27,7 @@ from peopleboy.studies.training.panorama_sequences import (
 )
 from peopleboy.studies.training.random_scenes import FIRST_SEED
 from peopleboy.studies.training.samples import collect_missing
-from peopleboy.studies.training.specification import Specification, option, report
+from peopleboy.studies.training.specification import Specification, report
 from peopleboy.tracker.frame import Calibration
 from peopleboy.tracker.networks.mask_network import BLOCK, DILATIONS, INPUTS, OUTPUTS, MaskNetwork
 from peopleboy.tracker.panoramic.panorama_view import view_of
@@ -72,9 +73,9 @@ class ForegroundTraining(Specification[ForegroundData]):
     input is one that it has helped to make itself, as when it is used.
     """
 
-    sequences: int = option(400, "Scenes to train on.", minimum=1)
-    validation: int = option(20, "Other scenes, to evaluate it.", minimum=0)
-    rounds: int = option(12, "How often a hundred of the scenes are trained on.", minimum=1)
+    sequences: Annotated[int, Field(ge=1, description="Scenes to train on.")] = 400
+    validation: Annotated[int, Field(ge=0, description="Other scenes, to evaluate it.")] = 20
+    rounds: Annotated[int, Field(ge=1, description="How often a hundred of the scenes are trained on.")] = 12
 
     def collect(self, out: Path, workers: Workers) -> ForegroundData:
         """Render the scenes."""

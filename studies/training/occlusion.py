@@ -6,10 +6,11 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 from rich.console import Console
 from sklearn.base import BaseEstimator, ClassifierMixin
 from sklearn.ensemble import AdaBoostClassifier
@@ -30,7 +31,7 @@ from peopleboy.studies.training.occlusion_pairs import (
     read_pairs,
     write_pairs,
 )
-from peopleboy.studies.training.specification import Specification, option
+from peopleboy.studies.training.specification import Specification
 from peopleboy.tracker.contour.contour_config import TrackerConfig
 from peopleboy.tracker.contour.occlusion.learned_table import TABLES, LearnedTable, WeakClassifier
 from peopleboy.tracker.contour.occlusion.pair_features import FEATURES, Features
@@ -54,9 +55,9 @@ class OcclusionTraining(Specification[list[PairSample]]):
     SHIPPED_IN: ClassVar[Path] = TABLES
     HINT: ClassVar[str] = "`peopleboy reproduce 7.1 7.2 7.3 7.4` measures it by the thesis's experiments"
 
-    sequences: int = option(5, "Runs of each scenario.", minimum=1)
-    tracker: str = option("contour", "Tracker to train.", choices=tuple(TRACKERS))
-    again: bool = option(False, "Run the scenarios even if the samples are there.")
+    sequences: Annotated[int, Field(ge=1, description="Runs of each scenario.")] = 5
+    tracker: Annotated[Literal["contour", "thesis"], Field(description="Tracker to train.")] = "contour"
+    again: Annotated[bool, Field(description="Run the scenarios even if the samples are there.")] = False
 
     def default_folder(self, model: str) -> Path:
         """Return a folder of the tracker's own, since each measures other features."""

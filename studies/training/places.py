@@ -9,12 +9,13 @@ from functools import partial
 from hashlib import sha256
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Annotated, Any, Final, NamedTuple
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.atomic_output import writing_to
@@ -29,7 +30,7 @@ from peopleboy.studies.training.panorama_sequences import (
 )
 from peopleboy.studies.training.random_scenes import FIRST_SEED
 from peopleboy.studies.training.samples import Arrays, SampleTask, collect_missing, load_samples
-from peopleboy.studies.training.specification import Specification, option
+from peopleboy.studies.training.specification import Specification
 from peopleboy.tracker.networks.inference import DenseNetwork
 from peopleboy.tracker.networks.weights_archive import SHIPPED
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
@@ -224,10 +225,10 @@ class PlaceWeights:
 class PlacesTraining(Specification[Split]):
     """Train on scenes drawn at random, after `peopleboy train foreground --ship`, which it builds on."""
 
-    sequences: int = option(400, "Scenes to train on.", minimum=2)
-    rendered: Path = option(  # noqa: RUF009
-        Path("runs/foreground/sequences"), "Folder of rendered scenes, which `train foreground` uses, too."
-    )
+    sequences: Annotated[int, Field(ge=2, description="Scenes to train on.")] = 400
+    rendered: Annotated[
+        Path, Field(description="Folder of rendered scenes, which `train foreground` uses, too.")
+    ] = Path("runs/foreground/sequences")
 
     def collect(self, out: Path, workers: Workers) -> Split:
         """Render scenes and sample them; samples depend on the foreground network."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any, ClassVar, Final, Generic, TypeVar
@@ -56,17 +56,6 @@ MODELS: Final[Mapping[str, tuple[str, str]]] = {
 _PACKAGES: Final = {"jax": "jax", "optax": "optax", "sklearn": "scikit-learn"}  # of the extra `train`
 
 Data = TypeVar("Data")
-
-
-def option(default: Any, help: str, **limits: Any) -> Any:  # noqa: A002
-    """Declare an option of `peopleboy train MODEL`, a field of the model's specification.
-
-    Args:
-        default: if the option is left out.
-        help: what it is for.
-        limits: `minimum` and `maximum` of a whole number; `choices` of names.
-    """
-    return field(default=default, metadata={"help": help, **limits})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,10 +7,11 @@ import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Annotated, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
@@ -21,7 +22,7 @@ from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.studies.training.random_scenes import FIRST_SEED, random_scene
 from peopleboy.studies.training.samples import Arrays, SampleTask, collect_missing, load_samples
-from peopleboy.studies.training.specification import Specification, missing_package, option
+from peopleboy.studies.training.specification import Specification, missing_package
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR
 from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
 from peopleboy.tracker.rgbd.human_windows import (
@@ -238,7 +239,7 @@ Split = tuple[WindowSamples, WindowSamples]
 class WindowsTraining(Specification[Split]):
     """Train machines for near and far windows, by colour alone and with depth, on scenes drawn at random."""
 
-    sequences: int = option(300, "Scenes to train on.", minimum=1)
+    sequences: Annotated[int, Field(ge=1, description="Scenes to train on.")] = 300
 
     def collect(self, out: Path, workers: Workers) -> Split:
         """Run scenes, and keep windows."""

@@ -23,7 +23,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibration_of
 from peopleboy.scenarios.report.findings.run_findings import analyse_run
 from peopleboy.scenarios.run_folder.finished_run import open_run
-from peopleboy.scenarios.scores.evaluate_runs import evaluate_runs
+from peopleboy.scenarios.scores.evaluate_runs import ScoreOptions, evaluate_runs
 from peopleboy.scenarios.scores.reference_boxes import BoxReference
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.geometry.panorama import MIRRORS, Panorama
@@ -148,7 +148,7 @@ def test_tracks_on_the_other_side_of_the_seam_match_all_the_same(tracked: Path, 
     text = [f"{frame},7,{float(left) - 480.0},{','.join(box)},1,-1,-1,-1" for frame, _, left, *box in
             (line[:6] for line in lines)]  # fmt: skip
     (run / "tracks" / "panorama.txt").write_text("".join(f"{line}\n" for line in text), encoding="utf-8")
-    (people,) = evaluate_runs([run], camera="panorama", boxes=BoxKind.TORSO)
+    (people,) = evaluate_runs([run], ScoreOptions(camera="panorama", boxes=BoxKind.TORSO))
     scores = people.scores
     assert scores.counts.targets > 3
     assert scores.thesis.ca == scores.thesis.aa == pytest.approx(100.0)
@@ -161,9 +161,9 @@ def test_who_is_near_counts_all_round_and_our_own_boxes_there_are_whole_ones(tra
     assert all(row["is_counted"] and row["distance_m"] < 3.0 for row in rows)
     (on_floor,) = evaluate_runs([tracked])
     assert on_floor.scores.counts.targets == len(rows)
-    (in_panorama,) = evaluate_runs([tracked], camera="panorama")
+    (in_panorama,) = evaluate_runs([tracked], ScoreOptions(camera="panorama"))
     assert in_panorama.by == BoxReference("panorama", BoxKind.WHOLE)
-    (asked,) = evaluate_runs([tracked], camera="panorama", boxes=BoxKind.TORSO)
+    (asked,) = evaluate_runs([tracked], ScoreOptions(camera="panorama", boxes=BoxKind.TORSO))
     assert asked.by == BoxReference("panorama", BoxKind.TORSO)
     metrics = json.loads((tracked / "metrics.json").read_text(encoding="utf-8"))
     assert metrics["cameras"]["panorama"] == to_json(in_panorama.scores)

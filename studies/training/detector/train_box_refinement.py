@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar, Final
+from typing import Annotated, ClassVar, Final
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.studies.training.detector.augmentation import Version, versions
@@ -26,7 +27,6 @@ from peopleboy.studies.training.detector.crop_samples import (
 from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images
 from peopleboy.studies.training.optimiser import Weights, huber
 from peopleboy.studies.training.samples import SampleTask
-from peopleboy.studies.training.specification import option
 from peopleboy.tracker.boxes import area, cover, intersection, iou
 from peopleboy.tracker.detector.box_refinement import FILE, SCALES, USUAL, BoxRefinementNetwork
 from peopleboy.tracker.detector.box_regression import encode_boxes
@@ -61,7 +61,7 @@ class BoxRefinementTraining(CropTraining):
     EPOCHS: ClassVar[int] = 2
     DROPOUT: ClassVar[float] = 0.2
 
-    sequences: int = option(600, "Worlds to train on.", minimum=5, maximum=2000)
+    sequences: Annotated[int, Field(ge=5, le=2000, description="Worlds to train on.")] = 600
 
     def sample(self, task: SampleTask, *, augments: bool) -> CropSamples:
         """Collect people in a sequence, whose seed draws how images are augmented and boxes displaced."""

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.running.engine.task import Workers
@@ -24,7 +25,7 @@ from peopleboy.studies.training.detector.mining import (
 from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images, render_task
 from peopleboy.studies.training.detector.worlds import KINDS, seeds_of
 from peopleboy.studies.training.samples import collect_missing
-from peopleboy.studies.training.specification import Specification, option, report
+from peopleboy.studies.training.specification import Specification, report
 from peopleboy.tracker.detector.box_regression import BoxRegression
 from peopleboy.tracker.detector.cascade import Cascade
 from peopleboy.tracker.detector.patches import Patches, Sums, integrate_windows
@@ -91,15 +92,18 @@ class CascadeTraining(Specification[CascadeData]):
     A tenth is held back, to calibrate scores.
     """
 
-    sequences: int = option(600, "Worlds to train on.", minimum=5, maximum=2000)
-    windows: tuple[str, ...] = option(
-        tuple(kind.value for kind in WindowKind),
-        "Train trees for people who are mostly in the image, or cut off; the others stay as they are.",
-        choices=tuple(kind.value for kind in WindowKind),
-    )
-    only_boxes: bool = option(
-        False, "Train the regression of boxes alone; trees that score windows stay as they are."
-    )
+    sequences: Annotated[int, Field(ge=5, le=2000, description="Worlds to train on.")] = 600
+    windows: Annotated[
+        tuple[WindowKind, ...],
+        Field(
+            description="Train trees for people who are mostly in the image, or cut off; the others stay as "
+            "they are."
+        ),
+    ] = tuple(WindowKind)
+    only_boxes: Annotated[
+        bool,
+        Field(description="Train the regression of boxes alone; trees that score windows stay as they are."),
+    ] = False
 
     def default_folder(self, model: str) -> Path:  # noqa: ARG002
         """Return the folder that all models of the detector share."""

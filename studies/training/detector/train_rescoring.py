@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import ClassVar, Final
+from typing import Annotated, ClassVar, Final
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from peopleboy.studies.training.detector.augmentation import Version, versions
 from peopleboy.studies.training.detector.boosting import in_threads
@@ -28,7 +29,6 @@ from peopleboy.studies.training.detector.evaluation import check_labels, log_odd
 from peopleboy.studies.training.detector.world_sequences import load_images
 from peopleboy.studies.training.optimiser import Weights, huber
 from peopleboy.studies.training.samples import SampleTask
-from peopleboy.studies.training.specification import option
 from peopleboy.tracker.boxes import Floats, iou
 from peopleboy.tracker.detector.box_regression import OFFSETS, encode_boxes
 from peopleboy.tracker.detector.crops import SCORES, Planes, crop_features, cut_crops
@@ -60,7 +60,7 @@ class RescoringTraining(CropTraining):
     EPOCHS: ClassVar[int] = 4
     DROPOUT: ClassVar[float] = 0.4
 
-    sequences: int = option(600, "Worlds to train on.", minimum=5, maximum=2000)
+    sequences: Annotated[int, Field(ge=5, le=2000, description="Worlds to train on.")] = 600
 
     def sample(self, task: SampleTask, *, augments: bool) -> CropSamples:
         """Collect what the cascade detects in a sequence, whose seed draws how its images are augmented."""

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import pytest
 from click.shell_completion import ShellComplete
-from peopleboy.scenarios.commands.run_command import run
+from peopleboy.scenarios.commands.run_commands import run
 
 from peopleboy.scenarios.cli import COMMANDS, cli
 from peopleboy.scenarios.commands.completion import BEHAVIOUR_NAMES
