@@ -21,10 +21,11 @@ from peopleboy.scenarios.commands.command_options import (
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 if TYPE_CHECKING:
+    from peopleboy.scenarios.finished_runs.import_tracks import TrackImport
     from peopleboy.scenarios.footage.options import RgbdOptions, TrackOptions
     from peopleboy.scenarios.footage.rgbd_camera import RgbdCamera
     from peopleboy.scenarios.footage.track_footage import Tracked
-    from peopleboy.scenarios.running.run_options import RunOptions
+    from peopleboy.tracker.footage.grey import Radiometry
 
 
 _TRACKERS = (
@@ -36,18 +37,12 @@ _TRACKERS = (
 @click.command(cls=FieldsCommand)
 @click.argument("footage", metavar="FOLDER|TIFF|VIDEO", type=PATH)
 @options_of("scenarios.footage.options:TrackOptions", "out", "colour", into="files")
-@click.option(
-    "--temperature-range",
-    type=(float, float),
-    metavar="LOW HIGH",
-    help="degC that 0 and 255 of 8-bit pictures stand for.",
-)
+@options_of("tracker.footage.grey:Radiometry", "span_c", "is_inverted", into="thermal")
 @click.option(
     "--scale",
     metavar="GAIN,OFFSET",
     help="16-bit counts to degC: 'centikelvin', or degC = GAIN counts + OFFSET.",
 )
-@click.option("--black-hot", is_flag=True, help="Warm things are dark.")
 @options_of(
     "scenarios.footage.options:RgbdOptions", "depth", "m_per_count", "odometry", into="rgbd", is_optional=True
 )
@@ -72,9 +67,8 @@ _TRACKERS = (
 def track(
     footage: Path,
     files: GivenOptions[TrackOptions],
-    temperature_range: tuple[float, float] | None,
+    thermal: GivenOptions[Radiometry],
     scale: str | None,
-    black_hot: bool,
     rgbd: GivenOptions[RgbdOptions],
     camera: GivenOptions[RgbdCamera],
     given: GivenOptions[TrackOptions],
@@ -86,22 +80,18 @@ def track(
     truth. Without temperatures the grey follows the scene's contrast. With --depth and --depth-scale, people
     are tracked in colour with depth, and tracks.parquet has their places on the floor.
     """
-    from peopleboy.scenarios.footage.options import RGBD_TRACKER
+    from peopleboy.scenarios.footage.options import RGBD_TRACKER, parse_start
     from peopleboy.scenarios.footage.track_footage import track_footage
     from peopleboy.scenarios.progress_bar import progress_bar
-    from peopleboy.tracker.footage.grey import Radiometry, parse_scale
+    from peopleboy.tracker.footage.grey import parse_scale
 
     options = given.make(
         footage=footage,
         **files.values,
-        radiometry=Radiometry(
-            span_c=temperature_range,
-            scale=None if scale is None else parse_scale(scale),
-            is_inverted=black_hot,
-        ),
+        radiometry=thermal.make(scale=None if scale is None else parse_scale(scale)),
         rgbd=_rgbd(rgbd, camera),
         tracker=given.tracker or (DEFAULT_TRACKER if rgbd.depth is None else RGBD_TRACKER),
-        start=None if start is None else _parse_start(start),
+        start=None if start is None else parse_start(start),
     )
     with progress_bar(footage.name, unit="frames") as show:
         tracked = track_footage(options, lambda frame, expected: show(frame, max(expected, frame)))
@@ -116,18 +106,6 @@ def _rgbd(given: GivenOptions[RgbdOptions], camera: GivenOptions[RgbdCamera]) ->
     if given.m_per_count is None:
         raise BadInput("--depth needs --depth-scale, the metres a count stands for: 0.001 for millimetres")
     return given.make(camera=camera.make())
-
-
-def _parse_start(text: str) -> tuple[float, float, float, float] | str:
-    if text == "truth":
-        return text
-    try:
-        x, y, width, height = (float(part) for part in text.split(","))
-    except ValueError:
-        raise BadInput(f"--start must be X,Y,W,H in pixels or 'truth', got {text!r}") from None
-    if not (width > 0 and height > 0):
-        raise BadInput(f"--start must have a width and height above 0, got {text!r}")
-    return x, y, width, height
 
 
 def _tell(tracked: Tracked, options: TrackOptions) -> None:
@@ -145,14 +123,12 @@ def _tell(tracked: Tracked, options: TrackOptions) -> None:
 @click.command("import-tracks", cls=FieldsCommand)
 @click.argument("run", metavar="RUN", type=PATH)
 @click.argument("tracks", metavar="TRACKS", type=PATH)
-@click.option("--name", required=True, help="What their tracker is called.")
-@click.option("--camera", default="thermal", show_default=True, help="Camera in whose images the boxes are.")
 @options_of(
-    "scenarios.running.run_options:RunOptions",
-    *("out", "boxes", "record", "overwrite"),
+    "scenarios.finished_runs.import_tracks:TrackImport",
+    *("name", "camera", "out", "boxes", "record", "overwrite"),
     out="Folder to leave.  [default: beside RUN, SCENARIO-SEED-NAME, or RUN-NAME for a folder of runs]",
 )
-def import_tracks(run: Path, tracks: Path, name: str, camera: str, given: GivenOptions[RunOptions]) -> None:
+def import_tracks(run: Path, tracks: Path, given: GivenOptions[TrackImport]) -> None:
     """Import tracks that another program made of the images of RUN, as a run of their own.
 
     TRACKS is MOTChallenge text: frame, id, left, top, width, height, confidence, -1, -1, -1; frames are
@@ -164,14 +140,14 @@ def import_tracks(run: Path, tracks: Path, name: str, camera: str, given: GivenO
     RUN may be a folder of runs, such as a sweep's. TRACKS is one of files then, SCENARIO-SEED.txt for each
     of them, as benchmarks ask for; those files may lie in a folder data in it.
     """
-    from peopleboy.scenarios.finished_runs.import_tracks import TrackImport, imports_by_sequence
     from peopleboy.scenarios.finished_runs.import_tracks import import_tracks as take
+    from peopleboy.scenarios.finished_runs.import_tracks import imports_by_sequence
     from peopleboy.scenarios.progress_bar import progress_bar
     from peopleboy.scenarios.scores.run_scores import headline
     from peopleboy.scenarios.scores.show_scores import print_scores
 
-    out = given.out or run.resolve().parent / f"{_title(run, tracks)}-{name}"
-    what = TrackImport(run=run, tracks=tracks, name=name, camera=camera, **{**given.values, "out": out})
+    out = given.out or run.resolve().parent / f"{_title(run, tracks)}-{given.name}"
+    what = given.make(run=run, tracks=tracks, out=out)
     each = imports_by_sequence(what) if tracks.is_dir() else [what]
     for one in each:
         with progress_bar(one.out.name, unit="frames") as show:
@@ -204,13 +180,7 @@ def _title(run: Path, tracks: Path) -> str:
     type=PATH,
     help="A real clip, or a folder of some; can be given again.",
 )
-@click.option(
-    "--out",
-    type=PATH,
-    default=Path("comparison.html"),
-    show_default=True,
-    help="The page.",
-)
+@click.option("--out", type=PATH, default=Path("comparison.html"), show_default=True, help="The page.")
 @click.option("--json", "as_json", is_flag=True, help="Print all figures as JSON.")
 @click.option("--seed", type=WholeNumber(min=0), default=0, show_default=True, help="Of what is chosen.")
 def sim_to_real(rendered: Sequence[Path], real: Sequence[Path], out: Path, as_json: bool, seed: int) -> None:

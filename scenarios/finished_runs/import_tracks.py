@@ -7,7 +7,9 @@ from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.export.replay import replay
@@ -20,7 +22,9 @@ from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_whole_
 from peopleboy.scenarios.run_folder.folder import RunFolder
 from peopleboy.scenarios.run_folder.image_files import about_gains
 from peopleboy.scenarios.running.run import Watchers
+from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
+from peopleboy.settings import meaning_of
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Track
@@ -31,27 +35,21 @@ _KEPT = ("mounted_for_tracker", "behaviour")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrackImport:
-    """which tracks to import, and how.
+    """Which tracks to import, and how.
 
     Attributes:
         run: folder of the run whose images they were made of.
         tracks: MOTChallenge results.
-        name: what their tracker is called.
-        out: the folder to leave.
-        camera: in whose images the boxes are.
-        boxes: what they are drawn round.
-        record: whether to write recording.rrd.
-        overwrite: whether an earlier run in that folder may be replaced.
     """
 
     run: Path
     tracks: Path
-    name: str
-    out: Path
-    camera: str = THERMAL
-    boxes: BoxKind = BoxKind.TORSO
-    record: bool = True
-    overwrite: bool = False
+    name: Annotated[str, Field(description="What their tracker is called.")]
+    out: Annotated[Path, Field(description="Folder to leave.")]
+    camera: Annotated[str, Field(description="Camera in whose images the boxes are.")] = THERMAL
+    boxes: Annotated[BoxKind, meaning_of(RunOptions, "boxes")] = BoxKind.TORSO
+    record: Annotated[bool, meaning_of(RunOptions, "record")] = True
+    overwrite: Annotated[bool, meaning_of(RunOptions, "overwrite")] = False
 
 
 def import_tracks(what: TrackImport, report: Callable[[int, int], None]) -> RunScores:

@@ -97,6 +97,23 @@ class TrackOptions:
         return tuple(path for path in (self.footage, self.colour, self.truth, *depth) if path is not None)
 
 
+def parse_start(text: str) -> Box | str:
+    """Read the box to start from, `X,Y,W,H` in pixels, or `truth`.
+
+    Raises:
+        BadInput: it is neither.
+    """
+    if text == "truth":
+        return text
+    try:
+        x, y, width, height = (float(part) for part in text.split(","))
+    except ValueError:
+        raise BadInput(f"--start must be X,Y,W,H in pixels or 'truth', got {text!r}") from None
+    if not (width > 0 and height > 0):
+        raise BadInput(f"--start must have a width and height above 0, got {text!r}")
+    return x, y, width, height
+
+
 def check_first(picture: NDArray[Any], options: TrackOptions) -> None:
     """Refuse footage by its first picture (H, W) or (H, W, 3).
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
+from peopleboy.settings import Metavar
 from peopleboy.tracker.footage.read_picture import Raw
 
 # Trackers that use contrast alone get each pixel in standard deviations of its neighbourhood.
@@ -86,14 +88,16 @@ class Radiometry:
     """How pixels become degC, as far as anybody knows.
 
     Attributes:
-        span_c: degC that 0 and 255 of 8-bit pictures stand for; None if unknown.
         scale: gain and offset of counts to degC; None if unknown.
-        is_inverted: whether cold is bright.
     """
 
-    span_c: tuple[float, float] | None = None
+    span_c: Annotated[
+        tuple[float, float] | None,
+        Field(alias="temperature_range", description="degC that 0 and 255 of 8-bit pictures stand for."),
+        Metavar("LOW HIGH"),
+    ] = None
     scale: tuple[float, float] | None = None
-    is_inverted: bool = False
+    is_inverted: Annotated[bool, Field(alias="black_hot", description="Warm things are dark.")] = False
 
     def __post_init__(self) -> None:
         if self.span_c is not None and self.scale is not None:

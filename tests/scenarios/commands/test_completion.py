@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import pytest
 from click.shell_completion import ShellComplete
-from peopleboy.scenarios.commands.run_commands import run
 
 from peopleboy.scenarios.cli import COMMANDS, cli
 from peopleboy.scenarios.commands.completion import BEHAVIOUR_NAMES
+from peopleboy.scenarios.commands.run_commands import run
 from peopleboy.scenarios.files.load import library
 from peopleboy.scenarios.files.suite import suite_names
 from peopleboy.tracker.trackers import TRACKERS
