@@ -13,8 +13,7 @@ import numpy as np
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.studies.reproductions.evaluations.attention_focus import CHOICES as WAYS
 from peopleboy.studies.reproductions.evaluations.drive_tracking import CHOICES
-from peopleboy.studies.reproductions.evaluations.scene_scores import CHOICES as SCENE_MODELS
-from peopleboy.studies.reproductions.evaluations.scene_scores import CLEAN
+from peopleboy.studies.reproductions.evaluations.scene_scores import CLEAN, OURS, PRINTED
 from peopleboy.studies.reproductions.evaluations.sliding_windows import (
     BY_SIZE,
     FAR_SLIDES,
@@ -63,7 +62,8 @@ class MadeUp(dict[str, Result]):
         if key.startswith("windows "):
             return {f"{kind} {who}": {"people": [1.0, 2.0], "others": [-1.0]} for kind, who in MODELS}
         if key.startswith("scene "):
-            return dict.fromkeys(SCENE_MODELS, SCENE) | {"maps": dict.fromkeys((*SCENE_MODELS, CLEAN), MAP)}
+            models = (*PRINTED, *OURS)
+            return dict.fromkeys(models, SCENE) | {"maps": dict.fromkeys((*models, CLEAN), MAP)}
         if key.startswith("slide "):
             tally = {"ms": 10.0, "images": 3, "people": 4, "found": 3, "false": 5}
             kinds = (f"{one} {BY_SIZE}" for one in ("near+far", "far", "near"))

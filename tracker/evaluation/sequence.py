@@ -1,7 +1,7 @@
 """One sequence of boxes: who was there (`TrueBoxes`), and what a tracker claims (`TrackBoxes`)."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields, replace
 from typing import Any, ClassVar, Self
 
@@ -59,9 +59,16 @@ class Rows:
         taken: dict[str, Any] = {name: getattr(self, name)[rows] for name in self._columns()}
         return replace(self, **taken)
 
-    def _columns(self) -> list[str]:
+    @classmethod
+    def from_rows(cls, rows: Iterable[Sequence[Any]]) -> Self:
+        """Build the columns from rows, each with one value per column, in the order of the fields."""
+        columns = zip(*rows, strict=True)
+        return cls(**{name: np.array(next(columns, ())) for name in cls._columns()})
+
+    @classmethod
+    def _columns(cls) -> list[str]:
         """Name what each row has a value of."""
-        return [each.name for each in fields(self) if each.default is MISSING]
+        return [each.name for each in fields(cls) if each.default is MISSING]
 
     def number_ids(self) -> tuple[Ints, Ints]:
         """Number the K ids from 0: the number of each row's id (N,), and how many rows each id has (K,)."""

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.loop import closed_loop
+from peopleboy.scenarios.loop.loop import closed_loop, make_frame
 from peopleboy.scenarios.loop.tracker_by_name import OracleTracker, make_named_tracker
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth, Truth
-from peopleboy.studies.reproductions.evaluations.playback import play
+from peopleboy.studies.reproductions.evaluations.playback import Moment, play
 from peopleboy.tracker.attention.attend import Focus, PersonModel, learn, middle_of, search
 from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
 from peopleboy.tracker.attention.image_sums import ImageSums
@@ -82,26 +81,10 @@ LEFT_S: Final = 30.0
 """An absence that the run's end cuts off sooner is not counted: how it would have ended is unknown."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class FocusMoment:
-    """One instant of a clip.
-
-    Attributes:
-        time_s: [s] since its start.
-        image: (H, W, 3) of the colour camera.
-        truth: in that image.
-    """
-
-    time_s: float
-    image: NDArray[np.uint8]
-    truth: Truth
-
-
-def play_focus(scenario: Scenario, seed: int, every: int = EVERY) -> Iterator[FocusMoment]:
-    """Play a scenario; a robot that follows a person is given the truth to follow."""
+def play_focus(scenario: Scenario, seed: int, every: int = EVERY) -> Iterator[Moment]:
+    """Play a scenario for the colour camera; a robot that follows a person is given the truth to follow."""
     if scenario.robot.behaviour != FOLLOWS:
-        for one in play(scenario, seed, COLOUR, every=every):
-            yield FocusMoment(one.observation.time_s, one.observation.images[COLOUR], one.truth)
+        yield from play(scenario, seed, COLOUR, images=(COLOUR,), every=every)
         return
     from peopleboy.sim.world import World  # here, as stored results can be read without PyBullet
 
@@ -110,8 +93,9 @@ def play_focus(scenario: Scenario, seed: int, every: int = EVERY) -> Iterator[Fo
         oracle, behaviour = OracleTracker(lambda: world.truth()), scenario.make_behaviour()
         for tick in closed_loop(world, oracle, behaviour, round(scenario.duration_s * config.control_hz)):
             if tick.frame % every == 1:
-                seen = tick.observation
-                yield FocusMoment(seen.time_s, seen.images[COLOUR], world.truth(COLOUR))
+                frame = make_frame(tick.observation, {}, None)
+                frame.rgb(COLOUR)  # drawn now, as the world goes on
+                yield Moment(tick.frame, frame, world.truth(COLOUR), tick.observation)
 
 
 def wanted(scenario: Scenario, truth: Truth) -> list[PersonTruth]:
@@ -139,22 +123,22 @@ def watch_focus(scenario: Scenario, seed: int, names: Sequence[str]) -> dict[str
 
 
 def _search(
-    moment: FocusMoment,
+    moment: Moment,
     people: Sequence[PersonTruth],
     config: AttentionConfig,
     learned: dict[int, PersonModel],
     counts: dict[str, list[int]],
 ) -> None:
-    sight: ImageSums | None = None
+    sight, image = None, moment.frame.rgb(COLOUR)
     for person in people:
         known = learned.get(person.id)
         if known is not None and person.visible_fraction >= PRESENT:
-            sight = sight or ImageSums.of(moment.image, config)
+            sight = sight or ImageSums.of(image, config)
             found = counts.setdefault(str(person.id), [0, 0, 0])
             found[verdict(search(sight, known, config), person, moment.truth)] += 1
-        elif known is None and can_be_learned(person, moment.image.shape):
+        elif known is None and can_be_learned(person, image.shape):
             assert person.box is not None
-            sight = sight or ImageSums.of(moment.image, config)
+            sight = sight or ImageSums.of(image, config)
             learned[person.id] = learn(sight, person.box, config)
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -30,14 +31,12 @@ class FloorPerson:
     """A person in the robot's frame at one instant.
 
     Attributes:
-        id: of the person.
         place_m: forward, left of the robot [m], of the body's middle.
         surface_m: the same of the surface that the camera sees in the middle of the person; None for none.
         is_counted: whether a tracker has to find the person.
         truth: all that is known of the person.
     """
 
-    id: int
     place_m: tuple[float, float]
     surface_m: tuple[float, float] | None
     is_counted: bool
@@ -49,7 +48,7 @@ def people_on_floor(truth: Truth, view: DepthView) -> Iterator[FloorPerson]:
     for person in truth.people:
         is_counted = person.visible_px > LEAST_PX and person.distance_m <= FARTHEST_M
         surface_m = _surface(person, truth, view) if is_counted else None
-        yield FloorPerson(person.id, truth.robot.to_local(person.position_m), surface_m, is_counted, person)
+        yield FloorPerson(truth.robot.to_local(person.position_m), surface_m, is_counted, person)
 
 
 def _surface(person: PersonTruth, truth: Truth, view: DepthView) -> tuple[float, float] | None:
@@ -107,7 +106,7 @@ class DriveScore:
                 track = found[number]
                 self.hits.append(self._hit(frame, person, tracks[track].id, places[track]))
             else:
-                self.missed.append((frame, person.id))
+                self.missed.append((frame, person.truth.id))
         for number in sorted(set(range(len(places))) - set(found.values())):
             x, y = places[number].round(3).tolist()
             self.false.append((frame, tracks[number].id, x, y))
@@ -122,7 +121,7 @@ class DriveScore:
         if person.surface_m is not None:
             front = place * (1.0 - self.body_m / max(float(np.hypot(*place)), 0.1))
             surface = (front - person.surface_m).round(4).tolist()
-        return (frame, person.id, track, *off, *surface)
+        return (frame, person.truth.id, track, *off, *surface)
 
 
 def associate(people: Sequence[FloorPerson], places_m: Floats, radius_m: float = RADIUS_M) -> dict[int, int]:
@@ -181,15 +180,10 @@ class DriveRecord:
     def joined(cls, records: Iterable[DriveRecord]) -> DriveRecord:
         """Take drives together."""
         parts = list(records)
+        join: dict[str, Callable[..., Any]] = {"hits": np.concatenate, "ms": np.mean}  # all others add up
+        columns = {one.name: [getattr(part, one.name) for part in parts] for one in fields(cls)}
         return cls(
-            frames=sum(one.frames for one in parts),
-            hits=np.concatenate([one.hits for one in parts]),
-            missed=sum(one.missed for one in parts),
-            false=sum(one.false for one in parts),
-            switches=sum(one.switches for one in parts),
-            ms=float(np.mean([one.ms for one in parts])),
-            bands=np.sum([one.bands for one in parts], axis=0),
-            false_sizes=sum(one.false_sizes for one in parts),
+            **{name: join.get(name, partial(np.sum, axis=0))(column) for name, column in columns.items()}
         )
 
     def found(self, radius_m: float = RADIUS_M) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any, Final
 
@@ -104,15 +104,10 @@ def make_choice(name: str, rng: np.random.Generator) -> RgbdTracker:
     return RgbdTracker(config, model, rng)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class DriveMoment(Moment):
-    """One instant of a drive, with everybody who is there."""
+def play_drive(scenario: Scenario, seed: int) -> Iterator[tuple[Moment, tuple[FloorPerson, ...]]]:
+    """Play a scenario, and yield every image of the depth camera with the people who are there.
 
-    people: tuple[FloorPerson, ...]
-
-
-def play_drive(scenario: Scenario, seed: int) -> Iterator[DriveMoment]:
-    """Play a scenario, and yield every image of the depth camera, which is mounted if there is none.
+    A robot without a depth camera gets one.
 
     Raises:
         BadInput: the robot needs a tracker to drive.
@@ -120,8 +115,7 @@ def play_drive(scenario: Scenario, seed: int) -> Iterator[DriveMoment]:
     scenario = scenario.mounting((DEPTH,))
     view = DepthView.of(calibrations_of(scenario.world(seed).robot.cameras)[DEPTH], DEPTH)
     for one in play(scenario, seed, DEPTH, images=(DEPTH, DEPTH_COLOUR)):
-        people = tuple(people_on_floor(one.truth, view))
-        yield DriveMoment(one.number, one.frame, one.truth, one.observation, people)
+        yield one, tuple(people_on_floor(one.truth, view))
 
 
 class DriveTracking:
@@ -139,15 +133,15 @@ class DriveTracking:
         self._found = np.zeros((len(BANDS), 2), np.int64)
         self._false = 0
 
-    def update(self, moment: DriveMoment) -> None:
+    def update(self, moment: Moment, people: Sequence[FloorPerson]) -> None:
         """Track one more instant."""
         tracks = self._timed(partial(self.tracker.update, moment.frame))
         tracks = tuple(track for track in tracks if track.status is not Status.TENTATIVE)
-        self._score.add(moment.number, moment.people, tracks)
+        self._score.add(moment.number, people, tracks)
         for track in tracks:
             assert track.place is not None  # this tracker works on the floor
             self.rows.append(_row(moment.number, track.id, track.place.position_m))
-        self._count_pre_detections(moment.people)
+        self._count_pre_detections(people)
 
     def plain(self) -> dict[str, Any]:
         """Return all that was measured as plain data; "tracks" has rows of frame, track, place."""
@@ -181,10 +175,10 @@ def watch_drive(scenario: Scenario, seed: int, names: Iterable[str]) -> dict[str
     trackings = {name: DriveTracking(name) for name in names}
     truth: list[tuple[float, ...]] = []
     robot: list[tuple[float, ...]] = []
-    for moment in play_drive(scenario, seed):
+    for moment, people in play_drive(scenario, seed):
         for tracking in trackings.values():
-            tracking.update(moment)
-        truth += [_truth_row(moment.number, person) for person in moment.people]
+            tracking.update(moment, people)
+        truth += [_truth_row(moment.number, person) for person in people]
         pose = moment.truth.robot
         robot.append((round(pose.x, 3), round(pose.y, 3), round(pose.heading, 4)))
     return {name: one.plain() for name, one in trackings.items()} | {"truth": truth, "robot": robot}
@@ -200,18 +194,18 @@ def watch_legs(scenario: Scenario, seed: int) -> dict[str, Any]:
     tracking, legs = DriveTracking(DEFAULT), LegTracker()
     truth: list[tuple[float, ...]] = []
     rows: list[tuple[float, ...]] = []
-    for moment in play_drive(scenario.with_cameras(CAMERAS), seed):
-        tracking.update(moment)
+    for moment, people in play_drive(scenario.with_cameras(CAMERAS), seed):
+        tracking.update(moment, people)
         found = legs.update(scan(moment.observation), moment.frame.odometry)
         rows += [_row(moment.number, one.id, one.place_m) for one in found]
-        truth += [_truth_row(moment.number, person) for person in moment.people]
+        truth += [_truth_row(moment.number, person) for person in people]
     return {"truth": truth, "depth": tracking.rows, "legs": rows}
 
 
 def _truth_row(frame: int, person: FloorPerson) -> tuple[float, ...]:
     """Return frame, person, place, distance, hidden share, and whether the person counts."""
     distance_m, hidden = round(person.truth.distance_m, 2), round(person.truth.occluded_fraction, 3)
-    return (*_row(frame, person.id, person.place_m), distance_m, hidden, int(person.is_counted))
+    return (*_row(frame, person.truth.id, person.place_m), distance_m, hidden, int(person.is_counted))
 
 
 def _row(frame: int, number: int, place_m: tuple[float, float]) -> tuple[float, ...]:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 import cv2
 import numpy as np
@@ -64,32 +63,11 @@ EVER, CLEAN = "ever", "clean"
 _FARTHEST_M: Final = 65.0  # of a map; 16 bits hold 65.5 m in millimetres
 
 
-class Model(Protocol):
-    """Turns frames into scenes."""
-
-    def update(self, frame: Frame) -> VistaScene:
-        """Take in the next frame."""
-        ...
-
-    def finish(self) -> tuple[Happening, ...]:
-        """Return the events that were held back."""
-        ...
-
-
-def _printed(variant: str) -> Model:
-    return PrintedSceneModel(VARIANTS[variant.lower()], stream(0, "scene.particles"))
-
-
-def _robust(config: SceneConfig) -> Model:
-    return SceneModel(config)
-
-
-CHOICES: Final[dict[str, Callable[[], Model]]] = {
-    **{name: partial(_printed, name) for name in PRINTED},
-    ROBUST: partial(_robust, SceneConfig()),
-    NO_HEAT: partial(_robust, SceneConfig(people=PeopleMaskConfig(has_heat=False))),
-}
-"""The scene models that are compared, by name."""
+def make_model(name: str) -> SceneModel | PrintedSceneModel:
+    """Make a scene model that is compared: one of `PRINTED` or `OURS`."""
+    if name in PRINTED:
+        return PrintedSceneModel(VARIANTS[name.lower()], stream(0, "scene.particles"))
+    return SceneModel(SceneConfig(people=PeopleMaskConfig(has_heat=name != NO_HEAT)))
 
 
 def with_preset(scenario: Scenario, preset: str) -> Scenario:
@@ -97,41 +75,24 @@ def with_preset(scenario: Scenario, preset: str) -> Scenario:
     return scenario.with_cameras({DEPTH: {"kind": DEPTH, "preset": preset}})
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TrueMasks:
-    """The true masks of an image, and where the camera reads anything.
-
-    Attributes:
-        people: (H, W) people.
-        things: (H, W) movable objects that stand clear of what was shown behind them.
-        is_read: (H, W) where there is a reading.
-    """
-
-    people: Bools
-    things: Bools
-    is_read: Bools
-
-
 class _Watcher:
     """One model, what it found, its score and its time."""
 
     def __init__(self, name: str) -> None:
-        self._model = CHOICES[name]()
+        self._model = make_model(name)
         self.timed = Stopwatch()
         self.scene: VistaScene | None = None
         self.happenings: list[Happening] = []
         self.identities = PersonNames()
         self.pixels = {kind: np.zeros(3, np.int64) for kind in ("people", "things")}
 
-    def update(self, frame: Frame, masks: TrueMasks | None, truth: Truth) -> None:
+    def update(self, frame: Frame, masks: Mapping[str, Bools], truth: Truth) -> None:
         scene = self.scene = self.timed(partial(self._model.update, frame))
         people = [(one.name, truth.robot.to_local(one.position_m)) for one in truth.people]
         self.identities.look([(one.id, one.place_m) for one in scene.persons], people)
         self.happenings += scene.happenings
-        if masks is not None:
-            read = masks.is_read
-            self.pixels["people"] += count_pixels((scene.people > 0) & read, masks.people & read)
-            self.pixels["things"] += count_pixels((scene.things > 0) & read, masks.things & read)
+        for kind, mask in masks.items():
+            self.pixels[kind] += count_pixels((getattr(scene, kind) > 0) & (frame.depth(DEPTH) > 0), mask)
 
     def plain(
         self, true: Mapping[str, Metres], lengths: Floats, events: Sequence[TrueEvent], robot: Pose2
@@ -173,7 +134,7 @@ def watch_scene(
         backgrounds.update(last.truth)
         events += _new_events(log, last.truth)
         is_compared = (last.number - 1) % EVERY == 0
-        masks = _true_masks(last.truth, backgrounds, last.frame) if is_compared else None
+        masks = _true_masks(last.truth, backgrounds, last.frame) if is_compared else {}
         for watcher in watchers.values():
             watcher.update(last.frame, masks, last.truth)
     if last is None or backgrounds.ever is None or backgrounds.clean is None:
@@ -189,11 +150,13 @@ def _new_events(log: ThingLog, truth: Truth) -> list[TrueEvent]:
     return [TrueEvent.of(one, one.thing, one.by, places[one.thing]) for one in log.update(truth)]
 
 
-def _true_masks(truth: Truth, backgrounds: Backgrounds, frame: Frame) -> TrueMasks:
+def _true_masks(truth: Truth, backgrounds: Backgrounds, frame: Frame) -> dict[str, Bools]:
+    """Return where (H, W) people, and movable things clear of the background, are read by the camera."""
     assert backgrounds.ever is not None  # it has taken in this truth
     is_thing = truth.owners.mask(*(thing.name for thing in truth.things))
     stands_clear = backgrounds.ever - truth.depth_m > LEAST_M
-    return TrueMasks(truth.instance > 0, is_thing & stands_clear, frame.depth(DEPTH) > 0)
+    is_read = frame.depth(DEPTH) > 0
+    return {"people": (truth.instance > 0) & is_read, "things": is_thing & stands_clear & is_read}
 
 
 def count_pixels(found: Bools, wanted: Bools) -> NDArray[np.int64]:

@@ -106,14 +106,7 @@ def track_sequence(shot: Film, tracker: Tracker) -> tuple[TrackBoxes, Flags]:
         for number, frame in enumerate(frames_of(shot, tracker.cameras), 1)
         for track, box in confirmed(tracker.update(frame), THERMAL)
     ]
-    frame, identity, box, confidence, is_in_range = zip(*rows, strict=True) if rows else ((), (), (), (), ())
-    found = TrackBoxes(
-        frame=np.array(frame, dtype=np.int64),
-        id=np.array(identity, dtype=np.int64),
-        box=np.array(box, dtype=np.float64).reshape(-1, 4),
-        confidence=np.array(confidence, dtype=np.float64),
-    )
-    return found, np.array(is_in_range, dtype=np.bool_)
+    return TrackBoxes.from_rows(row[:4] for row in rows), np.array([row[4] for row in rows], np.bool_)
 
 
 def _is_in_range(track: Track, frame: Frame) -> bool:

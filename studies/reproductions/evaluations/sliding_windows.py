@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Final
@@ -19,7 +18,6 @@ from peopleboy.studies.reproductions.evaluations.drive_tracking import (
     COLOUR_ONLY,
     DEFAULT,
     OURS,
-    DriveMoment,
     make_choice,
     play_drive,
 )
@@ -85,7 +83,7 @@ NEAR_SLIDES: Final = tuple(
 """SA table 4.4."""
 
 
-_Window = tuple[WindowRange, Box]
+_Window = tuple[WindowRange, Sequence[float]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,10 +131,13 @@ def compare_windows(drives: Sequence[tuple[Scenario, int]], every: int) -> dict[
         Plain data: a tally by the key of the slide, or `BY_SIZE` with the ranges of those who must be found;
         and "parts", the tracker's median times [ms].
     """
-    comparison = _Comparison()
-    with _one_thread():
+    comparison, threads = _Comparison(), cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
         for scenario, seed in drives:
             comparison.watch(scenario, seed, every)
+    finally:
+        cv2.setNumThreads(threads)
     return comparison.plain()
 
 
@@ -170,11 +171,11 @@ class _Comparison:
 
     def watch(self, scenario: Scenario, seed: int, every: int) -> None:
         tracker, whole = make_choice(DEFAULT, stream(0, "reproduce.tracker")), Stopwatch()
-        for moment in play_drive(scenario, seed):
+        for moment, everybody in play_drive(scenario, seed):
             whole(partial(tracker.update, moment.frame))
             if moment.number % every == 0:
                 view = DepthView.of(moment.frame.calibrations[DEPTH], DEPTH)
-                people = _people(moment, view)
+                people = _people(everybody, view, moment.frame.depth(DEPTH).shape)
                 spent_ms = self._search_by_size(moment.frame, people, view)
                 self.parts[PARTS[-1]].times_ms.append(whole.times_ms[-1] - spent_ms)
                 self._search_by_sliding(moment.frame, people)
@@ -198,7 +199,7 @@ class _Comparison:
     def _search_by_sliding(self, frame: Frame, people: Sequence[_Sought]) -> None:
         for how, tally in self.slides.items():
             found = tally.timed(partial(slide, frame.rgb(DEPTH_COLOUR), how))
-            tally.add([(how.kind, _box(row)) for row in found.tolist()], people, (how.kind,))
+            tally.add([(how.kind, tuple(row)) for row in found.tolist()], people, (how.kind,))
 
 
 def _verified(frame: Frame, layout: Layout, view: DepthView) -> Iterator[_Window]:
@@ -210,53 +211,26 @@ def _verified(frame: Frame, layout: Layout, view: DepthView) -> Iterator[_Window
             yield kind, window
 
 
-def _people(moment: DriveMoment, view: DepthView) -> list[_Sought]:
-    """Place windows on everybody, by the truth."""
-    floor = HeightLine(view.horizon_px / view.focal_px, view.height_m)
-    return [
-        _person(person, view, floor, moment.frame.depth(DEPTH).shape)
-        for person in moment.people
-        if person.truth.box is not None and person.place_m[0] > view.calibration.position_m[0] + _TORSO_M
-    ]
-
-
-def _person(person: FloorPerson, view: DepthView, floor: HeightLine, shape: tuple[int, ...]) -> _Sought:
-    assert person.truth.box is not None
-    left, top, width, height = person.truth.box
-    z_m = person.place_m[0] - view.calibration.position_m[0] - _FRONT_M
-    torso = _TORSO_M * view.focal_px / z_m
-    middle = left + width / 2.0
-    body = PreDetection(
-        box=(middle - torso / 2.0, top, torso, height),
-        x_m=0.0,
-        z_m=z_m,
-        width_m=_TORSO_M,
-        height_m=0.0,
-        depth_m=0.0,
-        probability=1.0,
-    )
-    return _Sought(
-        windows={kind: window_of(body, kind, floor, view) for kind in WindowRange},
-        kind=range_of(z_m, floor, view, shape[0]),
-        is_plain=person.is_counted and person.truth.occluded_fraction < _HIDDEN and 0.0 <= middle < shape[1],
-    )
+def _people(everybody: Sequence[FloorPerson], view: DepthView, shape: tuple[int, ...]) -> list[_Sought]:
+    """Place windows on everybody who is before the camera, by the truth."""
+    floor, found = HeightLine(view.horizon_px / view.focal_px, view.height_m), []
+    for person in everybody:
+        camera_m = view.calibration.position_m[0]
+        if person.truth.box is None or person.place_m[0] <= camera_m + _TORSO_M:
+            continue
+        z_m = person.place_m[0] - camera_m - _FRONT_M
+        left, top, width, height = person.truth.box
+        torso, middle = _TORSO_M * view.focal_px / z_m, left + width / 2.0
+        box = (middle - torso / 2.0, top, torso, height)
+        body = PreDetection(
+            box=box, x_m=0.0, z_m=z_m, width_m=_TORSO_M, height_m=0.0, depth_m=0.0, probability=1.0
+        )
+        is_plain = person.is_counted and person.truth.occluded_fraction < _HIDDEN and 0.0 <= middle < shape[1]
+        windows = {kind: window_of(body, kind, floor, view) for kind in WindowRange}
+        found.append(_Sought(windows, range_of(z_m, floor, view, shape[0]), is_plain))
+    return found
 
 
 def _is_on(window: _Window, person: _Sought) -> bool:
     kind, box = window
     return float(iou(np.array(box), np.array(person.windows[kind]))) > _OVERLAP
-
-
-def _box(row: Sequence[float]) -> Box:
-    left, top, width, height = row
-    return left, top, width, height
-
-
-@contextmanager
-def _one_thread() -> Iterator[None]:
-    before = cv2.getNumThreads()
-    cv2.setNumThreads(1)
-    try:
-        yield
-    finally:
-        cv2.setNumThreads(before)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from itertools import combinations
-from typing import Final
+from typing import Any, Final
 
 import cv2
 import numpy as np
@@ -118,38 +118,6 @@ _EARS: Final = slice(3, 5)  # of the 17 joints
 _GUESS_OFF: Final = (0.2, 0.2, math.radians(5.0), math.radians(3.0))  # of a webcam that was put up by hand
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WebcamErrors:
-    """Mean distances [m] of the triangulated hat from its true place, the middle between the ears.
-
-    Bearings are those from the robot while the person walks; `panorama_...` are errors [deg] of the
-    silhouette's bearing in the panorama, as the paper's tracker gives it, against what is named.
-
-    Attributes:
-        in_sample_m: at the known places, to which the webcams were fitted.
-        new_m: standing at other places.
-        walking_m: walking, all webcams at once.
-        skewed_m: walking, the webcams one after the other within `SKEW_S`.
-        bearing_deg: mean error [deg] of the bearing by all webcams at once.
-        skewed_bearing_deg: the same with the webcams one after the other.
-        panorama_truth: against the truth.
-        panorama_at_once: against the bearing of all webcams at once.
-        panorama_skewed: the same with the webcams one after the other.
-        panorama_late: the same with all webcams `SKEW_S` later than the panorama.
-    """
-
-    in_sample_m: float
-    new_m: float
-    walking_m: float
-    skewed_m: float
-    bearing_deg: float
-    skewed_bearing_deg: float
-    panorama_truth: ErrorSummary
-    panorama_at_once: ErrorSummary
-    panorama_skewed: ErrorSummary
-    panorama_late: ErrorSummary
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class _Film:
     """What there is to triangulate.
@@ -167,8 +135,17 @@ class _Film:
     seen_rad: Floats
 
 
-def measure_webcams(seed: int) -> WebcamErrors:
+def measure_webcams(seed: int) -> dict[str, Any]:
     """Play the scene, calibrate the webcams at known places, and measure.
+
+    Returns:
+        Plain data: mean distances [m] of the triangulated hat from its true place, the middle between the
+        ears, while the person stands "in_sample_m", at the known places, or at others, "new_m"; and while it
+        walks, seen by all webcams at once, "walking_m", or by one after the other within `SKEW_S`,
+        "skewed_m". Of these two also "bearing_deg" and "skewed_bearing_deg", mean errors [deg] of the bearing
+        from the robot; and as "panorama_...", an `ErrorSummary` of the bearing [deg] of the silhouette in the
+        panorama, as the paper's tracker gives it, against the truth and against webcams "at_once", "skewed",
+        or "late" by `SKEW_S`.
 
     Raises:
         BadInput: a webcam sees the hat too seldom; if the path shows it, before the scene is played.
@@ -185,8 +162,7 @@ def measure_webcams(seed: int) -> WebcamErrors:
     stood = np.array([film.hat_m[place].mean(axis=0) for place in places])
     guess = true + stream(seed, "webcams.guess").uniform(-1.0, 1.0, true.shape) * _GUESS_OFF
     webcams = calibrate(columns[:KNOWN], stood[:KNOWN], guess, width)
-    found = triangulate(bearings(columns, webcams, width), webcams)
-    off = np.hypot(*(found - stood).T)
+    off = np.hypot(*(triangulate(bearings(columns, webcams, width), webcams) - stood).T)
 
     walk, robot = slice(places[-1].stop, None), np.array(config.robot.at_m)
     true_m, seen_rad = film.hat_m[walk], film.seen_rad[walk]
@@ -201,24 +177,16 @@ def measure_webcams(seed: int) -> WebcamErrors:
         for name, each in delays.items()
     }
 
-    def error_m(name: str) -> float:
-        return float(np.nanmean(np.hypot(*(walking[name] - true_m).T)))
-
-    def bearing_deg(name: str) -> float:
-        return float(np.nanmean(_between(_bearing(walking[name], robot), _bearing(true_m, robot))))
-
-    return WebcamErrors(
-        in_sample_m=float(np.nanmean(off[:KNOWN])),
-        new_m=float(np.nanmean(off[KNOWN:])),
-        walking_m=error_m("at_once"),
-        skewed_m=error_m("skewed"),
-        bearing_deg=bearing_deg("at_once"),
-        skewed_bearing_deg=bearing_deg("skewed"),
-        panorama_truth=_summary(seen_rad, true_m, robot),
-        panorama_at_once=_summary(seen_rad, walking["at_once"], robot),
-        panorama_skewed=_summary(seen_rad, walking["skewed"], robot),
-        panorama_late=_summary(seen_rad, walking["late"], robot),
-    )
+    found = {"in_sample_m": float(np.nanmean(off[:KNOWN])), "new_m": float(np.nanmean(off[KNOWN:]))}
+    for name, metres, degrees in (
+        ("at_once", "walking_m", "bearing_deg"),
+        ("skewed", "skewed_m", "skewed_bearing_deg"),
+    ):
+        errors_deg = _between(_bearing(walking[name], robot), _bearing(true_m, robot))
+        found[metres] = float(np.nanmean(np.hypot(*(walking[name] - true_m).T)))
+        found[degrees] = float(np.nanmean(errors_deg))
+    against = {"truth": true_m} | walking
+    return found | {f"panorama_{name}": _summary(seen_rad, one, robot) for name, one in against.items()}
 
 
 def with_panorama(config: WorldConfig) -> WorldConfig:
@@ -315,7 +283,7 @@ def _between(one_rad: Floats, other_rad: Floats) -> Floats:
     return np.asarray(np.degrees(np.abs(np.angle(np.exp(1j * (one_rad - other_rad))))), np.float64)
 
 
-def _summary(seen_rad: Floats, places_m: Floats, robot_m: Floats) -> ErrorSummary:
+def _summary(seen_rad: Floats, places_m: Floats, robot_m: Floats) -> dict[str, float]:
     """Sum up [deg] where both the panorama and the other measurement tell a bearing."""
     off = _between(seen_rad, _bearing(places_m, robot_m))
-    return ErrorSummary.of(off[np.isfinite(off)])
+    return asdict(ErrorSummary.of(off[np.isfinite(off)]))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict
 from typing import Any, Final
 
 import numpy as np
@@ -206,4 +205,4 @@ def score_new_people(
 
 def score_webcams(seed: int) -> Result:
     """Play the scene with webcams, and measure their errors."""
-    return asdict(measure_webcams(seed))
+    return measure_webcams(seed)

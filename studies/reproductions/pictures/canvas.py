@@ -15,6 +15,8 @@ from PIL import Image
 
 from peopleboy.tracker.track import Box
 
+BLACK, GREY, ORANGE, BLUE, RED = "#1a1a1a", "#b5bcc6", "#d95f02", "#1f78b4", "#c62828"
+GREEN, PINK = "#1b9e77", "#e7298a"
 WIDTH_IN = 8.4
 DOTS = 110
 COLOURS = 256
@@ -27,8 +29,37 @@ def canvas(height_in: float, width_in: float = WIDTH_IN) -> Figure:
     return figure
 
 
-def label(axes: Axes, title: str = "", x: str = "", y: str = "") -> None:
-    """Return axes their title and labels, and no more lines than they need."""
+def single(height_in: float) -> tuple[Figure, Axes]:
+    """Begin a figure with one pair of axes."""
+    figure = canvas(height_in)
+    return figure, figure.subplots()
+
+
+def label(
+    axes: Axes,
+    title: str = "",
+    x: str = "",
+    y: str = "",
+    *,
+    is_plan: bool = False,
+    legend: float = 0.0,
+    **style: Any,
+) -> None:
+    """Give axes a title and labels, and no more lines than they need.
+
+    Args:
+        axes: what is labelled.
+        title: above them.
+        x: below them.
+        y: beside them.
+        is_plan: whether both axes have the same scale.
+        legend: size of its letters; none if 0.
+        style: of the legend.
+    """
+    if is_plan:
+        axes.set_aspect("equal")
+    if legend:
+        axes.legend(fontsize=legend, frameon=False, **style)
     axes.set_title(title, fontsize=9, loc="left")
     axes.set_xlabel(x, fontsize=8)
     axes.set_ylabel(y, fontsize=8)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -29,7 +29,15 @@ from peopleboy.studies.reproductions.evaluations.webcam_positions import (
     true_webcams,
     webcam_names,
 )
-from peopleboy.studies.reproductions.pictures.canvas import canvas, label, show_image
+from peopleboy.studies.reproductions.pictures.canvas import (
+    BLACK,
+    BLUE,
+    ORANGE,
+    canvas,
+    label,
+    show_image,
+    single,
+)
 from peopleboy.studies.training.distance import DistanceSamples, panoramas
 from peopleboy.tracker.panoramic.paper.depth_cues import (
     EMPTY_IMAGES,
@@ -45,10 +53,10 @@ Floats = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 
 ROOM: Final = "room_long"
-_BLACK, _ORANGE, _BLUE, _RED = "#1a1a1a", "#d95f02", "#1f78b4", "#d64541"
+_RED: Final = "#d64541"
 _BODY, _PERSON = "#9aa3ad", "#cfd8c8"
-_PEOPLE: Final = (_BLUE, _ORANGE)
-_ROOMS: Final = (_BLUE, _ORANGE, "#66a61e")
+_PEOPLE: Final = (BLUE, ORANGE)
+_ROOMS: Final = (BLUE, ORANGE, "#66a61e")
 _SET_UP_S, _FEATURES_S, _WEBCAMS_S = 8.0, 12.0, 3.0  # when figures 1, 4 and 2 are taken
 _FARTHEST_M: Final = 6.0
 _STEP_M: Final = 0.05  # of the floor plan
@@ -72,42 +80,33 @@ def _draw_side(axes: Axes, mirror: Mirror) -> None:
     axes.add_patch(Rectangle((-0.2, 0.0), 0.4, 1.2, color=_BODY))
     axes.add_patch(Rectangle((-0.03, 1.2), 0.06, mirror.apex_m - 1.2, color=_BODY))
     steep, flat = mirror.axis_rad, mirror.axis_rad - mirror.lens_half_angle_rad
+    top = mirror.ring_height_m
     for angle in (steep, flat):
-        reach = min(mirror.ring_height_m / math.tan(angle), _FARTHEST_M)
-        axes.plot(
-            [0.0, reach],
-            [mirror.ring_height_m, mirror.ring_height_m - reach * math.tan(angle)],
-            color=_ORANGE,
-        )
+        reach = min(top / math.tan(angle), _FARTHEST_M)
+        axes.plot([0.0, reach], [top, top - reach * math.tan(angle)], color=ORANGE)
     axes.add_patch(Rectangle((3.0 - 0.18, 0.0), 0.36, 1.5, color=_PERSON))
     axes.add_patch(Rectangle((3.0 - 0.1, 1.52), 0.2, 0.23, color=_PERSON))
     axes.axhline(0.0, color="black", linewidth=0.8)
     axes.set_xlim(-0.5, _FARTHEST_M)
     axes.set_ylim(-0.1, 2.0)
-    axes.set_aspect("equal")
     words = f"{math.degrees(flat):.0f} to {math.degrees(steep):.0f} deg below the horizon"
-    label(axes, f"{words}, from {mirror.ring_height_m:.2f} m", "m", "m")
+    label(axes, f"{words}, from {top:.2f} m", "m", "m", is_plan=True)
 
 
 def _draw_mirror(axes: Axes, mirror: Mirror) -> None:
     """Draw the cone over the lens, and how it turns the lens's rays outwards."""
     radius = 0.09
     top = mirror.apex_m + radius / math.tan(mirror.half_apex_rad)
-    axes.add_patch(Polygon([(0.0, mirror.apex_m), (radius, top), (-radius, top)], color=_BLUE, alpha=0.6))
+    axes.add_patch(Polygon([(0.0, mirror.apex_m), (radius, top), (-radius, top)], color=BLUE, alpha=0.6))
     lens = mirror.apex_m - mirror.lens_m
     axes.plot(0.0, lens, "ko", markersize=5)
     for angle in np.linspace(0.12, 0.98, 4) * mirror.lens_half_angle_rad:
         x, y = _met(mirror, float(angle))
         down = mirror.axis_rad - angle
-        axes.plot(
-            [0.0, x, x + 0.1 * math.cos(down)],
-            [lens, y, y - 0.1 * math.sin(down)],
-            color=_ORANGE,
-            linewidth=1.0,
-        )
+        ray = ([0.0, x, x + 0.1 * math.cos(down)], [lens, y, y - 0.1 * math.sin(down)])
+        axes.plot(*ray, color=ORANGE, linewidth=1.0)
     axes.set_xlim(-0.1, 0.16)
-    axes.set_aspect("equal")
-    label(axes, "cone and lens", "m", "")
+    label(axes, "cone and lens", "m", "", is_plan=True)
 
 
 def _met(mirror: Mirror, angle: float) -> tuple[float, float]:
@@ -151,14 +150,14 @@ def _drawn(image: Picture, background: Background, found: MeasuredFigure) -> Fig
     grid = page.subplots(4, 2, height_ratios=(1, 1, 0.45, 1), width_ratios=(1, 0.13))
     for axes in (grid[0, 1], grid[2, 1], grid[3, 1]):
         axes.set_axis_off()
-    _show_stretched(grid[0, 0], image, "a) panorama: the robot's back, left, front, right, and back")
+    style: dict[str, Any] = {"cmap": "gray", "interpolation": "nearest", "aspect": "auto"}
+    show_image(grid[0, 0], image, "a) panorama: the robot's back, left, front, right, and back", **style)
     difference = np.abs(image.astype(np.float64) - background.mean).max(axis=2)
-    _show_stretched(
-        grid[1, 0], difference, "b) difference from the background, and histograms of rows and columns"
-    )
-    grid[1, 1].barh(np.arange(len(found.rows)), found.rows, 1.0, color=_BLUE)
+    title = "b) difference from the background, and histograms of rows and columns"
+    show_image(grid[1, 0], difference, title, **style)
+    grid[1, 1].barh(np.arange(len(found.rows)), found.rows, 1.0, color=BLUE)
     grid[1, 1].set_ylim(len(found.rows) - 0.5, -0.5)
-    grid[2, 0].bar(np.arange(len(found.columns)), found.columns, 1.0, color=_BLUE)
+    grid[2, 0].bar(np.arange(len(found.columns)), found.columns, 1.0, color=BLUE)
     grid[2, 0].set_xlim(-0.5, len(found.columns) - 0.5)
     for axes in (grid[1, 1], grid[2, 0]):
         label(axes)
@@ -167,24 +166,19 @@ def _drawn(image: Picture, background: Background, found: MeasuredFigure) -> Fig
         f"c) what is above the threshold: width {cues.width_px:.0f} px, {cues.gap_px:.0f} px to the bottom, "
         f"{cues.area_px:.0f} px in all, {abs(bearing):.1f} deg to the {'left' if bearing > 0.0 else 'right'}"
     )
-    _show_stretched(grid[3, 0], background.silhouette(image), title)
+    show_image(grid[3, 0], background.silhouette(image), title, **style)
     _mark(grid[3, 0], found)
     return page
-
-
-def _show_stretched(axes: Axes, image: NDArray[np.generic], title: str) -> None:
-    show_image(axes, image, title, cmap="gray", interpolation="nearest", aspect="auto")
 
 
 def _mark(axes: Axes, found: MeasuredFigure) -> None:
     """Draw the person's box, the mean column, and the way to the lower border."""
     left, top, width, height = found.box
     right, bottom, border = left + width, top + height, len(found.rows) - 0.5
-    axes.plot([left, right, right, left, left], [top, top, bottom, bottom, top], color=_ORANGE, linewidth=1.0)
-    axes.plot([found.mean_column] * 2, [top, bottom], color=_ORANGE, linewidth=0.8, linestyle=":")
-    axes.annotate(
-        "", (right + 6, border), (right + 6, bottom), arrowprops={"arrowstyle": "<->", "color": _ORANGE}
-    )
+    axes.plot([left, right, right, left, left], [top, top, bottom, bottom, top], color=ORANGE, linewidth=1.0)
+    axes.plot([found.mean_column] * 2, [top, bottom], color=ORANGE, linewidth=0.8, linestyle=":")
+    arrow = {"arrowstyle": "<->", "color": ORANGE}
+    axes.annotate("", (right + 6, border), (right + 6, bottom), arrowprops=arrow)
 
 
 def draw_webcam_images() -> Figure:
@@ -198,7 +192,7 @@ def draw_webcam_images() -> Figure:
         place = "not seen whole" if column is None else f"at column {column:.1f}"
         show_image(axes, images[name], f"{name}: hat {place}")
         if column is not None:
-            axes.axvline(column, color=_ORANGE, linewidth=1.0)
+            axes.axvline(column, color=ORANGE, linewidth=1.0)
     return figure
 
 
@@ -214,18 +208,15 @@ def draw_fields_of_view() -> Figure:
         np.abs(np.angle(np.exp(1j * (np.arctan2(y - one[Y], x - one[X]) - one[HEADING])))) < one[RANGE] / 2.0
         for one in webcams
     )
-    figure = canvas(4.6)
-    axes = figure.subplots()
-    drawn = axes.pcolormesh(
-        x, y, seen, cmap="Greens", vmin=-0.5, vmax=4.5, shading="nearest", rasterized=True
-    )
+    figure, axes = single(4.6)
+    style: dict[str, Any] = {"cmap": "Greens", "shading": "nearest", "rasterized": True}
+    drawn = axes.pcolormesh(x, y, seen, vmin=-0.5, vmax=4.5, **style)
     figure.colorbar(drawn, ax=axes, ticks=range(5), label="webcams that see it", shrink=0.8)
-    axes.plot(webcams[:, X], webcams[:, Y], "o", color=_ORANGE, markersize=9)
+    axes.plot(webcams[:, X], webcams[:, Y], "o", color=ORANGE, markersize=9)
     axes.add_patch(Rectangle((low_x, low_y), high_x - low_x, high_y - low_y, fill=False, linewidth=1.5))
     axes.plot(*config.robot.at_m, "s", color=_RED, markersize=10)
     axes.annotate("robot", config.robot.at_m, (10, -2), textcoords="offset points", fontsize=8, color="white")
-    axes.set_aspect("equal")
-    label(axes, "", "m", "m")
+    label(axes, "", "m", "m", is_plan=True)
     return figure
 
 
@@ -235,15 +226,9 @@ def draw_correlations(run: DistanceSamples, names: Sequence[str]) -> Figure:
     figure = canvas(5.6)
     for axes, name, values in zip(figure.subplots(2, 2).flat, names, (*run.cues.T, predicted), strict=True):
         for person, colour in zip(np.unique(run.person).tolist(), _PEOPLE, strict=False):
-            is_here = run.person == person
-            axes.plot(
-                run.distance_m[is_here],
-                values[is_here],
-                ".",
-                markersize=2.5,
-                color=colour,
-                label=f"person {person}",
-            )
+            one = run.person == person
+            style: dict[str, Any] = {"markersize": 2.5, "color": colour, "label": f"person {person}"}
+            axes.plot(run.distance_m[one], values[one], ".", **style)
         r = np.corrcoef(values, run.distance_m)[0, 1]
         label(axes, f"{name}: r = {r:.3f}", "true distance [m]", "m" if values is predicted else "px")
     figure.axes[0].legend(fontsize=7, frameon=False, markerscale=3)
@@ -254,27 +239,23 @@ def draw_path(run: DistanceSamples) -> Figure:
     """Draw a piece of a path on the floor: true, by the model alone, and with the filter."""
     measured = run.positions_at(predicted_in_turn(run, SplitTrial(split="blocks")))
     smooth = filtered(run, measured, PositionFilter(PRINTED, uses_velocity=True))
-    figure = canvas(4.6)
-    axes = figure.subplots()
+    figure, axes = single(4.6)
     for name, place, colour, style, width in (
-        ("true", run.true_m, _BLACK, "-", 2.0),
-        ("appearance model", measured, _ORANGE, "x-", 0.6),
-        ("with Kalman filter", smooth, _BLUE, "o-", 1.2),
+        ("true", run.true_m, BLACK, "-", 2.0),
+        ("appearance model", measured, ORANGE, "x-", 0.6),
+        ("with Kalman filter", smooth, BLUE, "o-", 1.2),
     ):
         x, y = place[_FRAGMENT].T
         axes.plot(-y, x, style, color=colour, linewidth=width, markersize=3, label=name)
     axes.plot(0.0, 0.0, "s", color=_RED, markersize=9)
     axes.annotate("robot", (0.0, 0.0), (8, 6), textcoords="offset points", fontsize=8)
-    axes.set_aspect("equal")
-    axes.legend(fontsize=8, frameon=False)
-    label(axes, "", "to the robot's right [m]", "ahead [m]")
+    label(axes, "", "to the robot's right [m]", "ahead [m]", is_plan=True, legend=8)
     return figure
 
 
 def draw_ranges(films: Mapping[str, Sequence[DistanceSamples]]) -> Figure:
     """Draw the mean error of the distance over the distance, by room; nobody is tested on whom it learned."""
-    figure = canvas(3.4)
-    axes = figure.subplots()
+    figure, axes = single(3.4)
     for (room, runs), colour in zip(films.items(), _ROOMS, strict=False):
         distance = np.concatenate([run.distance_m for run in runs])
         errors = np.concatenate(
@@ -282,13 +263,11 @@ def draw_ranges(films: Mapping[str, Sequence[DistanceSamples]]) -> Figure:
         )
         middles, means, spreads = error_by_range(distance, errors)
         axes.plot(middles, means, "o-", color=colour, markersize=4, label=room)
-        axes.fill_between(
-            middles, np.maximum(means - spreads, 0.0), means + spreads, color=colour, alpha=0.12, linewidth=0
-        )
+        least, most = np.maximum(means - spreads, 0.0), means + spreads
+        axes.fill_between(middles, least, most, color=colour, alpha=0.12, linewidth=0)
     axes.set_ylim(bottom=0.0)
     axes.grid(axis="y", linewidth=0.4, alpha=0.6)
-    axes.legend(fontsize=8, frameon=False, loc="upper left")
-    label(axes, "", "true distance [m]", "error of the distance [m]")
+    label(axes, "", "true distance [m]", "error of the distance [m]", legend=8, loc="upper left")
     return figure
 
 

@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.studies.reproductions.evaluations.attention_focus import (
-    FocusMoment,
     can_be_learned,
     play_focus,
     wanted,
 )
 from peopleboy.studies.reproductions.evaluations.drive_scores import hit_rows
+from peopleboy.studies.reproductions.evaluations.playback import Moment
 from peopleboy.studies.reproductions.evaluations.scene_scores import (
     ADAPT,
     CLEAN,
@@ -30,18 +30,30 @@ from peopleboy.studies.reproductions.evaluations.scene_scores import (
     TRACK,
     read_map,
 )
-from peopleboy.studies.reproductions.pictures.canvas import canvas, frame_box, label, show_image
+from peopleboy.studies.reproductions.pictures.canvas import (
+    BLUE,
+    GREEN,
+    ORANGE,
+    PINK,
+    RED,
+    canvas,
+    frame_box,
+    label,
+    show_image,
+    single,
+)
 from peopleboy.tracker.attention.attend import PersonModel, attention_map, learn, search
 from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
 from peopleboy.tracker.attention.image_sums import ImageSums
 from peopleboy.tracker.attention.part_model import HEAD, TORSO, ModelPart
+from peopleboy.tracker.frame import COLOUR
 from peopleboy.tracker.track import Box
 
 Floats = NDArray[np.float64]
 Film = Mapping[str, Any]
 
-_TRUE, _SIDEWAYS, _AHEAD = "#c62828", "#1f78b4", "#d95f02"
-_FOUND, _LEARNED = "#1b9e77", "#e7298a"
+_AXES: Final = {5: ("z, ahead", ORANGE), 6: ("x, sideways", BLUE)}
+"""Columns of hits with errors against the surface."""
 _IDS: Final = colormaps["tab10"]
 _GAP: Final = 3  # frames that a track may miss before its line ends
 
@@ -60,7 +72,7 @@ def draw_ways(films: Mapping[str, Film], who: str) -> Figure:
     figure = canvas(3.0 * rows)
     for number, (title, film) in enumerate(films.items(), 1):
         axes = figure.add_subplot(rows, columns, number)
-        _lines(axes, _counted(film), colour=_TRUE, width=2.0)
+        _lines(axes, _counted(film), colour=RED, width=2.0)
         _lines(axes, _rows(film[who]["tracks"]))
         label(axes, title, "to the left [m]", "ahead [m]")
     return figure
@@ -68,29 +80,17 @@ def draw_ways(films: Mapping[str, Film], who: str) -> Figure:
 
 def draw_world(film: Film, who: str) -> Figure:
     """Draw tracks in the world, and the way of the robot with where it looks."""
-    figure = canvas(3.4)
-    axes = figure.subplots()
+    figure, axes = single(3.4)
     robot = np.array(film["robot"])
-    axes.plot(robot[:, 0], robot[:, 1], "--", color=_TRUE, linewidth=1.2, label="robot")
-    every = robot[:: max(len(robot) // 20, 1)]
-    axes.quiver(
-        every[:, 0],
-        every[:, 1],
-        np.cos(every[:, 2]),
-        np.sin(every[:, 2]),
-        color="#1f78b4",
-        width=0.003,
-        scale=40.0,
-    )
-    predicted = _rows(film[who]["tracks"])
-    pose = robot[predicted[:, 0].astype(int) - 1]
-    cosine, sine = np.cos(pose[:, 2]), np.sin(pose[:, 2])
-    x = pose[:, 0] + cosine * predicted[:, 2] - sine * predicted[:, 3]
-    y = pose[:, 1] + sine * predicted[:, 2] + cosine * predicted[:, 3]
-    _lines(axes, np.stack([predicted[:, 0], predicted[:, 1], x, y], axis=1), as_plan=False)
-    axes.set_aspect("equal")
-    label(axes, "", "x [m]", "y [m]")
-    axes.legend(fontsize=7, frameon=False)
+    axes.plot(robot[:, 0], robot[:, 1], "--", color=RED, linewidth=1.2, label="robot")
+    x, y, heading = robot[:: max(len(robot) // 20, 1)].T
+    axes.quiver(x, y, np.cos(heading), np.sin(heading), color=BLUE, width=0.003, scale=40.0)
+    frame, track, ahead, left = _rows(film[who]["tracks"]).T
+    x, y, heading = robot[frame.astype(int) - 1].T
+    cosine, sine = np.cos(heading), np.sin(heading)
+    places = (x + cosine * ahead - sine * left, y + sine * ahead + cosine * left)
+    _lines(axes, np.stack([frame, track, *places], axis=1), as_plan=False)
+    label(axes, "", "x [m]", "y [m]", is_plan=True, legend=7)
     return figure
 
 
@@ -106,23 +106,17 @@ def draw_people(films: Mapping[str, Film], who: str) -> Figure:
                 names.append(f"{title.split()[-1]},{person:.0f}")
                 means.append(own.mean(axis=0))
                 spreads.append(own.std(axis=0))
-    figure = canvas(3.2)
-    axes = figure.subplots()
+    figure, axes = single(3.2)
     at = np.arange(len(names))
-    for column, (name, colour) in enumerate((("x, sideways", _SIDEWAYS), ("z, ahead", _AHEAD))):
-        axes.bar(
-            at + 0.4 * column - 0.2,
-            [mean[column] for mean in means],
-            0.38,
-            yerr=[spread[column] for spread in spreads],
-            color=colour,
-            label=name,
-            error_kw={"linewidth": 0.7},
-        )
+    for column, (name, colour) in enumerate((_AXES[6], _AXES[5])):
+        mean, spread = ([one[column] for one in values] for values in (means, spreads))
+        style: dict[str, Any] = {"color": colour, "label": name, "error_kw": {"linewidth": 0.7}}
+        axes.bar(at + 0.4 * column - 0.2, mean, 0.38, yerr=spread, **style)
     axes.set_xticks(at, names, rotation=90)
     axes.set_ylim(bottom=0.0)
-    label(axes, "", "set, person", "error [m]")
-    axes.legend(fontsize=7, frameon=False, ncols=2, loc="lower left", bbox_to_anchor=(0.0, 1.0))
+    label(
+        axes, "", "set, person", "error [m]", legend=7, ncols=2, loc="lower left", bbox_to_anchor=(0.0, 1.0)
+    )
     return figure
 
 
@@ -134,13 +128,13 @@ def draw_errors(film: Film, who: str) -> Figure:
     truth = truth[truth[:, 1] == hits[0, 1]]
     figure = canvas(4.0)
     above, below = figure.subplots(2, 1, sharex=True)
-    above.plot(truth[:, 0], truth[:, 4], color=_TRUE, linewidth=1.2)
+    above.plot(truth[:, 0], truth[:, 4], color=RED, linewidth=1.2)
     label(above, "", "", "distance [m]")
-    for column, name, colour in ((6, "x, sideways", _SIDEWAYS), (5, "z, ahead", _AHEAD)):
+    for column in (6, 5):
+        name, colour = _AXES[column]
         below.plot(hits[:, 0], hits[:, column], color=colour, linewidth=0.9, label=name)
     below.axhline(0.0, color="#999999", linewidth=0.6)
-    label(below, "", "image", "error [m]")
-    below.legend(fontsize=7, frameon=False)
+    label(below, "", "image", "error [m]", legend=7)
     return figure
 
 
@@ -158,21 +152,18 @@ def draw_crossing(film: Film, names: Mapping[str, str]) -> Figure:
 
 def draw_legs(film: Film) -> Figure:
     """Draw a person's way relative to the robot, and the distance over time: true, by depth, by legs."""
-    truth = _counted(film)
     figure = canvas(3.6)
     left, right = figure.subplots(1, 2)
-    for name, rows, colour in (
-        ("true", truth, "#1f78b4"),
-        ("depth and colour", _rows(film["depth"]), "#2e7d32"),
-        ("legs", _rows(film["legs"]), _TRUE),
+    for name, rows, colour, size in (
+        ("true", _counted(film), BLUE, 2.4),
+        ("depth and colour", _rows(film["depth"]), "#2e7d32", 1.2),
+        ("legs", _rows(film["legs"]), RED, 1.2),
     ):
-        size = 1.2 if name != "true" else 2.4
         left.plot(rows[:, 3], rows[:, 2], ".", markersize=size, color=colour, label=name)
         right.plot(rows[:, 0], np.hypot(rows[:, 2], rows[:, 3]), ".", markersize=size, color=colour)
     left.invert_xaxis()
-    label(left, "", "to the left [m]", "ahead [m]")
+    label(left, "", "to the left [m]", "ahead [m]", legend=7, markerscale=4)
     label(right, "", "image", "from the robot [m]")
-    left.legend(fontsize=7, frameon=False, markerscale=4)
     return figure
 
 
@@ -211,9 +202,9 @@ class LearnedFilm:
         later: further images.
     """
 
-    moment: FocusMoment
+    moment: Moment
     person: PersonTruth
-    later: Sequence[FocusMoment]
+    later: Sequence[Moment]
 
     @property
     def box(self) -> Box:
@@ -223,7 +214,7 @@ class LearnedFilm:
 
     def learned(self, config: AttentionConfig) -> tuple[ImageSums, PersonModel]:
         """Learn the person, and give what was seen, too."""
-        sight = ImageSums.of(self.moment.image, config)
+        sight = ImageSums.of(self.moment.frame.rgb(COLOUR), config)
         return sight, learn(sight, self.box, config)
 
 
@@ -234,7 +225,7 @@ def learned_films(scenario: str = FOCUS_SCENE, seed: int = 1, every: int = 15) -
     for number in sorted({one.id for moment in moments for one in wanted(loaded, moment.truth)}):
         for k, moment in enumerate(moments):
             person = next((one for one in moment.truth.people if one.id == number), None)
-            if person is not None and can_be_learned(person, moment.image.shape):
+            if person is not None and can_be_learned(person, moment.frame.rgb(COLOUR).shape):
                 yield LearnedFilm(moment, person, moments[k + 1 :])
                 break
 
@@ -248,7 +239,7 @@ def draw_excitation() -> Figure:
     page = canvas(1.7)
     image, *axes = page.subplots(1, 4)
     _show_colour(image, first.moment, "image, and the learned box")
-    frame_box(image, first.box, _LEARNED, linewidth=1.3)
+    frame_box(image, first.box, PINK, linewidth=1.3)
     excited, inhibited = (sight.maps @ one.astype(np.float32) for one in (known.excites, known.inhibits))
     maps = (excited, inhibited, attention_map(sight, known, _MEANS))
     _show_maps(axes, maps, ("a) excitation E", "b) inhibition I", "c) A = E - I, above 0"))
@@ -265,7 +256,7 @@ def draw_part_scores() -> Figure:
         head, torso = focus.parts
         _show_colour(image, first.moment, name)
         for part in (HEAD, TORSO):
-            frame_box(image, _part_box(part, first.box), _LEARNED, linewidth=1.3)
+            frame_box(image, _part_box(part, first.box), PINK, linewidth=1.3)
         maps = (torso.features, head.features, torso.patterns, focus.scores)
         _show_maps(row, maps, ("torso", "face", "patterns", "person"))
     return page
@@ -279,9 +270,11 @@ def draw_focus_paths() -> Figure:
         sight, look = film.learned(_ALONE)
         _show_maps([above], [search(sight, look, _ALONE).scores], [f"score, {film.person.name}"])
         _show_colour(below, film.later[-1], "way of the focus")
-        places = [search(ImageSums.of(one.image, _ALONE), look, _ALONE).place for one in film.later]
-        below.plot(*np.array(places).T, "-", color=_FOUND, linewidth=1.0)
-        below.plot(*places[-1], "+", color=_LEARNED, markersize=9, markeredgewidth=1.8)
+        places = [
+            search(ImageSums.of(one.frame.rgb(COLOUR), _ALONE), look, _ALONE).place for one in film.later
+        ]
+        below.plot(*np.array(places).T, "-", color=GREEN, linewidth=1.0)
+        below.plot(*places[-1], "+", color=PINK, markersize=9, markeredgewidth=1.8)
     return page
 
 
@@ -292,12 +285,12 @@ def draw_examples() -> Figure:
     shown = film.later[1:11:2]
     page = canvas(7.0)
     for (image, *column), moment in zip(page.subplots(5, len(shown)).T, shown, strict=True):
-        focus = search(ImageSums.of(moment.image, config), look, config)
+        focus = search(ImageSums.of(moment.frame.rgb(COLOUR), config), look, config)
         head, torso = focus.parts
         maps = (head.features, torso.features, torso.patterns, focus.scores)
         _show_maps(column, maps, ("face", "torso", "patterns", "person"))
-        _show_colour(image, moment, f"{moment.time_s:.0f} s, score {focus.score:.2f}")
-        frame_box(image, focus.box, _FOUND, linewidth=1.3)
+        _show_colour(image, moment, f"{moment.frame.time_s:.0f} s, score {focus.score:.2f}")
+        frame_box(image, focus.box, GREEN, linewidth=1.3)
     return page
 
 
@@ -307,8 +300,8 @@ def _part_box(part: ModelPart, box: Box) -> Box:
     return left + (width - wide) / 2.0, top + part.top * height, wide, part.height * height
 
 
-def _show_colour(axes: Axes, moment: FocusMoment, title: str) -> None:
-    show_image(axes, moment.image, title, interpolation="nearest")
+def _show_colour(axes: Axes, moment: Moment, title: str) -> None:
+    show_image(axes, moment.frame.rgb(COLOUR), title, interpolation="nearest")
 
 
 def _show_maps(row: Sequence[Axes], maps: Sequence[NDArray[np.number] | None], names: Sequence[str]) -> None:

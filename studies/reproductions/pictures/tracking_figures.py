@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -14,8 +14,19 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.studies.reproductions.evaluations.playback import play
-from peopleboy.studies.reproductions.pictures.canvas import canvas, frame_box, label
+from peopleboy.studies.reproductions.evaluations.playback import Moment, play
+from peopleboy.studies.reproductions.pictures.canvas import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PINK,
+    canvas,
+    frame_box,
+    label,
+    single,
+)
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
 from peopleboy.tracker.contour.explanation import Ellipse
 from peopleboy.tracker.contour.measurement.likelihood import ContourModel
@@ -28,10 +39,8 @@ from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.track import Box
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
-_GREY, _BLACK, _ORANGE, _BLUE = "#b5bcc6", "#1a1a1a", "#d95f02", "#1f78b4"
-_COLOURS: Final = (_BLUE, _ORANGE, "#1b9e77", "#7570b3", "#e7298a")
+_COLOURS: Final = (BLUE, ORANGE, GREEN, "#7570b3", PINK)
 
 # Figure 3.4: two people cross, and the tracker makes one kind of error.
 _FRAMES: Final = 60
@@ -60,44 +69,17 @@ _THRESHOLD_GREY: Final = 22.0  # theta
 SPANS_SCENE: Final = "hall_visits"
 
 
-@dataclass(frozen=True, slots=True)
-class Claimed:
-    """The claim of a tracker in one frame: on whom a candidate lies, and its id."""
-
-    frame: int
-    person: int
-    id: int
+CORRECT, SCATTERING, SWAPPING, FETCHING = "a) correct", "b) scattering", "c) swapping", "d) fetching"
 
 
-def _correct(frame: int) -> list[Claimed]:
-    return [Claimed(frame, person, person) for person in (_FIRST, _SECOND)]
-
-
-def _scattered(frame: int) -> list[Claimed]:
-    """Lose the first person for a while, twice, and begin a new track each time."""
-    part = frame // 20
-    pieces = [Claimed(frame, _FIRST, 10 + part)] if frame % 20 < 15 else []
-    return [*pieces, Claimed(frame, _SECOND, _SECOND)]
-
-
-def _swapped(frame: int) -> list[Claimed]:
-    ids = (_SECOND, _FIRST) if frame >= _FRAMES // 2 else (_FIRST, _SECOND)
-    return [Claimed(frame, _FIRST, ids[0]), Claimed(frame, _SECOND, ids[1])]
-
-
-def _fetched(frame: int) -> list[Claimed]:
-    """Let both candidates lie on the first person, once the two have met."""
-    other = _FIRST if frame >= _FRAMES // 2 else _SECOND
-    return [Claimed(frame, _FIRST, _FIRST), Claimed(frame, other, _SECOND)]
-
-
-ERRORS: Final[Mapping[str, Callable[[int], list[Claimed]]]] = {
-    "a) correct": _correct,
-    "b) scattering": _scattered,
-    "c) swapping": _swapped,
-    "d) fetching": _fetched,
-}
-"""What is claimed in each frame, by the kind of error."""
+def _claims(error: str, frame: int) -> list[tuple[int, int]]:
+    """Return the persons on whom candidates lie in a frame, each with the candidate's id."""
+    if error == SCATTERING:  # the first person is lost for a while, twice, and gets a new track each time
+        return [(_FIRST, 10 + frame // 20)] * (frame % 20 < 15) + [(_SECOND, _SECOND)]
+    have_met = frame >= _FRAMES // 2
+    if error == SWAPPING and have_met:
+        return [(_FIRST, _SECOND), (_SECOND, _FIRST)]
+    return [(_FIRST, _FIRST), (_FIRST if error == FETCHING and have_met else _SECOND, _SECOND)]
 
 
 def score_error(name: str) -> Scores:
@@ -107,8 +89,8 @@ def score_error(name: str) -> Scores:
 
 def draw_errors() -> Figure:
     """Draw true walks and tracks over time, with the metrics of each error: figure 3.4."""
-    page = canvas(4.6)
-    for axes, name in zip(page.subplots(2, 2, sharex=True, sharey=True).flat, ERRORS, strict=True):
+    page, kinds = canvas(4.6), (CORRECT, SCATTERING, SWAPPING, FETCHING)
+    for axes, name in zip(page.subplots(2, 2, sharex=True, sharey=True).flat, kinds, strict=True):
         _draw_walks(axes, name)
     return page
 
@@ -117,7 +99,7 @@ def _draw_walks(axes: Axes, name: str) -> None:
     truth, tracks, scores = _true_walks(), _tracks(name), score_error(name)
     for person in (_FIRST, _SECOND):
         walk = truth.take(truth.id == person)
-        axes.plot(walk.frame, _middle(walk.box), color=_GREY, linewidth=7, solid_capstyle="butt")
+        axes.plot(walk.frame, _middle(walk.box), color=GREY, linewidth=7, solid_capstyle="butt")
     for colour, number in zip(_COLOURS, np.unique(tracks.id).tolist(), strict=False):
         rows = tracks.take(tracks.id == number)
         where = np.full(_FRAMES + 1, np.nan)
@@ -143,67 +125,44 @@ def _place(frame: int, person: int) -> Box:
 
 def _true_walks() -> TrueBoxes:
     walks = [(frame, person) for frame in range(_FRAMES) for person in (_FIRST, _SECOND)]
-    frame, person = np.array(walks).T
-    return _true_boxes(frame + 1, person, np.array([_place(*walk) for walk in walks]))
+    return TrueBoxes.from_rows(
+        (frame + 1, person, _place(frame, person), True, 1.0) for frame, person in walks
+    )
 
 
 def _tracks(name: str) -> TrackBoxes:
-    claims = [claim for frame in range(_FRAMES) for claim in ERRORS[name](frame)]
-    boxes = np.array([_place(claim.frame, claim.person) for claim in claims])
-    boxes[:, :2] += _OFF_PX
-    frame = np.array([claim.frame + 1 for claim in claims])
-    return _track_boxes(frame, np.array([claim.id for claim in claims]), boxes)
+    claims = [(frame, *claim) for frame in range(_FRAMES) for claim in _claims(name, frame)]
+    off = np.array([*_OFF_PX, 0.0, 0.0])
+    return TrackBoxes.from_rows(
+        (frame + 1, number, _place(frame, person) + off, 1.0) for frame, person, number in claims
+    )
 
 
-def _true_boxes(frame: Ints, number: Ints, box: Floats) -> TrueBoxes:
-    count = len(box)
-    counted, visible = np.ones(count, np.bool_), np.ones(count)
-    return TrueBoxes(frame=frame, id=number, box=box, counted=counted, visible=visible)
-
-
-def _track_boxes(frame: Ints, number: Ints, box: Floats) -> TrackBoxes:
-    return TrackBoxes(frame=frame, id=number, box=box, confidence=np.ones(len(box)))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Example:
-    """The one frame of figure 3.5.
-
-    Attributes:
-        targets, candidates: (T, 4) and (C, 4) [px] left, top, width, height.
-        matches: which target and candidate belong together, of those that overlap by more than half.
-    """
-
-    targets: Floats
-    candidates: Floats
-    matches: tuple[tuple[int, int], ...]
-
-
-EXAMPLE: Final = Example(
-    targets=np.array([(30.0, 50.0, 50.0, 160.0), (140.0, 60.0, 44.0, 140.0), (240.0, 70.0, 40.0, 120.0)]),
-    candidates=np.array([(36.0, 58.0, 50.0, 160.0), (144.0, 50.0, 50.0, 140.0), (262.0, 96.0, 40.0, 120.0)]),
-    matches=((0, 0), (1, 1)),
+TARGETS: Final = np.array([(30.0, 50.0, 50.0, 160.0), (140.0, 60.0, 44.0, 140.0), (240.0, 70.0, 40.0, 120.0)])
+CANDIDATES: Final = np.array(
+    [(36.0, 58.0, 50.0, 160.0), (144.0, 50.0, 50.0, 140.0), (262.0, 96.0, 40.0, 120.0)]
 )
-"""Two are found, and the third candidate overlaps the third person by less than half."""
+"""Boxes [px] of figure 3.5's one frame: two targets are found, and the third pair shares less than half."""
+MATCHES: Final = ((0, 0), (1, 1))
 
 
 def score_example() -> Scores:
     """Score the one frame of figure 3.5."""
-    frame, number = np.ones(3, np.int64), np.arange(1, 4)
-    true = _true_boxes(frame, number, EXAMPLE.targets)
-    return evaluate(true, _track_boxes(frame, number, EXAMPLE.candidates), frames=1)
+    true = TrueBoxes.from_rows((1, number, box, True, 1.0) for number, box in enumerate(TARGETS, 1))
+    found = TrackBoxes.from_rows((1, number, box, 1.0) for number, box in enumerate(CANDIDATES, 1))
+    return evaluate(true, found, frames=1)
 
 
 def draw_example() -> Figure:
     """Draw targets, candidates, what they share where they are associated, and the metrics: figure 3.5."""
     page = canvas(3.0)
     axes, text = page.subplots(1, 2, width_ratios=(2, 1))
-    for boxes, colour, style in ((EXAMPLE.targets, _BLACK, "-"), (EXAMPLE.candidates, _ORANGE, "--")):
+    for boxes, colour, style in ((TARGETS, BLACK, "-"), (CANDIDATES, ORANGE, "--")):
         for box in boxes.tolist():
             frame_box(axes, box, colour, linestyle=style)
-    for target, candidate in EXAMPLE.matches:
-        box = shared(EXAMPLE.targets[target], EXAMPLE.candidates[candidate])
-        frame_box(axes, box, _GREY, hatch="///", linewidth=0)
+    for target, candidate in MATCHES:
+        box = shared(TARGETS[target], CANDIDATES[candidate])
+        frame_box(axes, box, GREY, hatch="///", linewidth=0)
     axes.set(xlim=(0, 320), ylim=(240, 0), aspect="equal")
     label(axes, "targets: solid; candidates: dashed; counted: hatched", "column [px]", "row [px]")
     thesis, paper = score_example().thesis, score_example().paper
@@ -295,40 +254,34 @@ def _draw_contours(axes: Axes, meeting: Meeting, penalty: float) -> None:
     label(axes, f"rho = {penalty:g}: {apart}; {len(gaps)} of {_STREAMS} keep both")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ThermalMoment:
-    """A thermal image (H, W), and who is in it."""
-
-    image: NDArray[np.uint8]
-    people: Sequence[PersonTruth]
-
-    @property
-    def whole(self) -> list[PersonTruth]:
-        """Those who are seen whole."""
-        return [one for one in self.people if one.visible_fraction > _PLAIN and one.box is not None]
+def thermal_moments() -> Iterator[Moment]:
+    """Play the scenario, and yield every fifth thermal image with the truth."""
+    return play(load_scenario(CONTOUR_SCENE), SEED, THERMAL, images=(THERMAL,), every=_EVERY)
 
 
-def thermal_moments() -> Iterator[ThermalMoment]:
-    """Play the scenario, and give every fifth image."""
-    for moment in play(load_scenario(CONTOUR_SCENE), SEED, THERMAL, every=_EVERY):
-        people = [one for one in moment.truth.people if one.visible_px > 0]
-        yield ThermalMoment(np.asarray(moment.observation.images[THERMAL], np.uint8), people)
+def _whole(moment: Moment) -> list[PersonTruth]:
+    """Return the people who are in plain view."""
+    people = [one for one in moment.truth.people if one.visible_px > 0 and one.box is not None]
+    return [one for one in people if one.visible_fraction > _PLAIN]
 
 
 def draw_fitness() -> Figure:
     """Draw how many samples of the prior fit how well, without and with a person: figure 4.4."""
     moments = list(thermal_moments())
     kinds = {
-        "30 images without a person": [one for one in moments if not one.people],
-        "30 images with a person": [one for one in moments if one.whole],
+        "30 images without a person": [
+            one for one in moments if not any(person.visible_px > 0 for person in one.truth.people)
+        ],
+        "30 images with a person": [one for one in moments if _whole(one)],
     }
     page, rng = canvas(2.6), stream(SEED, "reproduce.fitness")
     left, right = page.subplots(1, 2, sharey=True)
     for axes, (title, found) in zip((left, right), kinds.items(), strict=True):
-        prior = (THESIS.detector.count, found[0].image.shape, THESIS.motion, THESIS.detector)
-        fits = [fitness_grey(one.image, draw_prior(*prior, rng)) for one in found[:_IMAGES]]
-        axes.hist(np.concatenate(fits), bins=np.arange(-42, 43, 2).tolist(), log=True, color=_ORANGE)
-        axes.axvline(_THRESHOLD_GREY, color=_BLACK, linestyle="--", linewidth=1)
+        images = [one.frame.grey(THERMAL) for one in found[:_IMAGES]]
+        prior = (THESIS.detector.count, images[0].shape, THESIS.motion, THESIS.detector)
+        fits = [fitness_grey(image, draw_prior(*prior, rng)) for image in images]
+        axes.hist(np.concatenate(fits), bins=np.arange(-42, 43, 2).tolist(), log=True, color=ORANGE)
+        axes.axvline(_THRESHOLD_GREY, color=BLACK, linestyle="--", linewidth=1)
         label(axes, title, "fitness [grey]; dashed: the threshold", "samples")
     return page
 
@@ -340,7 +293,7 @@ def draw_cues() -> Figure:
     page = canvas(2.6)
     names = ("strength [grey]", "top [row]", "bottom [row]")
     for axes, values, name in zip(page.subplots(1, 3), cues, names, strict=True):
-        axes.plot(distance, values, ".", color=_ORANGE, markersize=3)
+        axes.plot(distance, values, ".", color=ORANGE, markersize=3)
         label(axes, name, "distance [m]")
         if name.endswith("[row]"):
             axes.invert_yaxis()
@@ -355,13 +308,13 @@ def fitness_grey(thermal: NDArray[np.uint8], state: NDArray[np.float32]) -> Floa
     return np.asarray(differences @ model.weights * THESIS.contour.saturation_grey)
 
 
-def _cues(moment: ThermalMoment) -> Iterator[tuple[float, float, float, float]]:
+def _cues(moment: Moment) -> Iterator[tuple[float, float, float, float]]:
     """Return distance, strength, top and bottom of the contour that fits best around each whole person."""
     rng = stream(SEED, "reproduce.cues")
-    for person in moment.whole:
+    for person in _whole(moment):
         assert person.box is not None
         state = draw_around(person.box, THESIS, rng)
-        fit = fitness_grey(moment.image, state)
+        fit = fitness_grey(moment.frame.grey(THERMAL), state)
         best = state[int(fit.argmax())]
         top, bottom = best[Y] - CROWN * best[H], best[Y] + FOOT * best[H]
         yield person.distance_m, float(fit.max()), float(top), float(bottom)
@@ -374,11 +327,10 @@ def draw_time_ranges() -> Figure:
         for person in moment.truth.people:
             if person.is_counted and person.visible_px > 0:
                 seen.setdefault(person.name, []).append(moment.number)
-    page = canvas(0.8 + 0.18 * len(seen))
-    axes = page.subplots()
+    page, axes = single(0.8 + 0.18 * len(seen))
     for row, frames in enumerate(seen.values(), 1):
         spans = [(start, end + 1 - start) for start, end in stretches(frames)]
-        axes.broken_barh(spans, (row - 0.35, 0.7), color=_BLUE)
+        axes.broken_barh(spans, (row - 0.35, 0.7), color=BLUE)
     axes.set_yticks(range(1, len(seen) + 1), list(seen))
     label(axes, "", "image")
     return page

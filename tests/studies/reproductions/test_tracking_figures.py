@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from peopleboy.studies.reproductions.pictures.tracking_figures import (
-    EXAMPLE,
+    CANDIDATES,
+    MATCHES,
+    TARGETS,
     fitness_grey,
     score_error,
     score_example,
@@ -40,11 +42,9 @@ def test_only_what_looks_beyond_single_frames_sees_swapped_tracks() -> None:
 
 
 def test_the_example_of_metrics_is_as_the_equations_say() -> None:
-    areas = [shared(EXAMPLE.targets[one], EXAMPLE.candidates[other]) for one, other in EXAMPLE.matches]
+    areas = [shared(TARGETS[one], CANDIDATES[other]) for one, other in MATCHES]
     both = sum(width * height for _, _, width, height in areas)
-    targets, candidates = (
-        float(np.prod(boxes[:, 2:], axis=1).sum()) for boxes in (EXAMPLE.targets, EXAMPLE.candidates)
-    )
+    targets, candidates = (float(np.prod(boxes[:, 2:], axis=1).sum()) for boxes in (TARGETS, CANDIDATES))
     found = score_example().thesis
     assert (found.cr, found.cp, found.ca) == pytest.approx(
         (200 / 3, 200 / 3, 200 / 3)

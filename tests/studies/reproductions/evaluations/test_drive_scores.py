@@ -18,7 +18,7 @@ from tests.helpers.runs import synthetic_ticks
 def person(number: int, x: float, y: float, *, counts: bool = True) -> FloorPerson:
     """Place a person; the surface that is seen is 0.1 m nearer."""
     truth = synthetic_ticks.person(number, "anna", x)
-    return FloorPerson(number, (x, y), (x - 0.1, y), is_counted=counts, truth=truth)
+    return FloorPerson((x, y), (x - 0.1, y), is_counted=counts, truth=truth)
 
 
 def track(number: int, x: float, y: float) -> Track:

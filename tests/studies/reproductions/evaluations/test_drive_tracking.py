@@ -56,8 +56,8 @@ def test_noise_can_be_left_out_of_the_depth_and_the_truth_stays() -> None:
     exact = scenario.with_cameras({DEPTH: {"kind": DEPTH, "scale": 0.0}})
     (one, noisy), (other, clean) = (
         next(
-            ([(each.place_m, each.surface_m) for each in moment.people], moment.frame.depth(DEPTH).copy())
-            for moment in play_drive(drive, 0)
+            ([(each.place_m, each.surface_m) for each in people], moment.frame.depth(DEPTH).copy())
+            for moment, people in play_drive(drive, 0)
         )
         for drive in (scenario, exact)
     )
