@@ -6,34 +6,31 @@ Values were chosen, and networks trained, on seeds from 100 on; these figures ar
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import islice
 from statistics import median
-from typing import Any, Final
+from typing import Final
 
 import click
 import cv2
 import numpy as np
-from rich.console import Console
-from rich.table import Table
 
 from benchmarks import call
+from benchmarks.compare import compare, percents, print_table
 from benchmarks.peers.detectors import Hog
 from benchmarks.timing import spent_ms, timed_ms
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import Tick, closed_loop, make_frame
 from peopleboy.scenarios.running.blind_drive import blind_drive
-from peopleboy.scenarios.running.engine.task import Tell, Workers, chosen_workers
-from peopleboy.scenarios.running.engine.work_through import work_through
+from peopleboy.scenarios.running.engine.task import Tell, chosen_workers
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.sim.world import World
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
-from peopleboy.tracker.evaluation.floor import Places, floor_squares
-from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
+from peopleboy.tracker.evaluation.floor import Places
 from peopleboy.tracker.frame import COLOUR, PANORAMA, THERMAL, Frame
 from peopleboy.tracker.fusion.fused_explanations import BothExplanations
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
@@ -57,6 +54,10 @@ TIMED: Final = (
 )
 """What is timed beside HOG: the paper's tracker, and ours on a robot that stands and one that drives."""
 _TIMED_FRAMES: Final = 600
+COLUMNS: Final = (
+    *("scenario", "tracker", "distance [m]", "position [m]"),
+    *("found %", "IDF1 %", "in ellipse %", "NEES", "ms"),
+)
 _HOG_EVERY: Final = 15
 _HOG_MS: Final = 80.0
 """What HOG takes where times are scaled to: one machine's milliseconds say little of another's."""
@@ -86,35 +87,12 @@ class _Rows:
         true, found = (
             np.array(rows).reshape(-1, width) for rows, width in ((self.truth, 6), (self.tracks, 7))
         )
-        standing = Places(frame=_whole(true, 0), id=_whole(true, 1), position_m=true[:, 2:4])
-        believed = Places(
-            frame=_whole(found, 0),
-            id=_whole(found, 1),
-            position_m=found[:, 2:4],
-            covariance_m2=found[:, 4:],
-        )
-        return evaluate(
-            TrueBoxes(
-                frame=standing.frame,
-                id=standing.id,
-                box=floor_squares(standing.position_m),
-                counted=true[:, 4] > 0,
-                visible=true[:, 5],
-            ),
-            TrackBoxes(
-                frame=believed.frame,
-                id=believed.id,
-                box=floor_squares(believed.position_m),
-                confidence=np.ones(len(found)),
-            ),
-            frames=frames,
-            standing=standing,
-            believed=believed,
-        )
-
-
-def _whole(rows: np.ndarray[Any, Any], column: int) -> np.ndarray[Any, Any]:
-    return rows[:, column].astype(np.int64)
+        (frame, person), (seen, track) = (rows[:, :2].astype(np.int64).T for rows in (true, found))
+        standing = Places(frame=frame, id=person, position_m=true[:, 2:4])
+        believed = Places(frame=seen, id=track, position_m=found[:, 2:4], covariance_m2=found[:, 4:])
+        targets = standing.as_targets(true[:, 4] > 0, true[:, 5])
+        candidates = believed.as_candidates(np.ones(len(found)))
+        return evaluate(targets, candidates, frames=frames, standing=standing, believed=believed)
 
 
 @dataclass(frozen=True, slots=True)
@@ -289,26 +267,18 @@ def main(scenarios: tuple[str, ...], seeds: int, laps: int, first: int, workers:
         )
         if not scenarios or scenario in scenarios
     ]
-    tasks = [Play(scenario, tracker, seed) for scenario, tracker, chosen in plan for seed in chosen]
-    found = _played(tasks, chosen_workers(workers, None))
-    table = Table(
-        "scenario", "tracker", "distance [m]", "position [m]", "found %", "IDF1 %", "in ellipse %", "NEES",
-        "ms", box=None,
-    )  # fmt: skip
-    for scenario, tracker, chosen in plan:
-        table.add_row(scenario, tracker, *_figures([found[Play(scenario, tracker, seed)] for seed in chosen]))
-    Console(width=140).print(table)
+    tasks = {
+        (scenario, tracker): [Play(scenario, tracker, seed) for seed in chosen]
+        for scenario, tracker, chosen in plan
+    }
+    found = compare(tasks, chosen_workers(workers, None), "all round")
+    print_table(COLUMNS, ([*names, *_figures(runs)] for names, runs in found.items()), width=140)
     for scenario, tracker in TIMED:
         if not scenarios or scenario in scenarios:
             _print_time(scenario, tracker, first)
-    if runs := [found[task] for task in tasks if task.scenario == ROUND]:
-        _print_laps(runs)
-
-
-def _played(tasks: Sequence[Play], workers: Workers) -> Mapping[Play, Played]:
-    found: dict[str, Played] = {}
-    work_through(tasks, workers, "all round", lambda task, result: found.update({task.name: result}))
-    return {task: found[task.name] for task in tasks}
+    for (scenario, _), runs in found.items():
+        if scenario == ROUND:
+            _print_laps(runs)
 
 
 def _figures(runs: Sequence[Played]) -> Iterable[str]:
@@ -318,7 +288,7 @@ def _figures(runs: Sequence[Played]) -> Iterable[str]:
     yield f"{distance:.3f}"
     yield f"{scores.floor.mean_m:.3f}"
     yield f"{100 * scores.counts.matches / max(scores.counts.targets, 1):.1f}"
-    yield f"{scores.mot.identity.idf1:.1f}"
+    yield from percents(scores, "IDF1")
     yield f"{scores.floor.inside:.1f}"
     yield f"{scores.floor.nees:.2f}"
     yield f"{median(run.update_ms for run in runs):.1f}"

@@ -16,7 +16,7 @@ import click
 import numpy as np
 
 from benchmarks import call
-from benchmarks.sequences import Recording, print_head, print_row, true_boxes, truth_rows
+from benchmarks.sequences import Recording, print_head, print_row, truth_rows
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
@@ -27,6 +27,7 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
+from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
@@ -113,7 +114,7 @@ def play(scene: str, camera: Camera, seed: int) -> Recording:
             frames.append(replace(frame, images=images | {THERMAL: encode_8bit(warmer_c)}))
             truth += truth_rows(tick + 1, world.truth())
             world.step(0.0, 0.0)
-    return Recording(tuple(frames), true_boxes(truth))
+    return Recording(tuple(frames), TrueBoxes.from_rows(truth))
 
 
 def track(recording: Recording, tracker: str, seed: int) -> Scores:

@@ -17,6 +17,7 @@ import click
 import numpy as np
 
 from benchmarks import call
+from benchmarks.compare import false_per_1000, percents
 from benchmarks.peers.detectors import Blobs
 from benchmarks.real_clips import CHOSEN_BY, RealClip, open_clips
 from benchmarks.sequences import Recording, print_head, print_row, record
@@ -28,7 +29,7 @@ from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.detector.detector import SMALLEST_PX, Grey, PeopleDetector, detect_with_trees
 from peopleboy.tracker.detector.people_trees import shipped_people_trees
 from peopleboy.tracker.detector.rescoring import rescore, shipped_rescoring
-from peopleboy.tracker.evaluation.evaluate import Scores, combine
+from peopleboy.tracker.evaluation.evaluate import combine
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
@@ -193,24 +194,15 @@ def score_recordings(scenes: Sequence[Recording], worlds: Sequence[Recording], v
     tracked = [(recording, variant.tracked(recording)) for recording in worlds]
     everybody = combine([recording.score(tracks) for recording, tracks in tracked])
     seen = combine([recording.score(tracks, min_visible=_SEEN) for recording, tracks in tracked])
-    return [
-        f"{library.mot.hota.hota:.1f}",
-        f"{library.mot.identity.idf1:.1f}",
-        str(library.mot.clear.switches),
-        f"{everybody.mot.hota.hota:.1f}",
-        f"{seen.mot.hota.hota:.1f}",
-        _false_per_1000(everybody),
-    ]
+    hota = [*percents(everybody, "HOTA"), *percents(seen, "HOTA")]
+    false = f"{false_per_1000(everybody):.2f}"
+    return [*percents(library, "HOTA", "IDF1"), str(library.mot.clear.switches), *hota, false]
 
 
 def score_clips(clips: Sequence[Recording], variant: Variant) -> list[str]:
     """Return a row's figures, as `COLUMNS_OF_CLIPS` names them."""
     scores = combine([recording.score(variant.tracked(recording)) for recording in clips])
-    return [f"{scores.mot.hota.hota:.1f}", _false_per_1000(scores)]
-
-
-def _false_per_1000(scores: Scores) -> str:
-    return f"{1000.0 * scores.counts.false_tracks / scores.counts.frames:.2f}"
+    return [*percents(scores, "HOTA"), f"{false_per_1000(scores):.2f}"]
 
 
 @click.command()

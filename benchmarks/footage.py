@@ -11,17 +11,15 @@ import json
 import math
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from statistics import mean
 from typing import Any, Final
 
 import click
 import yaml
-from rich.console import Console
-from rich.table import Table
 
 from benchmarks import call
+from benchmarks.compare import METRICS, compare, false_per_1000, percents, print_table
 from benchmarks.real_clips import (
     CHOSEN_BY,
     PEERS,
@@ -37,7 +35,6 @@ from peopleboy.scenarios.files.scenario_file import to_data
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.track_footage import track_footage
 from peopleboy.scenarios.running.engine.task import Workers
-from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.scenarios.running.run import run
 from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
@@ -75,119 +72,71 @@ COLUMNS: Final[Mapping[str, str]] = {
 """How each metric is written, in the table's order."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ClipsOptions:
-    """What is to be measured.
+def clip_metrics(clip: RealClip, results: Sequence[ClipResult]) -> dict[str, float]:
+    """Name the metrics of a tracker on a clip; NaN for those that would need everybody annotated."""
+    scores = combine([one.scores for one in results])
+    found = {name: METRICS[name](scores) for name in ("HOTA", "IDF1", "MOTA", "CP")}
+    found["false tracks per 1000"] = false_per_1000(scores)
+    if clip.given.is_single:
+        found = dict.fromkeys(found, math.nan)
+    found |= {name: METRICS[name](scores) for name in ("CR", "one id")}
+    return found | {"frames per s": 1.0 / max(mean(one.frame_s for one in results), 1e-9)}
 
-    Attributes:
+
+def bench_clips(
+    home: Path,
+    *,
+    trackers: Sequence[str],
+    peers: Sequence[str],
+    only: Sequence[str],
+    frames: int | None,
+    rate_hz: float | None,
+    seeds: int,
+    jobs: int,
+) -> None:
+    """Measure our trackers and peers on clips, print a table and leave its metrics as JSON.
+
+    Args:
         home: folder of clips.
         trackers: names of ours.
-        peers: names of peers.
+        peers: names of peers, which draw nothing and see each clip once.
         only: names of clips; none for all.
         frames: how many of each clip; None for all.
-        seeds: how many of each of our trackers, from 0 on.
         rate_hz: pictures a second; None for what a folder is taken to have.
+        seeds: how many of each of our trackers, from 0 on.
         jobs: processes at the same time.
-        out: JSON file to leave.
-    """
-
-    home: Path
-    trackers: Sequence[str]
-    peers: Sequence[str] = tuple(PEERS)
-    only: Sequence[str] = ()
-    frames: int | None = None
-    seeds: int = 1
-    rate_hz: float | None = None
-    jobs: int = 1
-    out: Path = OUT
-
-    def tasks(self, clip: RealClip) -> list[ClipTask]:
-        """List the work on a clip, for all trackers in turn; peers draw nothing and see it once."""
-        ours = [
-            ClipTask(clip, tracker, seed, self.rate_hz)
-            for tracker in self.trackers
-            for seed in range(self.seeds)
-        ]
-        return [*ours, *(ClipTask(clip, peer, 0) for peer in self.peers)]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ClipRow:
-    """One tracker on one clip, all seeds together."""
-
-    clip: RealClip
-    tracker: str
-    results: Sequence[ClipResult]
-
-    def figures(self) -> dict[str, float]:
-        """Name the metrics; NaN for those that would need everybody annotated."""
-        scores = combine([one.scores for one in self.results])
-        counts, clear = scores.counts, scores.mot.clear
-        everybody = {
-            "HOTA": scores.mot.hota.hota,
-            "IDF1": scores.mot.identity.idf1,
-            "MOTA": clear.mota,
-            "CP": scores.thesis.cp,
-            "false tracks per 1000": 1000.0 * counts.false_tracks / counts.frames,
-        }
-        if self.clip.given.is_single:
-            everybody = dict.fromkeys(everybody, math.nan)
-        return everybody | {
-            "CR": scores.thesis.cr,
-            "one id": scores.mot.identity.idr,
-            "frames per s": 1.0 / max(mean(one.frame_s for one in self.results), 1e-9),
-        }
-
-
-def bench_clips(options: ClipsOptions) -> None:
-    """Measure our trackers and peers on clips, print a table and leave its metrics as JSON.
 
     Raises:
         BadInput: clips or trackers cannot be used.
         TasksFailed: some could not be measured.
     """
-    clips = open_clips(options.home, options.only, options.frames)
-    trackers = (*options.trackers, *options.peers)
-    for name in trackers:
+    clips = {clip.name: clip for clip in open_clips(home, only, frames)}
+    for name in (*trackers, *peers):
         make_clip_tracker(name, 0)  # refused now rather than after other trackers have run
-    tasks = [task for clip in clips for task in options.tasks(clip)]
-    found: dict[str, ClipResult] = {}
-    workers = Workers(options.jobs)
-    work_through(tasks, workers, "clips", lambda task, one: found.update({task.name: one}), unit="frames")
-    rows = []
-    for clip in clips:
-        for tracker in trackers:
-            mine = [task.name for task in tasks if task.clip is clip and task.tracker == tracker]
-            rows.append(ClipRow(clip, tracker, [found[name] for name in mine]))
-    print_rows(rows)
-    write_rows(rows, options.out)
-
-
-def print_rows(rows: Sequence[ClipRow]) -> None:
-    """Print one Markdown table, and then which clips values were chosen by."""
+    tasks = {}
+    for name, clip in clips.items():
+        ours = {
+            (name, one): [ClipTask(clip, one, seed, rate_hz) for seed in range(seeds)] for one in trackers
+        }
+        tasks |= ours | {(name, peer): [ClipTask(clip, peer, 0)] for peer in peers}
+    found = compare(tasks, Workers(jobs), "clips", unit="frames")
     print_head("clip", ("frames", "tracker", *COLUMNS), ["---:", "---", *["---:"] * len(COLUMNS)])
-    for row in rows:
-        figures = row.figures()
-        cells = [
-            "" if math.isnan(figures[name]) else form.format(figures[name]) for name, form in COLUMNS.items()
-        ]
-        print_row(row.clip.name, (str(row.clip.frames), row.tracker, *cells))
-    click.echo(f"\n{_split(rows)}")
-
-
-def write_rows(rows: Sequence[ClipRow], path: Path) -> None:
-    """Keep the metrics as JSON: clip, tracker, metric."""
     content: dict[str, dict[str, dict[str, float | None]]] = {}
-    for row in rows:
-        figures = {name: None if math.isnan(one) else one for name, one in row.figures().items()}
-        known = {"runs": len(row.results), "frames": row.clip.frames}
-        content.setdefault(row.clip.name, {})[row.tracker] = known | figures
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+    for (name, tracker), results in found.items():
+        metrics, count = clip_metrics(clips[name], results), clips[name].frames
+        cells = [
+            "" if math.isnan(metrics[one]) else form.format(metrics[one]) for one, form in COLUMNS.items()
+        ]
+        print_row(name, (str(count), tracker, *cells))
+        known = {one: None if math.isnan(value) else value for one, value in metrics.items()}
+        content.setdefault(name, {})[tracker] = {"runs": len(results), "frames": count} | known
+    click.echo(f"\n{_split(clips)}")
+    OUT.parent.mkdir(parents=True, exist_ok=True)
+    OUT.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
 
 
-def _split(rows: Sequence[ClipRow]) -> str:
-    clips = {row.clip.name: row.clip for row in rows}
+def _split(clips: Mapping[str, RealClip]) -> str:
+    """Name the clips by which values were chosen, and the others."""
 
     def listed(keep: Callable[[str], bool]) -> str:
         return ", ".join(filter(keep, clips)) or "none"
@@ -230,28 +179,25 @@ def _split(rows: Sequence[ClipRow]) -> str:
 @click.option(
     "--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Processes, with --clips."
 )
-def main(clips: Path | None, seeds: int, **how: Any) -> None:
+def main(clips: Path | None, **how: Any) -> None:
     """Print how people are kept in scenes of the library, or how trackers do on clips.
 
     Figures are percent. Those of --clips are left in runs/clips.json, too.
     """
     if clips is not None:
-        bench_clips(ClipsOptions(home=clips, seeds=seeds, **how))
+        bench_clips(clips, **how)
         return
     with tempfile.TemporaryDirectory() as folder:
         _show_rooms(Path(folder))
 
 
 def _show_rooms(folder: Path) -> None:
-    table = Table("scenes in", "CP", "CR", "AA", "IDF1", "HOTA", "false tracks", box=None)
+    shown = ("CP", "CR", "AA", "IDF1", "HOTA")
+    rows = []
     for room, temperatures in ROOMS.items():
         scores = combine(list(_scores_of(temperatures, folder / room.replace(" ", "-"))))
-        figures = (
-            *(scores.thesis.cp, scores.thesis.cr, scores.thesis.aa),
-            *(scores.mot.identity.idf1, scores.mot.hota.hota),
-        )
-        table.add_row(room, *(f"{figure:.1f}" for figure in figures), str(scores.counts.false_tracks))
-    Console().print(table)
+        rows.append([room, *percents(scores, *shown), str(scores.counts.false_tracks)])
+    print_table(["scenes in", *shown, "false tracks"], rows)
 
 
 def _scores_of(temperatures: Mapping[str, float], folder: Path) -> Iterator[Scores]:

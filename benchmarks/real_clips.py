@@ -12,7 +12,6 @@ from typing import Final
 import numpy as np
 
 from benchmarks.peers.ours import Contestant, Ours
-from benchmarks.sequences import track_boxes
 from benchmarks.timing import timed_ms
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.footage.options import TrackOptions
@@ -21,7 +20,7 @@ from peopleboy.scenarios.running.engine.task import Tell
 from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_truth
-from peopleboy.tracker.evaluation.sequence import TrueBoxes
+from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.footage.footage_truth import GivenTruth, find_truth, load_truth
 from peopleboy.tracker.footage.image_sequences import open_footage
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, is_own
@@ -177,5 +176,5 @@ def _peer(name: str) -> Contestant:
 
 def score_clip(clip: RealClip, rows: list[tuple[int, int, Floats]]) -> Scores:
     """Score rows of frame, id and box against a clip's truth."""
-    tracks = track_boxes((frame, identity, box, 1.0) for frame, identity, box in rows)
+    tracks = TrackBoxes.from_rows((frame, identity, box, 1.0) for frame, identity, box in rows)
     return evaluate(clip.given.truth, tracks, frames=clip.frames, is_single=clip.given.is_single)

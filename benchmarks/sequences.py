@@ -6,7 +6,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import click
-import numpy as np
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
@@ -22,8 +21,6 @@ from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.track import Track, confirmed
 from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
-Row = tuple[int, int, Sequence[float], float]
-"""Frame, id, box and confidence of a track."""
 TruthRow = tuple[int, int, Sequence[float], bool, float]
 
 
@@ -65,7 +62,7 @@ def record(scenario: str | Scenario, seed: int) -> Recording:
             frames.append(make_frame(tick.observation, calibrations_of(world.cameras), before))
             before = tick.observation.odometry
             rows += truth_rows(tick.frame, tick.truth)
-    return Recording(tuple(frames), true_boxes(rows))
+    return Recording(tuple(frames), TrueBoxes.from_rows(rows))
 
 
 def truth_rows(frame: int, truth: Truth) -> list[TruthRow]:
@@ -77,36 +74,12 @@ def truth_rows(frame: int, truth: Truth) -> list[TruthRow]:
     ]
 
 
-def true_boxes(rows: Sequence[TruthRow]) -> TrueBoxes:
-    """Make columns of what `truth_rows` gives."""
-    frame, identity, box, counted, visible = zip(*rows, strict=True) if rows else ((),) * 5
-    return TrueBoxes(
-        frame=np.array(frame),
-        id=np.array(identity),
-        box=np.array(box).reshape(-1, 4),
-        counted=np.array(counted, dtype=bool),
-        visible=np.array(visible),
-    )
-
-
 def confirmed_boxes(frames: Iterable[Iterable[Track]]) -> TrackBoxes:
     """Take the boxes of confirmed tracks in the thermal image, frame by frame, the first one being 1."""
-    return track_boxes(
+    return TrackBoxes.from_rows(
         (number, track.id, box, track.confidence)
         for number, tracks in enumerate(frames, start=1)
         for track, box in confirmed(tracks, THERMAL)
-    )
-
-
-def track_boxes(rows: Iterable[Row]) -> TrackBoxes:
-    """Make columns of rows."""
-    listed = list(rows)
-    frame, identity, box, confidence = zip(*listed, strict=True) if listed else ((),) * 4
-    return TrackBoxes(
-        frame=np.array(frame, dtype=np.int64),
-        id=np.array(identity, dtype=np.int64),
-        box=np.array(box, dtype=np.float64).reshape(-1, 4),
-        confidence=np.array(confidence, dtype=np.float64),
     )
 
 

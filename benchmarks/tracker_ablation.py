@@ -5,7 +5,6 @@ Runs are recorded once, driven by that tracker; every variant then sees the same
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass, replace
 from typing import Any
@@ -14,6 +13,7 @@ import click
 import numpy as np
 
 from benchmarks import call
+from benchmarks.compare import percents
 from benchmarks.sequences import Recording, print_head, print_row, record
 from peopleboy.tracker.contour.contour_config import TrackerConfig
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
@@ -158,9 +158,8 @@ def variants() -> Iterator[tuple[str, TrackerConfig]]:
 def score(runs: dict[str, list[Recording]], config: TrackerConfig) -> list[str]:
     """Return one row of figures, as `COLUMNS` names them; false alarms are per 100 frames."""
     one, several, nobody = (scores_of(runs, names, config) for names in (ONE, SEVERAL, (EMPTY,)))
-    percents = [getattr(scores.thesis, name) for scores in (one, several) for name in ("cp", "cr", "aa")]
-    percents += [several.mot.identity.idf1, several.mot.hota.hota]
-    cells = ["-" if math.isnan(value) else f"{value:.1f}" for value in percents]
+    cells = percents(one, "CP", "CR", "AA") + percents(several, "CP", "CR", "AA", "IDF1", "HOTA")
+    cells = ["-" if cell == "nan" else cell for cell in cells]
     false = 100 * nobody.counts.candidates / nobody.counts.frames
     return [*cells, f"{several.mot.clear.switches}", f"{false:.1f}"]
 

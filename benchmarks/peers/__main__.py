@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import click
-from rich.console import Console
 
 from peopleboy.bad_input import BadInput
 
@@ -15,13 +14,13 @@ except ImportError as error:
     raise SystemExit("benchmarks.peers: the package trackers is missing; `make peers` installs it") from error
 
 from benchmarks import call
+from benchmarks.compare import compare
 from benchmarks.peers.compete import Result, SequenceTask
 from benchmarks.peers.contestants import contestants
 from benchmarks.peers.show import draw_occlusions, print_occlusions, print_results, write_results
 from peopleboy.scenarios.commands.command_options import workers_options
 from peopleboy.scenarios.files.suite import load_suite
 from peopleboy.scenarios.running.engine.task import Workers
-from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.wording import hint
 
 _QUICK = "crossing_2,crossing_3,same_uniform,pass_behind_pillar,hidden_0_5s,hidden_2s,hidden_5s,crowd_8"
@@ -56,26 +55,26 @@ def main(scenarios: str, seeds: int, trackers: str, workers: Workers, out: Path)
         if scenarios == "all"
         else scenarios.split(",")
     )
-    console = Console(width=130)
     results = _compete_all(names, played, seeds, workers, out)
-    print_results(results, console)
-    console.print()
-    print_occlusions(results, console)
+    print_results(results)
+    click.echo()
+    print_occlusions(results)
     write_results(results, out / "results.json")
     draw_occlusions(results, out / "occlusions.png")
-    console.print(f"\n{out / 'occlusions.png'}")
+    click.echo(f"\n{out / 'occlusions.png'}")
 
 
 def _compete_all(
     names: list[str], played: list[str], seeds: int, workers: Workers, out: Path
 ) -> dict[str, list[Result]]:
     """Film by film, so that each is rendered by one process only."""
-    tasks = [
-        SequenceTask(tuple(names), shot, seed, out.resolve()) for shot in played for seed in range(seeds)
-    ]
-    found: dict[str, list[Result]] = {}
-    work_through(tasks, workers, "films", lambda task, results: found.update({task.name: results}))
-    return {name: [found[task.name][k] for task in tasks] for k, name in enumerate(names)}
+    tasks = {
+        (shot, seed): [SequenceTask(tuple(names), shot, seed, out.resolve())]
+        for shot in played
+        for seed in range(seeds)
+    }
+    found = [results for (results,) in compare(tasks, workers, "films").values()]
+    return {name: [results[k] for results in found] for k, name in enumerate(names)}
 
 
 if __name__ == "__main__":

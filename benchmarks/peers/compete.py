@@ -13,7 +13,6 @@ import numpy as np
 
 import benchmarks.peers
 from benchmarks.peers.contestants import JOINT, PEERS, RATE_HZ, make_contestant
-from benchmarks.sequences import Row, track_boxes
 from benchmarks.timing import timed_ms
 from peopleboy import tracker
 from peopleboy.scenarios.files.load import load_scenario
@@ -96,14 +95,13 @@ def occlusions_of(shot: Film, truth: TrueBoxes, tracks: TrackBoxes) -> list[Occl
 
 def _run(name: str, shot: Film, said: Path) -> None:
     contestant = make_contestant(name, shot.seed, shot.truth())
-    rows: list[Row] = []
-    times_ms = []
+    rows, times_ms = [], []
     for number, frame in enumerate(frames_of(shot), 1):
         frame_ms, (boxes, ids) = timed_ms(partial(contestant.step, frame))
         times_ms.append(frame_ms)
         rows += [(number, identity, box, 1.0) for box, identity in zip(boxes, ids, strict=True)]
     said.parent.mkdir(parents=True, exist_ok=True)
-    write_tracks(said.with_suffix(".txt"), track_boxes(rows))
+    write_tracks(said.with_suffix(".txt"), TrackBoxes.from_rows(rows))
     about = {"ms": _usual(times_ms)}
     said.with_suffix(".json").write_text(json.dumps(about) + "\n", encoding="utf-8")
 

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from rich.console import Console
-from rich.table import Table
 
+from benchmarks.compare import percents, print_table
 from benchmarks.peers.compete import Result
 from peopleboy.tracker.evaluation.evaluate import combine
 from peopleboy.tracker.evaluation.occlusion_scores import LengthRow, by_length
@@ -20,39 +19,32 @@ from peopleboy.tracker.evaluation.table import to_json
 Results = Mapping[str, Sequence[Result]]  # by contestant
 KEPT_UP_TO = {"up to 1.5 s": 1.5, "all": np.inf}
 _SPOT = 4.0
+SHOWN = ("CP", "CR", "AA", "HOTA", "IDF1")
+WIDTH = 130  # characters of the tables
 
 
-def print_results(results: Results, console: Console) -> None:
+def print_results(results: Results) -> None:
     """Print every contestant's figures over all films."""
-    table = Table(
-        "", "CP %", "CR %", "AA %", "HOTA %", "IDF1 %", "IDSW", "false tracks", "kept %", "ms/frame", box=None
-    )
-    for name, runs in results.items():
-        scores = combine([run.scores for run in runs])
-        thesis, mot = scores.thesis, scores.mot
-        shares = [thesis.cp, thesis.cr, thesis.aa, mot.hota.hota, mot.identity.idf1]
-        tracked = [o for run in runs for o in run.occlusions if o.id_before is not None]
-        kept = f"{100.0 * np.mean([o.is_kept for o in tracked]):.0f} of {len(tracked)}" if tracked else "-"
-        table.add_row(
-            name,
-            *(f"{share:.1f}" for share in shares),
-            str(mot.clear.switches),
-            str(scores.counts.false_tracks),
-            kept,
-            f"{np.median([run.ms for run in runs]):.1f}",
-        )
-    console.print(table)
+    columns = [f"{name} %" for name in SHOWN] + ["IDSW", "false tracks", "kept %", "ms/frame"]
+    print_table(["", *columns], ([name, *_figures(runs)] for name, runs in results.items()), WIDTH)
 
 
-def print_occlusions(results: Results, console: Console) -> None:
+def _figures(runs: Sequence[Result]) -> Iterator[str]:
+    scores = combine([run.scores for run in runs])
+    yield from percents(scores, *SHOWN)
+    yield str(scores.mot.clear.switches)
+    yield str(scores.counts.false_tracks)
+    tracked = [o for run in runs for o in run.occlusions if o.id_before is not None]
+    yield f"{100.0 * np.mean([o.is_kept for o in tracked]):.0f} of {len(tracked)}" if tracked else "-"
+    yield f"{np.median([run.ms for run in runs]):.1f}"
+
+
+def print_occlusions(results: Results) -> None:
     """Print identities kept, and the time until people are found again, by length of the occlusion."""
     rows = {name: by_length(_occlusions(runs)) for name, runs in results.items()}
-    ranges = next(iter(rows.values()))
-    columns = [f"{row.from_s:g}..{row.to_s:g} s" for row in ranges]
-    table = Table("identity kept (found again after)", *columns, box=None)
-    for name, table_rows in rows.items():
-        table.add_row(name, *(_cell(row) for row in table_rows))
-    console.print(table)
+    columns = [f"{row.from_s:g}..{row.to_s:g} s" for row in next(iter(rows.values()))]
+    cells = ([name, *map(_cell, lengths)] for name, lengths in rows.items())
+    print_table(["identity kept (found again after)", *columns], cells, WIDTH)
 
 
 def write_results(results: Results, path: Path) -> None:

@@ -15,7 +15,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.run_files import read_table
 from peopleboy.scenarios.run_folder.run_tables import PLACE, TRUTH
 from peopleboy.tracker.boxes import Floats
-from peopleboy.tracker.evaluation.floor import Places, floor_squares
+from peopleboy.tracker.evaluation.floor import Places
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.track import Status
 
@@ -75,18 +75,8 @@ def as_squares(
     """
     standing, believed = places_of_people(people, robot), places_of_tracks(beliefs)
     visible, counted = _viewed(folder, people)
-    return TrueBoxes(
-        frame=standing.frame,
-        id=standing.id,
-        box=floor_squares(standing.position_m),
-        counted=counted,
-        visible=visible,
-    ), TrackBoxes(
-        frame=believed.frame,
-        id=believed.id,
-        box=floor_squares(believed.position_m),
-        confidence=_placed(beliefs)["confidence"].to_numpy(),
-    )
+    confidence = _placed(beliefs)["confidence"].to_numpy()
+    return standing.as_targets(counted, visible), believed.as_candidates(confidence)
 
 
 def _viewed(folder: Path, people: pa.Table) -> tuple[Floats, NDArray[np.bool_]]:

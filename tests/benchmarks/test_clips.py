@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
-from benchmarks.footage import OUT, ClipRow, main
+from benchmarks.footage import OUT, clip_metrics, main
 from benchmarks.real_clips import ClipResult, open_clips, score_clip
 from peopleboy.bad_input import BadInput
 from tests.helpers.calls.refused import assert_names, refused
@@ -56,7 +56,7 @@ def test_a_bicycle_is_neither_hit_nor_miss(tmp_path: Path) -> None:
     write_clip(tmp_path / "street")
     (clip,) = open_clips(tmp_path)
     for people in ((WALKER,), (WALKER, BICYCLE)):
-        figures = ClipRow(clip, "x", [ClipResult(score_clip(clip, said(*people)), 0.1)]).figures()
+        figures = clip_metrics(clip, [ClipResult(score_clip(clip, said(*people)), 0.1)])
         assert (figures["HOTA"], figures["CP"], figures["CR"]) == pytest.approx(
             (100.0, 100.0, 100.0), abs=0.1
         )
@@ -68,15 +68,15 @@ def test_a_track_on_nobody_is_false_and_counted_per_thousand_frames(tmp_path: Pa
     write_clip(tmp_path / "street")
     (clip,) = open_clips(tmp_path)
     scores = score_clip(clip, said(WALKER, (0.0, 0.0, 10.0, 20.0)))
-    row = ClipRow(clip, "x", [ClipResult(scores, 0.1), ClipResult(scores, 0.1)])
-    assert row.figures()["false tracks per 1000"] == pytest.approx(1000.0 / FRAMES)
-    assert row.figures()["CP"] == pytest.approx(50.0)
+    metrics = clip_metrics(clip, [ClipResult(scores, 0.1), ClipResult(scores, 0.1)])
+    assert metrics["false tracks per 1000"] == pytest.approx(1000.0 / FRAMES)
+    assert metrics["CP"] == pytest.approx(50.0)
 
 
 def test_of_a_clip_with_one_person_annotated_nothing_is_said_of_other_boxes(tmp_path: Path) -> None:
     write_clip(tmp_path / "airfield", single=True)
     (clip,) = open_clips(tmp_path)
-    figures = ClipRow(clip, "x", [ClipResult(score_clip(clip, said(WALKER, BICYCLE)), 0.1)]).figures()
+    figures = clip_metrics(clip, [ClipResult(score_clip(clip, said(WALKER, BICYCLE)), 0.1)])
     assert figures["one id"] == 100.0
     assert np.isnan([figures[name] for name in ("HOTA", "IDF1", "MOTA", "CP", "false tracks per 1000")]).all()
 

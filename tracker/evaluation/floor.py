@@ -10,7 +10,7 @@ import numpy as np
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.boxes import Floats
-from peopleboy.tracker.evaluation.sequence import Ints
+from peopleboy.tracker.evaluation.sequence import Bools, Ints, TrackBoxes, TrueBoxes
 
 CHI2_95: Final = 5.991  # quantile of chi squared with two degrees of freedom
 SIDE_M: Final = 1.5
@@ -50,6 +50,16 @@ class Places:
         index = {key: k for k, key in enumerate(zip(self.frame.tolist(), self.id.tolist(), strict=True))}
         wanted = zip(frame.tolist(), number.tolist(), strict=True)
         return np.array([index.get(key, -1) for key in wanted], dtype=np.int64)
+
+    def as_targets(self, counted: Bools, visible: Floats) -> TrueBoxes:
+        """Return squares on the floor [m] that stand for people, who count and are visible as given (N,)."""
+        box = floor_squares(self.position_m)
+        return TrueBoxes(frame=self.frame, id=self.id, box=box, counted=counted, visible=visible)
+
+    def as_candidates(self, confidence: Floats) -> TrackBoxes:
+        """Return squares on the floor [m] that stand for tracks, each with a confidence (N,)."""
+        box = floor_squares(self.position_m)
+        return TrackBoxes(frame=self.frame, id=self.id, box=box, confidence=confidence)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
