@@ -21,7 +21,6 @@ FARTHEST_M: Final = 10.0
 LEAST_PX: Final = 200  # of a person who counts; fewer are a hand or a foot
 RADIUS_M: Final = 1.0
 """SA 4.7.2: a person is found if a track lies within this distance."""
-CLOSE_M: Final = 0.3
 
 _PRIORITY_M: Final = 10.0  # by which people who count are preferred in the assignment
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from itertools import combinations
 from typing import Any, Final
 
@@ -118,23 +118,6 @@ _EARS: Final = slice(3, 5)  # of the 17 joints
 _GUESS_OFF: Final = (0.2, 0.2, math.radians(5.0), math.radians(3.0))  # of a webcam that was put up by hand
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Film:
-    """What there is to triangulate.
-
-    Attributes:
-        columns: (T, C) of the hat in the webcams [px].
-        hat_m: (T, 2) where it is.
-        is_still: (T,) whether the person stands.
-        seen_rad: (T,) bearing in the room of the silhouette in the panorama; NaN where there is none.
-    """
-
-    columns: Floats
-    hat_m: Floats
-    is_still: NDArray[np.bool_]
-    seen_rad: Floats
-
-
 def measure_webcams(seed: int) -> dict[str, Any]:
     """Play the scene, calibrate the webcams at known places, and measure.
 
@@ -155,17 +138,19 @@ def measure_webcams(seed: int) -> dict[str, Any]:
     cameras = webcam_names(config)
     true = true_webcams(config, cameras)
     check_views(true, np.array([point.at_m for point in config.people[0].path[:KNOWN]]))
-    film = _shoot(config, cameras, round(scenario.duration_s * config.control_hz))
+    in_images, hat_m, is_still, bearing = _shoot(
+        config, cameras, round(scenario.duration_s * config.control_hz)
+    )
     width = config.robot.cameras[cameras[0]].camera.width
-    places = _standing(film)
-    columns = np.array([film.columns[place].mean(axis=0) for place in places])
-    stood = np.array([film.hat_m[place].mean(axis=0) for place in places])
+    places = _standing(is_still)
+    columns = np.array([in_images[place].mean(axis=0) for place in places])
+    stood = np.array([hat_m[place].mean(axis=0) for place in places])
     guess = true + stream(seed, "webcams.guess").uniform(-1.0, 1.0, true.shape) * _GUESS_OFF
     webcams = calibrate(columns[:KNOWN], stood[:KNOWN], guess, width)
     off = np.hypot(*(triangulate(bearings(columns, webcams, width), webcams) - stood).T)
 
     walk, robot = slice(places[-1].stop, None), np.array(config.robot.at_m)
-    true_m, seen_rad = film.hat_m[walk], film.seen_rad[walk]
+    true_m, seen_rad = hat_m[walk], bearing[walk]
     count, late = len(cameras), round(SKEW_S * config.control_hz)
     delays = {
         "at_once": [0] * count,
@@ -173,7 +158,7 @@ def measure_webcams(seed: int) -> dict[str, Any]:
         "late": [late] * count,
     }
     walking = {
-        name: triangulate(bearings(_delayed(film.columns, each)[walk], webcams, width), webcams)
+        name: triangulate(bearings(_delayed(in_images, each)[walk], webcams, width), webcams)
         for name, each in delays.items()
     }
 
@@ -213,7 +198,15 @@ def check_views(webcams: Floats, places_m: Floats) -> None:
             raise BadInput(f"webcam {number}: looks at {seen} of the known places; 4 are needed")
 
 
-def _shoot(config: WorldConfig, cameras: Sequence[str], frames: int) -> _Film:
+def _shoot(
+    config: WorldConfig, cameras: Sequence[str], frames: int
+) -> tuple[Floats, Floats, NDArray[np.bool_], Floats]:
+    """Play the scene.
+
+    Returns:
+        (T, C) columns [px] of the hat in the webcams; (T, 2) where it is [m]; (T,) whether the person stands;
+        and (T,) the bearing in the room [rad] of the silhouette in the panorama, NaN where there is none.
+    """
     background = _empty_room(config)
     columns = np.full((frames, len(cameras)), np.nan)
     hat, speed, seen = np.zeros((frames, 2)), np.zeros(frames), np.full(frames, np.nan)
@@ -227,12 +220,10 @@ def _shoot(config: WorldConfig, cameras: Sequence[str], frames: int) -> _Film:
             if PANORAMA in images:
                 seen[frame] = _seen(images[PANORAMA], background, config.robot.heading_rad)
             (person,) = world.truth().people
-            hat[frame], speed[frame] = (
-                person.joints_m[_EARS, :2].mean(axis=0),
-                math.hypot(*person.velocity_m_s),
-            )
+            hat[frame] = person.joints_m[_EARS, :2].mean(axis=0)
+            speed[frame] = math.hypot(*person.velocity_m_s)
             world.step(0.0, 0.0)
-    return _Film(columns, hat, speed < _STILL_M_S, seen)
+    return columns, hat, speed < _STILL_M_S, seen
 
 
 def _empty_room(config: WorldConfig) -> Background:
@@ -247,11 +238,11 @@ def _seen(image: NDArray[np.uint8], background: Background, heading_rad: float) 
     return math.nan if figure is None else heading_rad + figure.bearing_rad
 
 
-def _standing(film: _Film) -> list[slice]:
+def _standing(is_still: NDArray[np.bool_]) -> list[slice]:
     """Find the spans in which the person stands for a second or more, the middle of each."""
-    edges = np.diff(np.concatenate([[0], film.is_still.astype(np.int8), [0]]))
+    edges = np.diff(np.concatenate([[0], is_still.astype(np.int8), [0]]))
     spans = zip(np.flatnonzero(edges == 1).tolist(), np.flatnonzero(edges == -1).tolist(), strict=True)
-    return [slice(start + 4, end - 2) for start, end in spans if end - start >= 15 and end < len(film.hat_m)]
+    return [slice(start + 4, end - 2) for start, end in spans if end - start >= 15 and end < len(is_still)]
 
 
 def true_webcams(config: WorldConfig, cameras: Sequence[str]) -> Floats:
