@@ -20,7 +20,7 @@ OTHERS_OUT := not heavy and not install and not pages
 test: $(READY)
 	$(BIN)/python -m pytest -n 2 --dist loadfile $(if $(THOROUGH),-m '$(OTHERS_OUT)',$(if $(SLOW),-m '$(OTHERS_OUT) and not thorough'))
 
-# All that the README, the tutorials and the pages on tasks tell their readers to type.
+# Run every command and code block of the README, the tutorials and the how-to guides.
 test-pages: $(READY)
 	$(BIN)/python -m pytest -n 2 -m pages
 

@@ -106,7 +106,7 @@ def test_a_tracker_a_controller_and_tracks_of_ones_own_go_through_everything_fro
     whole: Path, tmp_path: Path
 ) -> None:
     path = os.pathsep.join([str(whole), os.environ["PATH"]])
-    for block in blocks(DOCS / "tasks" / "own-tracker.md"):
+    for block in blocks(DOCS / "guides" / "own-tracker.md"):
         if block.title:
             (tmp_path / block.title).write_text(block.code, encoding="utf-8")
             continue

@@ -11,7 +11,7 @@ import pytest
 from peopleboy.scenarios.cli import main
 from tests.helpers.pages import DOCS, Block, blocks
 
-PAGES = sorted([*DOCS.glob("tutorial/*.md"), *DOCS.glob("tasks/*.md")])
+PAGES = sorted([*DOCS.glob("tutorial/*.md"), *DOCS.glob("guides/*.md")])
 
 
 @pytest.mark.pages

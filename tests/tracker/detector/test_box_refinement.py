@@ -13,7 +13,7 @@ from peopleboy.tracker.detector.box_refinement import (
 from peopleboy.tracker.detector.detections import Detections
 from tests.helpers.images.drawn_crops import drawn_weights
 
-PAGE = Path(__file__).parents[3] / "docs" / "how" / "detector.md"
+PAGE = Path(__file__).parents[3] / "docs" / "explanation" / "detector.md"
 FOUND = Detections.from_trees(
     np.array([[40.0, 30.0, 12.0, 60.0], [100.0, 40.0, 10.0, 50.0]]), np.array([1.5, -1.0])
 )

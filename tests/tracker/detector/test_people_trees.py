@@ -13,7 +13,7 @@ from peopleboy.tracker.detector.window import WindowKind
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_trees import PATCHES, PLACING_TREES, TREES, drawn_cascade, drawn_placing
 
-PAGE = Path(__file__).parents[3] / "docs" / "how" / "detector.md"
+PAGE = Path(__file__).parents[3] / "docs" / "explanation" / "detector.md"
 PLACING = (OFFSETS, PLACING_TREES)
 
 

@@ -16,7 +16,7 @@ def image() -> np.ndarray:
     return np.random.default_rng(2).integers(0, 256, (120, 160)).astype(np.uint8)
 
 
-PAGE = Path(__file__).parents[3] / "docs" / "how" / "detector.md"
+PAGE = Path(__file__).parents[3] / "docs" / "explanation" / "detector.md"
 FIRST = Detections.from_trees(
     np.array([[40.0, 30.0, 12.0, 60.0], [100.0, 40.0, 10.0, 50.0]]), np.array([1.5, -1.0])
 )
