@@ -167,11 +167,3 @@ class PersonConfig(ActorConfig):
                         f"{b.at_m!r} is the point before; use pause_s there to stay",
                         key=("path", index, "at_m"),
                     )
-            if not self.path:
-                raise BadInput("must have at least 1 entries, got ()", key=("path",))
-            for index, (a, b) in enumerate(pairwise(self.path), start=1):
-                if math.dist(a.at_m, b.at_m) < _SAME_POINT_M:
-                    raise BadInput(
-                        f"{b.at_m!r} is the point before; use pause_s there to stay",
-                        key=("path", index, "at_m"),
-                    )
