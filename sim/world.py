@@ -16,10 +16,8 @@ from peopleboy.sim.cameras.imaging.surfaces import MaterialTable, make_material_
 from peopleboy.sim.cameras.kinds import flat_geometry, kind_of
 from peopleboy.sim.cameras.rig import Rig
 from peopleboy.sim.cameras.sensors import CameraView
-from peopleboy.sim.geometry.camera_geometry import CameraGeometry
-from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
-from peopleboy.sim.observation import Observation, Senses
-from peopleboy.sim.on_demand import OnDemand
+from peopleboy.sim.geometry.pinhole import CameraGeometry, Matrix, Pinhole
+from peopleboy.sim.observation import Observation, OnDemand, Senses
 from peopleboy.sim.people.crowd import Crowd, Handling
 from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.physics.physics_engine import Physics, open_physics
@@ -34,10 +32,9 @@ from peopleboy.sim.robot.robot_body import NAME as ROBOT
 from peopleboy.sim.robot.robot_body import RADIUS_M, robot_material
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shape_table import ShapeTable, make_shape_table
-from peopleboy.sim.truth.scenes import SCENE, ImageFreeTruth, Records, Scenes
+from peopleboy.sim.truth.scenes import SCENE, ImageFreeTruth, Records, Scenes, known_people, look_at_people
 from peopleboy.sim.truth.truth import BORDER, Box, Truth
 from peopleboy.sim.truth.truth_maker import TruthMaker
-from peopleboy.sim.truth.visibility import known_people, look_at_people
 from peopleboy.sim.world_config import WorldConfig
 
 _STANDS_OUT_K = 5.0  # from the surroundings: what differs by more is seen in mirrors

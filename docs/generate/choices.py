@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from docs.generate.markdown import table
 from peopleboy.sim.people.body.clothes import BOTTOMS, HAIR, SHOES, TOPS, Garment
-from peopleboy.sim.places.furniture.thing_kinds import KINDS
+from peopleboy.sim.places.furniture.thing_config import KINDS
 from peopleboy.sim.places.pieces import Kind
 from peopleboy.sim.places.place_config import (
     CorridorConfig,
@@ -17,8 +17,7 @@ from peopleboy.sim.places.place_config import (
     TCorridorConfig,
     lay_out,
 )
-from peopleboy.sim.shapes.colours import COLOURS
-from peopleboy.sim.shapes.materials import Rgb
+from peopleboy.sim.shapes.materials import COLOURS, Rgb
 
 _PLACES: Mapping[str, PlaceConfig] = {
     "room": RoomConfig(kind="room", length_m=8.0, width_m=5.0),

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from docs.generate.markdown import words
-from peopleboy.sim.shapes.colours import COLOURS
+from peopleboy.sim.shapes.materials import COLOURS
 
 Schema = dict[str, Any]
 

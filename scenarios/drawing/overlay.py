@@ -20,9 +20,8 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.drawing.palette import TRUTH, Rgb, faded, track_colour
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import colour_from_thermal, shown_to_people
-from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import around_px
-from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.geometry.pinhole import CameraGeometry, Matrix
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.boxes import Box, corners

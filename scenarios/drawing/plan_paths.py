@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.drawing.plan_place import footprints
 from peopleboy.scenarios.drawing.plan_sheet import Labels
 from peopleboy.sim.people.person import PersonConfig
-from peopleboy.sim.people.walking.surroundings import ALONE
-from peopleboy.sim.people.walking.walker import Walker
+from peopleboy.sim.people.walking.walker import ALONE, Walker
 from peopleboy.sim.places.moving import ActionKind, Mover, Stance
 from peopleboy.sim.places.place import Fixture, Place
 from peopleboy.sim.truth.events import STANDS_S

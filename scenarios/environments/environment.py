@@ -42,7 +42,7 @@ from peopleboy.scenarios.loop.tracker_by_name import make_checked_tracker, track
 from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.scores.following_score import TARGET, following_task
-from peopleboy.sim.batch.snapshot import Snapshot, take_snapshot
+from peopleboy.sim.batch.sensing import Snapshot, take_snapshot
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.view import BLIND

@@ -24,9 +24,9 @@ from peopleboy.scenarios.scores.comfort_metrics import score_company
 from peopleboy.scenarios.scores.corridor_metrics import score_way
 from peopleboy.scenarios.scores.following_metrics import FollowingTask
 from peopleboy.scenarios.scores.following_score import TARGET, Spot, score_instants, track_on
-from peopleboy.sim.batch.snapshot import Snapshot
+from peopleboy.sim.batch.sensing import Snapshot
 from peopleboy.sim.places.floor_plan import FloorPlan
-from peopleboy.sim.shapes.joined_tables import Numbers, ends
+from peopleboy.sim.shapes.shape_table import Numbers, ends
 from peopleboy.sim.truth.scenes import ImageFreeTruth, Scenes
 from peopleboy.sim.truth.truth import Box
 from peopleboy.tracker.track import Track

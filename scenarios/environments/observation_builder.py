@@ -18,7 +18,7 @@ from peopleboy.scenarios.environments.observations import (
     observe_truth,
     read_sensors,
 )
-from peopleboy.sim.batch.snapshot import Snapshot
+from peopleboy.sim.batch.sensing import Snapshot
 from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.scenes import Records

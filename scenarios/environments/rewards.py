@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.robot.robot_body import RADIUS_M
-from peopleboy.sim.shapes.joined_tables import Numbers
+from peopleboy.sim.shapes.shape_table import Numbers
 from peopleboy.sim.truth.scenes import SEEN, Records
 
 # How the robot stands to the person to follow and to the corridor, and what happens to it (kernels).

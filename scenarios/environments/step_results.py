@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.environments.episodes import Metrics, StepOutcomes
 from peopleboy.scenarios.environments.rewards import TERMS
-from peopleboy.sim.shapes.joined_tables import Numbers
+from peopleboy.sim.shapes.shape_table import Numbers
 
 Infos = dict[str, Any]
 

@@ -17,9 +17,9 @@ from peopleboy.scenarios.environments.episodes import LiveEpisodes
 from peopleboy.scenarios.environments.observations import Arrays
 from peopleboy.scenarios.environments.step_results import Infos, StepResults, join_infos
 from peopleboy.sim.batch.batch_cameras import WorkerPool
-from peopleboy.sim.batch.snapshot import Snapshot
+from peopleboy.sim.batch.sensing import Snapshot
 from peopleboy.sim.batch.world_batch import WorldBatch
-from peopleboy.sim.shapes.joined_tables import Numbers
+from peopleboy.sim.shapes.shape_table import Numbers
 
 Flags = NDArray[np.bool_]
 _OF_GYMNASIUM = {"max_episode_steps", "autoreset_mode"}

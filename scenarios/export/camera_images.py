@@ -28,7 +28,7 @@ from peopleboy.scenarios.run_folder.image_files import (
     write_png,
 )
 from peopleboy.sim.cameras.kinds import Stored, kind_of
-from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.pinhole import CameraGeometry
 from peopleboy.sim.people.person import PART_CLASSES
 from peopleboy.sim.truth.truth import Box, Truth
 

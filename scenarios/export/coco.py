@@ -46,8 +46,7 @@ from peopleboy.scenarios.run_folder.image_files import (
 )
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.kinds import image_folders, with_boxes
-from peopleboy.sim.geometry.camera_geometry import CameraGeometry
-from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
+from peopleboy.sim.geometry.pinhole import CameraGeometry, Matrix, Pinhole
 from peopleboy.sim.people.body.skeleton import JOINT_NAMES
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration

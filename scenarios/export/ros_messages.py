@@ -25,8 +25,7 @@ from peopleboy.scenarios.run_folder.truth_files import further_cameras
 from peopleboy.sim.cameras.camera_config import DepthConfig, ThermalConfig
 from peopleboy.sim.cameras.depth import points_of
 from peopleboy.sim.cameras.thermal import encode_16bit
-from peopleboy.sim.geometry.camera_geometry import CameraGeometry
-from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.geometry.pinhole import CameraGeometry, Pinhole
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, SONAR_POSITION_M, WHEEL_DISTANCE_M
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.truth import Box, Truth

@@ -23,7 +23,7 @@ from peopleboy.scenarios.files.scenario_file import ScenarioSpec
 from peopleboy.sim.people.person_config import Waypoint
 from peopleboy.sim.places.floor_plan import FloorPlan, Rectangle
 from peopleboy.sim.places.furniture.place_things import describe_floor, name_things
-from peopleboy.sim.places.furniture.thing_kinds import KINDS
+from peopleboy.sim.places.furniture.thing_config import KINDS
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.world_config import CONTROL_HZ
 from peopleboy.tracker.trackers import TRACKERS

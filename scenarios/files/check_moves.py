@@ -12,11 +12,10 @@ import numpy as np
 from peopleboy.bad_input import BadInput, Key
 from peopleboy.scenarios.files.people import PersonSpec
 from peopleboy.sim.people.body.postures import Posture
-from peopleboy.sim.people.walking.surroundings import ALONE
-from peopleboy.sim.people.walking.walker import Walker
+from peopleboy.sim.people.walking.walker import ALONE, Walker
+from peopleboy.sim.places.extent import BoxSet, boxes_of, overlaps
 from peopleboy.sim.places.moving import Action, Mover
 from peopleboy.sim.places.place import HEAD_M, STEP_M, Place
-from peopleboy.sim.places.solid_boxes import BoxSet, boxes_of, overlaps
 
 REACH_M = 0.75  # from a person's middle, on the floor, to what the hand holds, leaning included
 _HOLDS_M = 0.08  # to what one moves

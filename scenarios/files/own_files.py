@@ -10,8 +10,7 @@ from xml.etree import ElementTree
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.scenario_file import ScenarioSpec
-from peopleboy.sim.physics.model_files import is_in_data
-from peopleboy.sim.physics.urdf import MESH_PLACES
+from peopleboy.sim.physics.urdf import MESH_PLACES, is_in_data
 
 # How an OBJ names its materials, and these their textures; the name is a line's last word.
 _NAMED = {".obj": r"^mtllib\s+(?:.*\s)?(\S+)\s*$", ".mtl": r"^(?:map_\w+|bump)\s+(?:.*\s)?(\S+)\s*$"}

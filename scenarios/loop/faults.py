@@ -14,8 +14,7 @@ from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.scenario_file import FaultSpec
 from peopleboy.scenarios.loop.loop import Stage, TrackerDown
 from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.observation import Observation
-from peopleboy.sim.on_demand import OnDemand
+from peopleboy.sim.observation import Observation, OnDemand
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Track

@@ -11,7 +11,7 @@ from peopleboy.scenarios.files.validation import validated
 from peopleboy.scenarios.random_worlds.distribution import Draws
 from peopleboy.scenarios.random_worlds.draw_scene import Data, draw_point, rounded
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.places.furniture.thing_kinds import KINDS
+from peopleboy.sim.places.furniture.thing_config import KINDS
 
 _TRIES: Final = 12
 _NEAREST_M: Final = 1.0  # to the robot, at first

@@ -17,7 +17,7 @@ from peopleboy.sim.cameras.camera_config import COLOUR_BASELINE_M, COLOUR_ZOOM
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place_config import PlaceConfig, lay_out
-from peopleboy.sim.shapes.colours import COLOURS
+from peopleboy.sim.shapes.materials import COLOURS
 
 Data = dict[str, Any]
 

@@ -24,7 +24,7 @@ from peopleboy.scenarios.random_worlds.draw_scene import (
     rounded,
     with_one_more,
 )
-from peopleboy.sim.places.furniture.thing_kinds import KINDS
+from peopleboy.sim.places.furniture.thing_config import KINDS
 from peopleboy.sim.places.pieces import Kind
 from peopleboy.sim.random_streams import stream
 

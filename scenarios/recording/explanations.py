@@ -26,9 +26,8 @@ from peopleboy.scenarios.recording.marks import (
     particle_points,
 )
 from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import around_px
-from peopleboy.sim.geometry.pinhole import invert_pose, transform
+from peopleboy.sim.geometry.pinhole import CameraGeometry, invert_pose, transform
 from peopleboy.tracker.attention.people.attentive_explanation import AttentiveExplanation
 from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanation
 from peopleboy.tracker.contour.measurement.contour import FEET, SECTIONS

@@ -25,9 +25,8 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from peopleboy.sim.cameras.camera_config import DepthConfig
-from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import Panorama
-from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.geometry.pinhole import CameraGeometry, Pinhole
 from peopleboy.sim.world_config import WorldConfig
 
 THERMAL: Final = "world/robot/thermal"

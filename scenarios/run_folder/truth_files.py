@@ -30,7 +30,7 @@ from peopleboy.scenarios.run_folder.run_tables import (
 )
 from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig
 from peopleboy.sim.cameras.kinds import with_boxes
-from peopleboy.sim.truth.backgrounds import Backgrounds
+from peopleboy.sim.truth.truth import Backgrounds
 from peopleboy.tracker.evaluation.mot_files import read_truth, truth_line
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind

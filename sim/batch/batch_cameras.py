@@ -13,15 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.sim.batch.drive import JoinedWorlds
 from peopleboy.sim.batch.image_kernels import Array, Poses, join_scenes
-from peopleboy.sim.batch.joined_worlds import JoinedWorlds
 from peopleboy.sim.batch.render_stages import Images, has_stage, make_stage
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import image_names, name_images
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.on_demand import OnDemand
+from peopleboy.sim.observation import OnDemand
 from peopleboy.sim.physics.kinematic import turn_wheels
-from peopleboy.sim.shapes.joined_tables import Numbers
+from peopleboy.sim.shapes.shape_table import Numbers
 from peopleboy.sim.world import World
 
 Task = Callable[[], None]

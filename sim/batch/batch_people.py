@@ -1,4 +1,4 @@
-"""The people of many worlds: they walk, and their visible bodies are posed, by kernels over all worlds."""
+"""The visible bodies of people in many worlds, posed by kernels over all of them."""
 
 from __future__ import annotations
 
@@ -8,88 +8,17 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-from peopleboy.sim.batch.joined_worlds import JoinedWorlds
+from peopleboy.sim.batch.drive import BatchWalks, JoinedWorlds
 from peopleboy.sim.geometry.poses import quaternions
 from peopleboy.sim.people.body.body_placement import carry, put_on_floor
 from peopleboy.sim.people.body.stance import STANCE, Builds, Stances, hold, move_limbs
 from peopleboy.sim.people.person import Person, pace_m_s
-from peopleboy.sim.people.walking.script import WALK, Records, Scripts, join_records, join_scripts
-from peopleboy.sim.people.walking.walk_kernels import walk_on
+from peopleboy.sim.people.walking.script import Records, join_records
 from peopleboy.sim.physics.kinematic import Kinematic
 from peopleboy.sim.physics.solid_shapes import Array
-from peopleboy.sim.shapes.joined_tables import Numbers, ends
+from peopleboy.sim.shapes.shape_table import Numbers
 from peopleboy.sim.world import World
-
-_TWO = 2.0  # see `walk_on`
-
-
-class BatchWalks:
-    """The people of B worlds, whose records lie in one array from now on.
-
-    Attributes:
-        first: (B + 1,) where the people of each world begin.
-        world: (Q,) number of each person's world.
-        is_scripted: (B,) worlds in which all walk here; in others they walk by themselves.
-        makes_way: (B,) those of them in which a person makes way.
-        records: (Q,) WALK of all people.
-    """
-
-    def __init__(self, worlds: Sequence[World]) -> None:
-        crowds = [world.crowd for world in worlds]
-        counts = [len(crowd.people) for crowd in crowds]
-        self.first, self.world = ends(counts), np.repeat(np.arange(len(counts)), counts)
-        self.is_scripted = np.array([crowd.is_scripted for crowd in crowds], np.bool_)
-        self.makes_way = np.array(
-            [crowd.is_scripted and bool(crowd.walks["yields"].any()) for crowd in crowds], np.bool_
-        )
-        self.records = join_records([crowd.walks for crowd in crowds], WALK)
-        self._joined = JoinedWalks(
-            is_scripted=self.is_scripted,
-            first=self.first,
-            records=self.records,
-            scripts=join_scripts([script for crowd in crowds for script in crowd.scripts]),
-            walls=np.concatenate([np.empty((0, 4)), *(crowd.walls for crowd in crowds)]),
-            first_wall=ends([len(crowd.walls) for crowd in crowds]),
-        )
-        for crowd, first, end in zip(crowds, self.first, self.first[1:], strict=False):
-            crowd.rebind(self.records[first:end])
-
-    def step(self, active: Numbers, times_s: Array, dt_s: float, robots: Array) -> None:
-        """Let all walk on who are guided by scripts; the others have just walked.
-
-        Args:
-            active: (G,) numbers of the worlds.
-            times_s: (G,) [s] in each of them at the start of the step.
-            dt_s: [s] length of the step.
-            robots: (G, 5) their robots, as of `RobotMotion`; velocities count where a person makes way.
-        """
-        _walk_worlds(active, self._joined, times_s, dt_s, robots, _TWO)
-
-
-class JoinedWalks(NamedTuple):
-    """All people and walls of B worlds, as kernels take them; see `BatchWalks`."""
-
-    is_scripted: NDArray[np.bool_]
-    first: Numbers
-    records: Records
-    scripts: Scripts
-    walls: Array
-    first_wall: Numbers
-
-
-@njit(cache=True, nogil=True)
-def _walk_worlds(
-    active: Numbers, walks: JoinedWalks, times_s: Array, dt_s: float, robots: Array, two: float
-) -> None:
-    for row in range(len(active)):
-        world = active[row]
-        if walks.is_scripted[world]:
-            robot = (robots[row, 0], robots[row, 1], robots[row, 2], robots[row, 3], robots[row, 4])
-            walls = walks.walls[walks.first_wall[world] : walks.first_wall[world + 1]]
-            first, end = walks.first[world], walks.first[world + 1]
-            walk_on(first, end, walks.records, walks.scripts, times_s[row], dt_s, robot, walls, two)
 
 
 class Parts(NamedTuple):

@@ -1,4 +1,4 @@
-"""The robots of many worlds: one control step of their wheels, with the people whom they may run into."""
+"""One control step of many worlds: their joined states, who walks where, and the robots among them."""
 
 from __future__ import annotations
 
@@ -10,17 +10,160 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.batch.batch_people import BatchWalks
-from peopleboy.sim.batch.joined_worlds import JoinedWorlds, slice_world
+from peopleboy.sim.people.walking.script import WALK, Records, Scripts, join_records, join_scripts
+from peopleboy.sim.people.walking.walk_kernels import walk_on
 from peopleboy.sim.physics.kinematic import Kinematic
-from peopleboy.sim.physics.solid_shapes import Array, Placements, refresh
-from peopleboy.sim.physics.vehicle import Vehicle, VehicleMotion, advance
+from peopleboy.sim.physics.solid_shapes import Array, Placements, Solids, refresh
+from peopleboy.sim.physics.vehicle import Vehicle, VehicleMotion, VehicleState, advance
 from peopleboy.sim.robot.peoplebot import Gears, approach_target, count_travel
 from peopleboy.sim.robot.robot_body import WHEEL_RADIUS_M, wheel_speeds
-from peopleboy.sim.shapes.joined_tables import Numbers
+from peopleboy.sim.shapes.shape_table import JoinedTables, Numbers, ends, join_tables, table_of
 from peopleboy.sim.world import World
 
+
+class JoinedWorlds(NamedTuple):
+    """B worlds; numbers within them are those of each world by itself.
+
+    Attributes:
+        bodies: of all worlds, one world after the other.
+        tables: of their solids.
+        poses, boxes: of all solids, as in `Solids`.
+        motion: of each world's vehicle, one row each.
+        own: (B,) number of the vehicle's body.
+        first_body, first_part: (B + 1,) where those of each world begin, and where the last end.
+    """
+
+    bodies: Placements
+    tables: JoinedTables
+    poses: Array
+    boxes: Array
+    motion: VehicleMotion
+    own: Numbers
+    first_body: Numbers
+    first_part: Numbers
+
+
+def join_worlds(states: Sequence[VehicleState]) -> tuple[JoinedWorlds, list[VehicleState]]:
+    """Copy the states of worlds into arrays of all of them.
+
+    Returns:
+        The arrays, and each world's state anew, which lies in them.
+    """
+    joined = JoinedWorlds(
+        bodies=Placements(*map(np.concatenate, zip(*(state.bodies for state in states), strict=True))),
+        tables=join_tables([state.solids.table for state in states]),
+        poses=np.concatenate([state.solids.poses for state in states]),
+        boxes=np.concatenate([state.solids.boxes for state in states]),
+        motion=VehicleMotion(*map(np.stack, zip(*(state.motion for state in states), strict=True))),
+        own=np.array([state.own for state in states], np.int64),
+        first_body=ends([len(state.bodies.places) for state in states]),
+        first_part=ends([len(state.bodies.of_part) for state in states]),
+    )
+    return joined, [_state_in(joined, number, state) for number, state in enumerate(states)]
+
+
+def _state_in(joined: JoinedWorlds, number: int, before: VehicleState) -> VehicleState:
+    bodies, solids = slice_world.py_func(joined, number)
+    motion = VehicleMotion(*(array[number] for array in joined.motion))
+    return before._replace(bodies=bodies, solids=solids._replace(table=before.solids.table), motion=motion)
+
+
+@njit(cache=True, nogil=True)
+def slice_world(joined: JoinedWorlds, number: int) -> tuple[Placements, Solids]:
+    """Bodies and solids of one of the worlds."""
+    b, b_end = joined.first_body[number], joined.first_body[number + 1]
+    p, p_end = joined.first_part[number], joined.first_part[number + 1]
+    s, s_end = joined.tables.shape[number], joined.tables.shape[number + 1]
+    bodies = Placements(
+        joined.bodies.places[b:b_end],
+        joined.bodies.hidden[b:b_end],
+        joined.bodies.stale[b:b_end],
+        joined.bodies.of_part[p:p_end],
+        joined.bodies.base_from_part[p:p_end],
+        joined.bodies.poses[p:p_end],
+    )
+    return bodies, Solids(table_of(joined.tables, number), joined.poses[s:s_end], joined.boxes[s:s_end])
+
+
+@njit(cache=True, nogil=True)
+def refresh_worlds(active: Numbers, joined: JoinedWorlds) -> None:
+    """Bring some of the worlds up to date, as `refresh` does with one."""
+    for number in active:
+        bodies, solids = slice_world(joined, number)
+        refresh(bodies, solids)
+
+
 _wheel_speeds = njit(cache=True)(wheel_speeds)
+
+
+_TWO = 2.0  # see `walk_on`
+
+
+class BatchWalks:
+    """The people of B worlds, whose records lie in one array from now on.
+
+    Attributes:
+        first: (B + 1,) where the people of each world begin.
+        world: (Q,) number of each person's world.
+        is_scripted: (B,) worlds in which all walk here; in others they walk by themselves.
+        makes_way: (B,) those of them in which a person makes way.
+        records: (Q,) WALK of all people.
+    """
+
+    def __init__(self, worlds: Sequence[World]) -> None:
+        crowds = [world.crowd for world in worlds]
+        counts = [len(crowd.people) for crowd in crowds]
+        self.first, self.world = ends(counts), np.repeat(np.arange(len(counts)), counts)
+        self.is_scripted = np.array([crowd.is_scripted for crowd in crowds], np.bool_)
+        self.makes_way = np.array(
+            [crowd.is_scripted and bool(crowd.walks["yields"].any()) for crowd in crowds], np.bool_
+        )
+        self.records = join_records([crowd.walks for crowd in crowds], WALK)
+        self._joined = JoinedWalks(
+            is_scripted=self.is_scripted,
+            first=self.first,
+            records=self.records,
+            scripts=join_scripts([script for crowd in crowds for script in crowd.scripts]),
+            walls=np.concatenate([np.empty((0, 4)), *(crowd.walls for crowd in crowds)]),
+            first_wall=ends([len(crowd.walls) for crowd in crowds]),
+        )
+        for crowd, first, end in zip(crowds, self.first, self.first[1:], strict=False):
+            crowd.rebind(self.records[first:end])
+
+    def step(self, active: Numbers, times_s: Array, dt_s: float, robots: Array) -> None:
+        """Let all walk on who are guided by scripts; the others have just walked.
+
+        Args:
+            active: (G,) numbers of the worlds.
+            times_s: (G,) [s] in each of them at the start of the step.
+            dt_s: [s] length of the step.
+            robots: (G, 5) their robots, as of `RobotMotion`; velocities count where a person makes way.
+        """
+        _walk_worlds(active, self._joined, times_s, dt_s, robots, _TWO)
+
+
+class JoinedWalks(NamedTuple):
+    """All people and walls of B worlds, as kernels take them; see `BatchWalks`."""
+
+    is_scripted: NDArray[np.bool_]
+    first: Numbers
+    records: Records
+    scripts: Scripts
+    walls: Array
+    first_wall: Numbers
+
+
+@njit(cache=True, nogil=True)
+def _walk_worlds(
+    active: Numbers, walks: JoinedWalks, times_s: Array, dt_s: float, robots: Array, two: float
+) -> None:
+    for row in range(len(active)):
+        world = active[row]
+        if walks.is_scripted[world]:
+            robot = (robots[row, 0], robots[row, 1], robots[row, 2], robots[row, 3], robots[row, 4])
+            walls = walks.walls[walks.first_wall[world] : walks.first_wall[world + 1]]
+            first, end = walks.first[world], walks.first[world + 1]
+            walk_on(first, end, walks.records, walks.scripts, times_s[row], dt_s, robot, walls, two)
 
 
 class BatchCapsules(NamedTuple):

@@ -17,8 +17,7 @@ from peopleboy.sim.cameras.thermal import radiance_image, to_apparent_c
 from peopleboy.sim.geometry.vectors import from_each, invert
 from peopleboy.sim.rendering.raycast import draw
 from peopleboy.sim.rendering.render_canvas import Canvas, Lens, locate, shade
-from peopleboy.sim.shapes.joined_tables import JoinedTables, Numbers, ends, join_tables, table_of
-from peopleboy.sim.shapes.shape_table import ShapeTable
+from peopleboy.sim.shapes.shape_table import JoinedTables, Numbers, ShapeTable, ends, join_tables, table_of
 
 Array = NDArray[np.float64]
 

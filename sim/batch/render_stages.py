@@ -37,7 +37,7 @@ from peopleboy.sim.cameras.thermal import (
 )
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.rendering.render_canvas import Lens
-from peopleboy.sim.shapes.joined_tables import Numbers
+from peopleboy.sim.shapes.shape_table import Numbers
 from peopleboy.sim.world import World, light_level
 
 Images = tuple[NDArray[Any], ...]

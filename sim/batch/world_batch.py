@@ -10,18 +10,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.batch.batch_cameras import BatchCameras, WorkerPool, shared_cameras
-from peopleboy.sim.batch.batch_people import BatchLimbs, BatchWalks
-from peopleboy.sim.batch.drive import BatchDrive
-from peopleboy.sim.batch.joined_worlds import join_worlds, refresh_worlds
-from peopleboy.sim.batch.sensing import BatchSonar, PeopleVisibility
-from peopleboy.sim.batch.snapshot import BatchImages, SeparateImages, Snapshot, take_snapshot
+from peopleboy.sim.batch.batch_people import BatchLimbs
+from peopleboy.sim.batch.drive import BatchDrive, BatchWalks, join_worlds, refresh_worlds
+from peopleboy.sim.batch.sensing import (
+    BatchImages,
+    BatchSonar,
+    PeopleVisibility,
+    SeparateImages,
+    Snapshot,
+    take_snapshot,
+)
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.kinematic import Kinematic
 from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.robot.robot_body import RADIUS_M, WHEEL_RADIUS_M
-from peopleboy.sim.shapes.joined_tables import Numbers
+from peopleboy.sim.shapes.shape_table import Numbers
 from peopleboy.sim.truth.scenes import SCENE, Scenes
 from peopleboy.sim.world import World
 

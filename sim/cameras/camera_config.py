@@ -10,9 +10,8 @@ from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.settings import Share
-from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import Panorama
-from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.geometry.pinhole import CameraGeometry, Pinhole
 
 # The colour camera sits 6 cm to the left of the thermal one and sees an angle narrower by 1.2 (T eq. 6.1).
 COLOUR_BASELINE_M = 0.06

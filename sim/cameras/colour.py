@@ -10,10 +10,11 @@ from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, Light
 from peopleboy.sim.cameras.imaging.blur import rotation_blur
 from peopleboy.sim.cameras.imaging.lighting import add_contact_shadows, add_reflections
 from peopleboy.sim.cameras.imaging.noise import gaussian
-from peopleboy.sim.cameras.imaging.paint_table import LIGHT_STEP, paint_run
 from peopleboy.sim.cameras.imaging.surfaces import (
+    LIGHT_STEP,
     MaterialTable,
     finish_run,
+    paint_run,
     part_from_pixel,
     pattern_value,
     surface_point,

@@ -32,7 +32,7 @@ from peopleboy.sim.cameras.sensors import (
 )
 from peopleboy.sim.cameras.thermal import encode_16bit
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose, transform
-from peopleboy.sim.on_demand import OnDemand
+from peopleboy.sim.observation import OnDemand
 from peopleboy.sim.rendering.panoramic_renderer import PanoramicRenderer
 from peopleboy.sim.rendering.renderer import PINHOLE_RENDERER, Renderer
 

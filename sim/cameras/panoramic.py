@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.colour import LIGHT, shade_of
 from peopleboy.sim.cameras.imaging.blur import hat_integral
-from peopleboy.sim.cameras.imaging.paint_table import painted
-from peopleboy.sim.cameras.imaging.surfaces import MaterialTable, finish_at, pattern_value
+from peopleboy.sim.cameras.imaging.surfaces import MaterialTable, finish_at, painted, pattern_value
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.vectors import map_point

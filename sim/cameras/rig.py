@@ -9,7 +9,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import image_names, kind_of, name_images
 from peopleboy.sim.cameras.sensors import CameraView, Image, Sensor
-from peopleboy.sim.on_demand import OnDemand
+from peopleboy.sim.observation import OnDemand
 
 
 class Rig:

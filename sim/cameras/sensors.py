@@ -26,9 +26,8 @@ from peopleboy.sim.cameras.imaging.noise import Drift, random_words, skip_gaussi
 from peopleboy.sim.cameras.imaging.surfaces import MaterialTable
 from peopleboy.sim.cameras.panoramic import finer, panorama_image, roll_up, unroll
 from peopleboy.sim.cameras.thermal import Detector, detect, make_detector, surface_image
-from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import Panorama
-from peopleboy.sim.geometry.pinhole import Matrix
+from peopleboy.sim.geometry.pinhole import CameraGeometry, Matrix
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.view import View

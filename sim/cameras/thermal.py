@@ -18,10 +18,11 @@ from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.imaging.blur import optics_blur, rotation_blur
 from peopleboy.sim.cameras.imaging.lighting import add_reflections
 from peopleboy.sim.cameras.imaging.noise import gaussian
-from peopleboy.sim.cameras.imaging.paint_table import KELVIN_STEP, paint_run
 from peopleboy.sim.cameras.imaging.surfaces import (
+    KELVIN_STEP,
     MaterialTable,
     finish_run,
+    paint_run,
     part_from_pixel,
     pattern_value,
     smooth_variation,

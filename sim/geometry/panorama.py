@@ -12,8 +12,7 @@ from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.settings import IN_DEGREES, ByName
-from peopleboy.sim.geometry.camera_geometry import CameraGeometry
-from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
+from peopleboy.sim.geometry.pinhole import CameraGeometry, Matrix, Pinhole
 
 # The cone-shaped mirror of a panoramic camera: how high and how far off the axis it makes a camera see.
 

@@ -1,11 +1,12 @@
-"""Pinhole camera geometry: where it sits, what it sees, which pixel a point falls on."""
+"""What all camera geometries have in common, and the pinhole camera."""
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Annotated
+from typing import Annotated, Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,3 +110,36 @@ def invert_pose(pose: Matrix) -> Matrix:
 def transform(pose: Matrix, points: Matrix) -> Matrix:
     """Map (..., 3) points by a rigid (4, 4) pose."""
     return points @ pose[:3, :3].T + pose[:3, 3]
+
+
+class CameraGeometry(Protocol):
+    """Size and place of a camera, and where in its image a point falls.
+
+    It is a frozen dataclass with the fields `width` and `height`. Image and optical frame are as in
+    `Pinhole`; who needs more, such as a focal length, asks for a `Pinhole`.
+    """
+
+    __dataclass_fields__: ClassVar[dict[str, dataclasses.Field[Any]]]
+
+    @property
+    def width(self) -> int:
+        """[px] columns of the image."""
+        ...
+
+    @property
+    def height(self) -> int:
+        """[px] rows of the image."""
+        ...
+
+    @property
+    def robot_from_camera(self) -> Matrix:
+        """(4, 4) optical frame to robot frame; read-only."""
+        ...
+
+    def project(self, camera_points: Matrix) -> Matrix:
+        """Project (..., 3) points [m] of the optical frame: (..., 2) [px] u, v; NaN where none is."""
+        ...
+
+    def __hash__(self) -> int:
+        """Equal geometries see the same, which is drawn once."""
+        ...

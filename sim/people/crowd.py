@@ -21,8 +21,8 @@ from peopleboy.sim.people.walking.script import (
     join_scripts,
 )
 from peopleboy.sim.people.walking.social_force import PlanarState, robot_motion
-from peopleboy.sim.people.walking.surroundings import Present
 from peopleboy.sim.people.walking.walk_kernels import walk_on
+from peopleboy.sim.people.walking.walker import Present
 from peopleboy.sim.physics.physics_engine import Physics
 from peopleboy.sim.places.moving import Action, Mover, ThingState, ease
 from peopleboy.sim.places.place import Place, air_of, is_outdoors

@@ -38,12 +38,10 @@ from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, joint_offsets, joint_points
 from peopleboy.sim.people.body.stance import POSTURES, STANCE, Builds, Gaze, Stances, hold, move_limbs
-from peopleboy.sim.people.conducts import ConductSituation
-from peopleboy.sim.people.mind import Mind
+from peopleboy.sim.people.conducts import ConductSituation, Mind
 from peopleboy.sim.people.person_config import Arms, PersonConfig, Waypoint
 from peopleboy.sim.people.walking.social_force import PlanarState
-from peopleboy.sim.people.walking.surroundings import AS_PLANNED, Present, Surroundings, Wish
-from peopleboy.sim.people.walking.walker import Walker, timetable
+from peopleboy.sim.people.walking.walker import AS_PLANNED, Present, Surroundings, Walker, Wish, timetable
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import Part
 

@@ -15,7 +15,15 @@ from numpy.typing import ArrayLike, NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.physics.bullet_bodies import AT_ORIGIN, BulletBodies, BulletBody, Place, as_unit
+from peopleboy.sim.physics.bullet_bodies import (
+    AT_ORIGIN,
+    BulletBodies,
+    BulletBody,
+    GivenBodies,
+    Place,
+    SolidBoxes,
+    as_unit,
+)
 from peopleboy.sim.physics.bullet_io import (
     metric_depth,
     projection_matrix,
@@ -24,9 +32,8 @@ from peopleboy.sim.physics.bullet_io import (
     view_matrix,
     visual_shape,
 )
-from peopleboy.sim.physics.bullet_rays import GivenBodies, SolidBoxes
-from peopleboy.sim.physics.model_files import MISSING_PHYSICS, find_model
 from peopleboy.sim.physics.solid_shapes import PartKey
+from peopleboy.sim.physics.urdf import MISSING_PHYSICS, find_model
 from peopleboy.sim.shapes.bounds import FAR_M, NEAR_M
 from peopleboy.sim.shapes.shape_table import VisualShape, as_given
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector, load_triangles

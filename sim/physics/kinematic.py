@@ -15,9 +15,8 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.geometry.vectors import multiply
-from peopleboy.sim.physics.model_files import find_model
 from peopleboy.sim.physics.solid_shapes import PartKey, Placements, Solids, cast, make_solids, refresh
-from peopleboy.sim.physics.urdf import read_links
+from peopleboy.sim.physics.urdf import find_model, read_links
 from peopleboy.sim.physics.vehicle import (
     Vehicle,
     VehicleMotion,

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
-from peopleboy.sim.physics.model_files import MISSING_PHYSICS
 from peopleboy.sim.physics.solid_shapes import PartKey
+from peopleboy.sim.physics.urdf import MISSING_PHYSICS
 from peopleboy.sim.shapes.shape_table import VisualShape
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, Vector
 

@@ -15,8 +15,7 @@ from peopleboy.sim.places.place import Place
 from peopleboy.sim.places.place_config import PlaceConfig, StreetConfig, Temperatures
 from peopleboy.sim.places.rooms import Surfaces, build_place
 from peopleboy.sim.places.street import StreetLook, street_shell
-from peopleboy.sim.shapes.colours import Colour, rgb_of
-from peopleboy.sim.shapes.materials import Material
+from peopleboy.sim.shapes.materials import Colour, Material, rgb_of
 
 _SECOND_SHADE = 0.85  # brightness of a patterned surface's second colour, as a share of the first
 _USUAL_AIR_C = 21.0

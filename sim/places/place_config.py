@@ -12,7 +12,7 @@ from peopleboy.settings import Celsius, Share, Word
 from peopleboy.sim.places.floor_plan import Door, FloorPlan, check_doors
 from peopleboy.sim.places.place import Sun
 from peopleboy.sim.places.rooms import l_corridor, straight_corridor, t_corridor
-from peopleboy.sim.shapes.colours import Colour
+from peopleboy.sim.shapes.materials import Colour
 from peopleboy.wording import hint
 
 Length = Annotated[float, Field(ge=1.5, le=100.0)]

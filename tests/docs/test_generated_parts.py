@@ -13,8 +13,7 @@ from peopleboy.scenarios.cli import cli
 from peopleboy.scenarios.files.robot import RobotSpec
 from peopleboy.scenarios.files.scenario_file import FaultSpec, json_schema
 from peopleboy.settings import settings_of
-from peopleboy.sim.people.person_config import Waypoint
-from peopleboy.sim.people.reaction import Reaction
+from peopleboy.sim.people.person_config import Reaction, Waypoint
 from peopleboy.tracker.contour import contour_config
 from peopleboy.tracker.evaluation.table import FIGURES
 from peopleboy.tracker.trackers import TRACKERS

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from peopleboy.sim.on_demand import OnDemand
+from peopleboy.sim.observation import OnDemand
 from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, THERMAL, Frame, Odometry
 from tests.helpers.calls.refused import refused
 

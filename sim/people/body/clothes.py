@@ -11,8 +11,7 @@ from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.people.body.body_shapes import BODY_PARTS, SIDES
-from peopleboy.sim.shapes.colours import COLOURS, Colour
-from peopleboy.sim.shapes.materials import Material, Pattern, PatternKind, Rgb
+from peopleboy.sim.shapes.materials import COLOURS, Colour, Material, Pattern, PatternKind, Rgb
 from peopleboy.wording import hint
 
 

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from peopleboy.sim.places.furniture.thing_config import ThingConfig
-from peopleboy.sim.places.furniture.thing_kinds import KINDS
+from peopleboy.sim.places.furniture.thing_config import KINDS, ThingConfig
 from peopleboy.sim.places.moving import Stance
 from peopleboy.sim.places.pieces import Kind, Piece
 from peopleboy.sim.places.place import Fixture
-from peopleboy.sim.shapes.colours import rgb_of
-from peopleboy.sim.shapes.materials import Material, Pattern, PatternKind
+from peopleboy.sim.shapes.materials import Material, Pattern, PatternKind, rgb_of
 from peopleboy.sim.shapes.shapes import Part, Vector
 
 _USUAL_AIR_C = 21.0  # for which the kinds' temperatures are given

@@ -10,13 +10,11 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 
 from peopleboy.bad_input import BadInput, found_in
-from peopleboy.sim.physics.model_files import is_in_data
-from peopleboy.sim.physics.urdf import find_urdf
+from peopleboy.sim.physics.urdf import find_urdf, is_in_data
 from peopleboy.sim.places.extent import Extent, fixture_extent, urdf_extent
 from peopleboy.sim.places.floor_plan import FloorPlan, Wall
 from peopleboy.sim.places.furniture.build_thing import build_thing
-from peopleboy.sim.places.furniture.thing_config import ThingConfig
-from peopleboy.sim.places.furniture.thing_kinds import KINDS
+from peopleboy.sim.places.furniture.thing_config import KINDS, ThingConfig
 from peopleboy.sim.places.moving import Stance
 from peopleboy.sim.places.place import Fixture
 from peopleboy.wording import hint

@@ -1,4 +1,4 @@
-"""The settings of a thing: its kind, where it stands, how it looks, and what happens to it."""
+"""Every kind of thing by name, and the settings of a thing: where it stands, how it looks, what it does."""
 
 from __future__ import annotations
 
@@ -8,9 +8,23 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from peopleboy.settings import Celsius, Coordinate, Degrees, Name, Point, Share, Size, Word
-from peopleboy.sim.places.furniture.thing_kinds import KINDS
+from peopleboy.sim.places.furniture import (
+    appliances,
+    furniture_pieces,
+    household_pieces,
+    street_pieces,
+    warm_pieces,
+)
 from peopleboy.sim.places.moving import ActionKind
-from peopleboy.sim.shapes.colours import Colour
+from peopleboy.sim.places.pieces import Kind, kinds_of
+from peopleboy.sim.shapes.materials import Colour
+
+# Listings and the schema show the kinds in this order.
+_MODULES = (warm_pieces, furniture_pieces, household_pieces, appliances, street_pieces)
+KINDS: dict[str, Kind] = {
+    name: kind for module in _MODULES for name, kind in kinds_of(module.__name__).items()
+}
+
 
 ThingKind = Literal[*KINDS, "urdf"]  # type: ignore[valid-type]
 ActionName = Literal[*ActionKind]  # type: ignore[valid-type]

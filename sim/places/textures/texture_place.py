@@ -8,10 +8,12 @@ import numpy as np
 
 from peopleboy.sim.places.extent import Extent, fixture_extent
 from peopleboy.sim.places.place import Fixture, Place
-from peopleboy.sim.places.textures.indoors import paint_ceiling, paint_flooring, paint_plaster
-from peopleboy.sim.places.textures.outdoors import (
+from peopleboy.sim.places.textures.coverings import (
+    paint_ceiling,
     paint_facade,
+    paint_flooring,
     paint_leaves,
+    paint_plaster,
     paint_sky,
     paint_skyline,
     paint_street,

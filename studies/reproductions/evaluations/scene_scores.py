@@ -17,9 +17,8 @@ from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.finished_runs.run_frames import IMAGES
 from peopleboy.scenarios.finished_runs.true_events import PersonNames, TrueEvent, matching
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.truth.backgrounds import Backgrounds
 from peopleboy.sim.truth.events import ThingLog
-from peopleboy.sim.truth.truth import Truth
+from peopleboy.sim.truth.truth import Backgrounds, Truth
 from peopleboy.studies.reproductions.evaluations.playback import Stopwatch, play
 from peopleboy.tracker.frame import DEPTH, Frame
 from peopleboy.tracker.scene_model.geometry import Geometry

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.skeleton import JOINT_NAMES
 from peopleboy.sim.people.person import Person, PlanarState
-from peopleboy.sim.people.walking.surroundings import NOBODY
+from peopleboy.sim.people.walking.walker import NOBODY
 from tests.helpers.worlds.walkers import NO_WALLS
 
 Array = NDArray[np.float64]

@@ -4,7 +4,7 @@ import numpy as np
 
 from peopleboy.sim.people.crowd import those_present
 from peopleboy.sim.people.person import Person, PersonConfig, Waypoint
-from peopleboy.sim.people.walking.surroundings import NOBODY
+from peopleboy.sim.people.walking.walker import NOBODY
 
 NO_WALLS = np.empty((0, 4))
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.sim.people.body.clothes import BOTTOMS, TOPS
-from peopleboy.sim.shapes.colours import COLOURS
+from peopleboy.sim.shapes.materials import COLOURS
 
 NOWHERE = Path("/nowhere")
 

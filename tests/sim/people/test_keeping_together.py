@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from peopleboy.sim.people.conducts import pace_among
 from peopleboy.sim.people.crowd import those_present
-from peopleboy.sim.people.mind import pace_among
 from peopleboy.sim.people.person import Waypoint
 from tests.helpers.worlds.walkers import NO_WALLS, make_person
 

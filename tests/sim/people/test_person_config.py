@@ -14,8 +14,7 @@ from peopleboy.sim.people.body.clothes import (
 )
 from peopleboy.sim.people.person import PersonConfig, Posture, Waypoint
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.shapes.colours import COLOURS
-from peopleboy.sim.shapes.materials import PatternKind
+from peopleboy.sim.shapes.materials import COLOURS, PatternKind
 from tests.helpers.calls.refused import refused
 from tests.helpers.worlds.walkers import make_person, settle
 

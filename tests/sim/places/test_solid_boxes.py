@@ -3,10 +3,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from peopleboy.sim.places.extent import BoxSet, boxes_of, overlaps
 from peopleboy.sim.places.furniture.build_thing import build_thing
 from peopleboy.sim.places.furniture.thing_config import ThingConfig
 from peopleboy.sim.places.moving import Stance
-from peopleboy.sim.places.solid_boxes import BoxSet, boxes_of, overlaps
 
 
 def random_boxes(rng: np.random.Generator, count: int) -> BoxSet:

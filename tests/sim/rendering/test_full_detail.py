@@ -17,9 +17,8 @@ from peopleboy.sim.geometry.pinhole import Pinhole, transform
 from peopleboy.sim.rendering.edges import smooth
 from peopleboy.sim.rendering.full_detail import REACH_M, find_contacts, gap
 from peopleboy.sim.rendering.reflections import EVERY, Reflection, find_reflections
-from peopleboy.sim.rendering.render import cast
 from peopleboy.sim.rendering.render_canvas import Lens
-from peopleboy.sim.rendering.renderer import PINHOLE_RENDERER, RenderPass, Scene
+from peopleboy.sim.rendering.renderer import PINHOLE_RENDERER, RenderPass, Scene, cast
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.shape_table import ShapeTable, VisualShape, make_shape_table
 from peopleboy.sim.shapes.shapes import ShapeKind

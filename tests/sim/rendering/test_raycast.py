@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose, transform
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.bullet import Bullet
-from peopleboy.sim.rendering.render import cast
+from peopleboy.sim.rendering.renderer import cast
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.shape_table import VisualShape, make_shape_table
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind

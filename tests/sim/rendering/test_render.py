@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.bullet import Bullet
-from peopleboy.sim.rendering.render import cast, render
-from peopleboy.sim.rendering.renderer import silhouette_area, silhouette_bounds
+from peopleboy.sim.rendering.renderer import cast, render, silhouette_area, silhouette_bounds
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.shape_table import ShapeTable, VisualShape, make_shape_table
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind

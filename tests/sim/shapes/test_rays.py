@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.rendering.render import cast
+from peopleboy.sim.rendering.renderer import cast
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.rays import hit_shape
 from peopleboy.sim.shapes.shape_table import VisualShape, make_shape_table

@@ -7,9 +7,9 @@ import trimesh
 
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.physics.bullet import Bullet
-from peopleboy.sim.physics.model_files import find_model
+from peopleboy.sim.physics.urdf import find_model
 from peopleboy.sim.places.extent import mesh_extent
-from peopleboy.sim.rendering.render import render
+from peopleboy.sim.rendering.renderer import render
 from peopleboy.sim.shapes.shape_table import make_shape_table
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind, load_triangles
 from tests.helpers.calls.refused import refused

@@ -13,8 +13,8 @@ from peopleboy.sim.places.moving import Action, ActionKind, Mover, Stance
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.places.rooms import build_place, straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.truth.backgrounds import Backgrounds
 from peopleboy.sim.truth.events import STANDS_S, ThingLog
+from peopleboy.sim.truth.truth import Backgrounds
 from peopleboy.sim.world import World
 from peopleboy.sim.world_config import WorldConfig
 from tests.helpers.calls.refused import refused

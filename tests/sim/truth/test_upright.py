@@ -7,7 +7,7 @@ import pytest
 
 from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose, transform
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.truth.visibility import free_ray_shares, stand_before
+from peopleboy.sim.truth.scenes import free_ray_shares, stand_before
 
 SHARES = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 

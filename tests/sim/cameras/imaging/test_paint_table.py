@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.sim.cameras.imaging.paint_table import (
+from peopleboy.sim.cameras.imaging.surfaces import (
     KELVIN_STEP,
     LIGHT_STEP,
     make_paint_table,

@@ -7,7 +7,7 @@ import pytest
 from peopleboy.sim.people.appearance.traits import usual_clothes
 from peopleboy.sim.people.body.clothes import BOTTOMS, HAIR, SHOES, TOPS, Clothes
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.shapes.colours import COLOURS
+from peopleboy.sim.shapes.materials import COLOURS
 
 DRAWS = 1000
 WARM_TOPS = {"jacket", "fleece", "wool_jumper", "striped_jumper"}

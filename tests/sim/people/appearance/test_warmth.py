@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from peopleboy.sim.people.appearance.warmth import (
+from peopleboy.sim.people.appearance.finisher import (
     ROOM_C,
     WARMEST_SKIN_C,
     bare_c,

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from peopleboy.sim.people.body.gait import fourier_basis, load_walking_clip
 from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES
-from peopleboy.sim.physics.model_files import data_folder
+from peopleboy.sim.physics.urdf import data_folder
 
 CLIP = Path("data", "motions", "humanoid3d_walk.txt")
 

@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 from peopleboy.sim.people.person import PlanarState, Posture, Waypoint, timetable
 from peopleboy.sim.people.walking.path import CORNER_CUT_M, abreast, route
 from peopleboy.sim.people.walking.script import TURN_RATE_RAD_S
-from peopleboy.sim.people.walking.surroundings import ALONE, Present, Wish
 from peopleboy.sim.people.walking.walk_kernels import ACCELERATION_M_S2
-from peopleboy.sim.people.walking.walker import Walker
+from peopleboy.sim.people.walking.walker import ALONE, Present, Walker, Wish
 from tests.helpers.worlds.walkers import make_person, settle, walk, walk_together
 
 
