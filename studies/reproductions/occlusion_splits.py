@@ -2,28 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from peopleboy.studies.training.occlusion_pairs import PairSample, accuracy, mirror
+from peopleboy.studies.training.occlusion_pairs import PairSamples, accuracy
+from peopleboy.studies.training.samples import Split
 from peopleboy.tracker.contour.occlusion.learned_table import LearnedTable
 from peopleboy.tracker.contour.occlusion.pair_features import FEATURES
 
 PAIRS = 121
 """How many pairs the thesis has; with their mirror images, 242 examples."""
 TRAINING_SHARE = 0.6
-
-PairSamples = Sequence[PairSample]
-
-
-@dataclass(frozen=True, slots=True)
-class Split:
-    """PairSamples to learn from, and others to test with."""
-
-    learned: PairSamples
-    tested: PairSamples
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +31,7 @@ class LearnedSplit:
     table: LearnedTable
 
 
-def random_split(examples: PairSamples, rng: np.random.Generator) -> Split:
+def random_split(examples: PairSamples, rng: np.random.Generator) -> Split[PairSamples]:
     """Draw as many pairs as the thesis has, and learn from 60 % of them.
 
     The same occlusion may be on both sides.
@@ -50,24 +40,21 @@ def random_split(examples: PairSamples, rng: np.random.Generator) -> Split:
     """
     rows = rng.permutation(len(examples))[:PAIRS]
     cut = round(TRAINING_SHARE * len(rows))
-    return Split([examples[i] for i in rows[:cut]], [examples[i] for i in rows[cut:]])
+    return Split(examples.take(rows[:cut]), examples.take(rows[cut:]))
 
 
-def split_by_scenario(examples: PairSamples, rng: np.random.Generator) -> Split:
+def split_by_scenario(examples: PairSamples, rng: np.random.Generator) -> Split[PairSamples]:
     """Draw scenarios until they have 60 % of the pairs, learn from these, and test with the others.
 
     One is left to test with, unless there is but one, even if the others have less.
     """
-    names = sorted({example.scenario for example in examples})
-    chosen: set[str] = set()
+    names = np.unique(examples.scenario)
+    is_learned = np.zeros(len(examples), np.bool_)
     for row in rng.permutation(len(names))[: max(1, len(names) - 1)]:
-        if sum(one.scenario in chosen for one in examples) >= TRAINING_SHARE * len(examples):
+        if is_learned.sum() >= TRAINING_SHARE * len(examples):
             break
-        chosen.add(names[row])
-    return Split(
-        [one for one in examples if one.scenario in chosen],
-        [one for one in examples if one.scenario not in chosen],
-    )
+        is_learned |= examples.scenario == names[row]
+    return Split(examples.take(is_learned), examples.take(~is_learned))
 
 
 def learn_split(
@@ -89,10 +76,10 @@ def learn_split(
     right, tables = [], []
     for split in (random_split(examples, rng), split_by_scenario(examples, rng)):
         rounds_of = 1 if len(uses) == 1 else rounds
-        features, is_front = mirror(split.learned)
+        features, is_front = split.training.mirror()
         if features[:, [FEATURES.index(name) for name in uses]].any():
             table = boost(features, is_front, most=most, uses=uses, rounds=rounds_of)
-            right.append(accuracy(table, split.tested))
+            right.append(accuracy(table, split.validation))
         else:
             table = LearnedTable(scale=dict.fromkeys(FEATURES, 1.0), classifiers=())
             right.append(50.0)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Final
+from typing import Annotated, ClassVar, Final
 
 import numpy as np
 from numba import njit
@@ -16,21 +16,14 @@ from pydantic import Field
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.running.engine.store import Store, code_digest
-from peopleboy.scenarios.running.engine.task import Tell, Workers
-from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.scenarios.running.frame_cache import film_key
 from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.sim.world_config import WorldConfig
+from peopleboy.studies.training.samples import Arrays, SampleTask, Split, Tasks, sample_folder
 from peopleboy.studies.training.specification import Specification
 from peopleboy.tracker.frame import PANORAMA, Frame
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
-from peopleboy.tracker.panoramic.paper.depth_cues import (
-    EMPTY_IMAGES,
-    MeasuredFigure,
-    learn_background,
-    measure,
-)
+from peopleboy.tracker.panoramic.paper.depth_cues import EMPTY_IMAGES, learn_background, measure
 from peopleboy.tracker.panoramic.paper.distance_network import (
     CUES,
     HIGH,
@@ -45,12 +38,10 @@ from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicConfig
 from peopleboy.tracker.panoramic.paper.position_filter import STEP_S, estimate_noise
 
 Floats = NDArray[np.float64]
-Row = list[float]
-"""A sample as plain data: person, time [s], three cues [px], bearing seen [rad], x and y in truth [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class DistanceSamples:
+class DistanceSamples(Arrays):
     """The samples of one run, in the order of time.
 
     Attributes:
@@ -60,6 +51,7 @@ class DistanceSamples:
         bearing_rad: (N,) where the silhouette is, left positive [rad].
         true_m: (N, 2) where the person stands in the robot's frame [m]; the middle between the feet, not the
             hat of the paper.
+        missed: (1,) how many images of the run do not show the person who is there.
     """
 
     person: NDArray[np.int64]
@@ -67,6 +59,7 @@ class DistanceSamples:
     cues: Floats
     bearing_rad: Floats
     true_m: Floats
+    missed: NDArray[np.int64]
 
     @property
     def distance_m(self) -> Floats:
@@ -85,23 +78,21 @@ class DistanceSamples:
         return np.asarray(distance_m[:, None] * way, np.float64)
 
     @classmethod
-    def from_rows(cls, rows: list[Row]) -> DistanceSamples:
-        """Make samples out of plain data, equal to the last digit."""
-        table = np.array(rows, np.float64).reshape(-1, 8)
+    def from_rows(cls, rows: Sequence[Sequence[float]], missed: int = 0) -> DistanceSamples:
+        """Take rows of person, time, three cues, bearing, and where the person stands, x and y."""
+        person, time_s, *cues, bearing_rad, x, y = np.array(rows, np.float64).reshape(-1, 8).T
         return cls(
-            person=table[:, 0].astype(np.int64),
-            time_s=table[:, 1],
-            cues=table[:, 2:5],
-            bearing_rad=table[:, 5],
-            true_m=table[:, 6:],
+            person=person.astype(np.int64),
+            time_s=time_s,
+            cues=np.stack(cues, axis=1),
+            bearing_rad=bearing_rad,
+            true_m=np.stack([x, y], axis=1),
+            missed=np.array([missed]),
         )
 
 
-def collect_distances(scenario: str, seed: int) -> dict[str, Any]:
+def collect_distances(scenario: str, seed: int) -> DistanceSamples:
     """Run a scenario with the panoramic camera, and keep what is measured while one person is there.
-
-    Returns:
-        Plain data: the camera's `view`, `rows` of samples, and how many images `missed` the person.
 
     Raises:
         BadInput: an unknown scenario, a person in the first images, or a camera that nobody can calibrate or
@@ -109,9 +100,8 @@ def collect_distances(scenario: str, seed: int) -> dict[str, Any]:
     """
     loaded = load_scenario(scenario).mounting((PANORAMA,))
     config = loaded.world(seed)
-    view = check_floor(config, scenario)
-    rows, missed = _measured(panoramas(config, loaded.duration_s), scenario)
-    return {"view": asdict(view), "rows": rows, "missed": missed}
+    check_floor(config, scenario)
+    return _measured(panoramas(config, loaded.duration_s), scenario)
 
 
 def check_floor(config: WorldConfig, scenario: str) -> PanoramaView:
@@ -149,9 +139,7 @@ def panoramas(config: WorldConfig, duration_s: float) -> Iterator[tuple[NDArray[
             world.step(0.0, 0.0)
 
 
-def _measured(
-    instants: Iterator[tuple[NDArray[np.uint8], ImageFreeTruth]], scenario: str
-) -> tuple[list[Row], int]:
+def _measured(instants: Iterator[tuple[NDArray[np.uint8], ImageFreeTruth]], scenario: str) -> DistanceSamples:
     """Measure the one person of each image after the empty ones, and count the images that show nobody."""
     first = list(islice(instants, EMPTY_IMAGES))
     if len(first) < EMPTY_IMAGES or any(scene.people for _, scene in first):
@@ -163,39 +151,11 @@ def _measured(
     for image, scene in instants:
         figure = measure(background.silhouette(image), PanoramicConfig().least_px)
         if len(scene.people) == 1 and figure is not None:
-            rows.append(_row(figure, scene))
+            (person,) = scene.people
+            place = scene.robot.to_local(person.position_m)
+            rows.append([float(person.id), scene.time_s, *figure.cues, figure.bearing_rad, *place])
         missed += bool(scene.people) and figure is None
-    return rows, missed
-
-
-def _row(figure: MeasuredFigure, scene: ImageFreeTruth) -> Row:
-    (person,) = scene.people
-    place = scene.robot.to_local(person.position_m)
-    return [float(person.id), scene.time_s, *figure.cues, figure.bearing_rad, *place]
-
-
-@dataclass(frozen=True, slots=True)
-class DistanceTask:
-    """Run a scenario with one seed, and keep what is measured of the people.
-
-    Attributes:
-        scenario, seed: what is run.
-        key: of all that its images depend on.
-    """
-
-    scenario: str
-    seed: int
-    key: str
-    size: int = 1
-
-    @property
-    def name(self) -> str:
-        """Run, and version of the scenario."""
-        return f"{self.scenario}-{self.seed}-{self.key}"
-
-    def __call__(self, tell: Tell) -> dict[str, Any]:  # noqa: ARG002
-        """Collect the samples."""
-        return collect_distances(self.scenario, self.seed)
+    return DistanceSamples.from_rows(rows, missed)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -295,6 +255,7 @@ def walks(run: DistanceSamples, measured: Floats) -> list[tuple[Floats, Floats]]
 
 TRAINING_SHARE: Final = 0.3
 """Share of the samples that is trained on (OMNIVIS 2003, section 4.4)."""
+_LEAST_SAMPLES: Final = 100  # of a run
 BLOCKS: Final = 20
 """Parts into which a sequence is cut where neighbouring images must not count as independent."""
 
@@ -307,7 +268,7 @@ def block_split(count: int, rng: np.random.Generator) -> tuple[NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DistanceTraining(Specification[list[dict[str, Any]]]):
+class DistanceTraining(Specification[list[DistanceSamples]]):
     """Train on a scenario that begins with five empty panoramas, and has one person at a time later."""
 
     HINT: ClassVar[str] = "`peopleboy reproduce --paper panoramic` measures it by the paper's experiments"
@@ -320,50 +281,56 @@ class DistanceTraining(Specification[list[dict[str, Any]]]):
         """Return a folder of the scenario's own."""
         return Path("runs") / f"{model}-{Path(self.scenario).stem}"
 
-    def collect(self, out: Path, workers: Workers) -> list[dict[str, Any]]:
+    def tasks(self, out: Path) -> Tasks:
         """Run the scenario; samples that are there are used if neither code nor scenario has changed."""
         scenario = load_scenario(self.scenario).mounting((PANORAMA,))
         check_floor(scenario.world(0), self.scenario)
-        store = Store(out / "samples.jsonl", code_digest(Path(__file__)))
-        seeds = range(self.sequences)
-        tasks = [DistanceTask(self.scenario, seed, film_key(scenario, seed)[:12]) for seed in seeds]
-        missing = [task for task in tasks if task.name not in store]
-        work_through(missing, workers, "samples", lambda task, result: store.add(task.name, result))
-        for seed, task in enumerate(tasks):
-            if len(store[task.name]["rows"]) < 100:
-                raise BadInput(
-                    f"{self.scenario}, seed {seed}: one person alone is in {len(store[task.name]['rows'])} "
-                    "panoramas; at least 100 are needed to train on"
-                )
-        return [store[task.name] for task in tasks]
+        folder = sample_folder(out, Path(__file__))
+        runs = ((seed, film_key(scenario, seed)[:12]) for seed in range(self.sequences))
+        return Split(
+            [
+                SampleTask(folder / f"{seed}-{key}.npz", collect_distances, (self.scenario, seed))
+                for seed, key in runs
+            ],
+            [],
+        )
 
-    def fit(self, data: list[dict[str, Any]]) -> Mapping[str, DistanceModel]:
+    def load(self, tasks: Tasks) -> list[DistanceSamples]:
+        """Read the samples, run by run."""
+        runs = [DistanceSamples.load(task.path) for task in tasks.training]
+        for seed, run in enumerate(runs):
+            if len(run) < _LEAST_SAMPLES:
+                raise BadInput(
+                    f"{self.scenario}, seed {seed}: one person alone is in {len(run)} panoramas; at least "
+                    f"{_LEAST_SAMPLES} are needed to train on"
+                )
+        return runs
+
+    def fit(self, data: list[DistanceSamples]) -> Mapping[str, DistanceModel]:
         """Train the network on all samples."""
-        runs, settings = _runs(data), Backpropagation(epochs=self.epochs)
-        cues = np.concatenate([run.cues for run in runs])
-        distances = np.concatenate([run.distance_m for run in runs])
-        network = fit_distances(cues, distances, np.random.default_rng(0), settings)
-        all_walks = [walk for run in runs for walk in walks(run, run.positions_at(network.predict(run.cues)))]
-        name = load_scenario(self.scenario).name
+        settings, samples = Backpropagation(epochs=self.epochs), DistanceSamples.join(data)
+        network = fit_distances(samples.cues, samples.distance_m, np.random.default_rng(0), settings)
+        all_walks = [walk for run in data for walk in walks(run, run.positions_at(network.predict(run.cues)))]
+        scenario = load_scenario(self.scenario).mounting((PANORAMA,))
         model = DistanceModel(
             network=network,
-            view=PanoramaView.of_plain(data[0]["view"]),
+            view=check_floor(scenario.world(0), self.scenario),
             noise=estimate_noise(all_walks, uses_velocity=False),
             about={
-                "trained on": f"{len(cues)} images of {name}, seeds 0 to {len(runs) - 1}",
+                "trained on": f"{len(samples)} images of {scenario.name}, seeds 0 to {len(data) - 1}",
                 "training": f"{settings.epochs} epochs, rate {settings.rate:g}, online",
-                "left out": f"{sum(one['missed'] for one in data)} images in which the person was not seen",
+                "left out": f"{samples.missed.sum()} images in which the person was not seen",
             },
         )
-        return {file_name(name): model}
+        return {file_name(scenario.name): model}
 
-    def evaluate(self, model: DistanceModel, data: list[dict[str, Any]]) -> Mapping[str, str]:
+    def evaluate(self, model: DistanceModel, data: list[DistanceSamples]) -> Mapping[str, str]:
         """Measure the error on the samples, and where 30 % of each run were trained on, by blocks of time."""
         settings, seen, unseen = Backpropagation(epochs=self.epochs), [], []
-        for run in _runs(data):
+        for run in data:
             seen.append(model.network.predict(run.cues) - run.distance_m)
             rng = np.random.default_rng((0, 0))
-            rows, rest = block_split(len(run.cues), rng)
+            rows, rest = block_split(len(run), rng)
             network = fit_distances(run.cues[rows], run.distance_m[rows], rng, settings)
             unseen.append((network.predict(run.cues) - run.distance_m)[rest])
         return {"error on those": _error(seen), "error on the rest, by blocks": _error(unseen)}
@@ -371,10 +338,6 @@ class DistanceTraining(Specification[list[dict[str, Any]]]):
     def is_replaced(self, path: Path, model: DistanceModel) -> bool:
         """Return whether a shipped file is of the same mirror."""
         return path.match(file_name("*")) and not DistanceModel.load(path).view.refusal(model.view)
-
-
-def _runs(data: Sequence[Mapping[str, Any]]) -> list[DistanceSamples]:
-    return [DistanceSamples.from_rows(result["rows"]) for result in data]
 
 
 def _error(parts: Sequence[Floats]) -> str:

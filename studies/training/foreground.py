@@ -16,17 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.training.optimiser import Optimiser, Weights, he_weights
 from peopleboy.studies.training.panorama_sequences import (
     PanoramaSequence,
-    panorama_calibration,
     render_task,
-    scenario_path,
+    scene_calibration,
 )
 from peopleboy.studies.training.random_scenes import FIRST_SEED
-from peopleboy.studies.training.samples import collect_missing
+from peopleboy.studies.training.samples import Split, Tasks
 from peopleboy.studies.training.specification import Specification, report
 from peopleboy.tracker.frame import Calibration
 from peopleboy.tracker.networks.mask_network import BLOCK, DILATIONS, INPUTS, OUTPUTS, MaskNetwork
@@ -56,17 +53,8 @@ _LEAST_PX: Final = 12  # of a person, to be evaluated
 _REACH_PX: Final = 6  # round a person, within which foreground counts as that person's
 
 
-@dataclass(frozen=True, slots=True)
-class ForegroundData:
-    """Files of sequences for training and validation, and the calibration of the camera."""
-
-    training: list[Path]
-    validation: list[Path]
-    calibration: Calibration
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ForegroundTraining(Specification[ForegroundData]):
+class ForegroundTraining(Specification[Tasks]):
     """Train on panoramas of scenes drawn at random.
 
     In each round a hundred scenes are played to the network as it is by then, so that the background in its
@@ -77,45 +65,39 @@ class ForegroundTraining(Specification[ForegroundData]):
     validation: Annotated[int, Field(ge=0, description="Other scenes, to evaluate it.")] = 20
     rounds: Annotated[int, Field(ge=1, description="How often a hundred of the scenes are trained on.")] = 12
 
-    def collect(self, out: Path, workers: Workers) -> ForegroundData:
-        """Render the scenes."""
-        folder = out / "sequences"
-        validation = [render_task(folder, seed) for seed in range(self.validation)]
-        training = [render_task(folder, FIRST_SEED + k) for k in range(self.sequences)]
-        collect_missing([*validation, *training], workers, "sequences")
-        scenario = load_scenario(scenario_path(folder, FIRST_SEED))
-        return ForegroundData(
-            [task.path for task in training],
-            [task.path for task in validation],
-            panorama_calibration(scenario, 0),
-        )
+    def tasks(self, out: Path) -> Tasks:
+        """Render the scenes; they are many, so that files are read when they are needed."""
+        seeds = range(FIRST_SEED, FIRST_SEED + self.sequences), range(self.validation)
+        return Split(*([render_task(out / "sequences", seed) for seed in part] for part in seeds))
 
-    def fit(self, data: ForegroundData) -> Mapping[str, ForegroundModel]:
+    def fit(self, data: Tasks) -> Mapping[str, ForegroundModel]:
         """Train in rounds, and report the loss of each."""
-        height, width = PanoramaSequence.load(data.training[0]).images.shape[1:3]
-        view, rng = view_of(data.calibration, width, height), np.random.default_rng(0)
+        paths, calibration = [task.path for task in data.training], scene_calibration(data.training[0])
+        height, width = PanoramaSequence.load(paths[0]).images.shape[1:3]
+        view, rng = view_of(calibration, width, height), np.random.default_rng(0)
         optimiser = Optimiser(mask_loss, first_weights(height // BLOCK, rng))
         rates = np.geomspace(*RATES, self.rounds + 1).tolist()
         for number, (first, last) in enumerate(pairwise(rates), 1):
-            chosen = [data.training[k] for k in rng.permutation(len(data.training))[:_SEQUENCES_A_ROUND]]
+            chosen = [paths[k] for k in rng.permutation(len(paths))[:_SEQUENCES_A_ROUND]]
             model = ForegroundModel(network=MaskNetwork(**optimiser.weights), view=view)
-            samples = [one for path in chosen for one in collect_samples(path, model, data.calibration, rng)]
+            samples = [one for path in chosen for one in collect_samples(path, model, calibration, rng)]
             for ends in ((first, last), (last, last)):
-                loss = run_epoch(optimiser, samples, rng, ends)
+                loss = optimiser.run(batches(samples, rng, ends))["entropy"]
             report(f"round {number} of {self.rounds}: {loss:.4f} nat a pixel")
         about = {
-            "trained on": f"{len(data.training)} scenes drawn at random, seeds from {FIRST_SEED}",
+            "trained on": f"{len(paths)} scenes drawn at random, seeds from {FIRST_SEED}",
             "training": f"{self.rounds} rounds, {optimiser.steps} steps",
         }
         return {FILE: ForegroundModel(network=MaskNetwork(**optimiser.weights), view=view, about=about)}
 
-    def evaluate(self, model: ForegroundModel, data: ForegroundData) -> Mapping[str, str]:
+    def evaluate(self, model: ForegroundModel, data: Tasks) -> Mapping[str, str]:
         """Measure overlap and single people, of a standing and of a driving robot."""
+        calibration = scene_calibration(data.training[0])
         sums = {"a standing robot": MaskScores(), "a driving robot": MaskScores()}
-        for path in data.validation:
-            sequence = PanoramaSequence.load(path)
+        for task in data.validation:
+            sequence = PanoramaSequence.load(task.path)
             robot = "a driving robot" if sequence.is_driven else "a standing robot"
-            score_masks(sequence, segment(sequence, model, data.calibration), sums[robot])
+            score_masks(sequence, segment(sequence, model, calibration), sums[robot])
         return {f"on other scenes, {robot}": str(scores) for robot, scores in sums.items() if scores.images}
 
 
@@ -143,17 +125,15 @@ def collect_samples(
             yield _excerpt(squares, people, int(rng.choice(columns)))
 
 
-def run_epoch(
-    optimiser: Optimiser, samples: Sequence[Sample], rng: np.random.Generator, rates: tuple[float, float]
-) -> float:
-    """Train once on all samples, while the rate goes from one to another; return their mean loss [nat]."""
-    order, losses = rng.permutation(len(samples)), []
+def batches(
+    samples: Sequence[Sample], rng: np.random.Generator, rates: tuple[float, float]
+) -> Iterator[tuple[tuple[Linear, Linear], float]]:
+    """Yield all samples once, in batches, with a rate that goes from one to another."""
+    order = rng.permutation(len(samples))
     for start in range(0, len(order), BATCH):
         batch = [samples[k] for k in order[start : start + BATCH]]
         squares, people = (np.stack(parts).astype(np.float32) for parts in zip(*batch, strict=True))
-        rate = rates[0] + start / len(order) * (rates[1] - rates[0])
-        losses.append(optimiser.step((squares, people), rate)["entropy"])
-    return float(np.mean(losses))
+        yield (squares, people), rates[0] + start / len(order) * (rates[1] - rates[0])
 
 
 def first_weights(rows: int, rng: np.random.Generator) -> Weights:

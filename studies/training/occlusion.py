@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal
 
@@ -16,21 +16,9 @@ from sklearn.base import BaseEstimator, ClassifierMixin
 from sklearn.ensemble import AdaBoostClassifier
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.running.engine.store import Store, code_digest
-from peopleboy.scenarios.running.engine.task import Workers
-from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.studies.training import occlusion_pairs
-from peopleboy.studies.training.occlusion_pairs import (
-    SCENARIOS,
-    PairSample,
-    PairTask,
-    accuracy,
-    check_samples,
-    mirror,
-    parse_pairs,
-    read_pairs,
-    write_pairs,
-)
+from peopleboy.studies.training.occlusion_pairs import LEAST, SCENARIOS, PairSamples, accuracy, collect_pairs
+from peopleboy.studies.training.samples import SampleTask, Split, Tasks, load_samples, sample_folder
 from peopleboy.studies.training.specification import Specification
 from peopleboy.tracker.contour.contour_config import TrackerConfig
 from peopleboy.tracker.contour.occlusion.learned_table import TABLES, LearnedTable, WeakClassifier
@@ -45,7 +33,7 @@ ROUNDS = 40
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OcclusionTraining(Specification[list[PairSample]]):
+class OcclusionTraining(Specification[PairSamples]):
     """Train on pairs of people that overlap in scenarios, as a tracker measures them.
 
     The table of the tracker of that name is trained on all pairs. It is evaluated on each scenario by a table
@@ -57,52 +45,41 @@ class OcclusionTraining(Specification[list[PairSample]]):
 
     sequences: Annotated[int, Field(ge=1, description="Runs of each scenario.")] = 5
     tracker: Annotated[Literal["contour", "thesis"], Field(description="Tracker to train.")] = "contour"
-    again: Annotated[bool, Field(description="Run the scenarios even if the samples are there.")] = False
 
     def default_folder(self, model: str) -> Path:
         """Return a folder of the tracker's own, since each measures other features."""
         return Path("runs") / f"{model}-{self.tracker}"
 
-    def collect(self, out: Path, workers: Workers) -> list[PairSample]:
-        """Read the samples, or run the scenarios and write them; a killed call resumes."""
-        path = out / "pairs.csv"
-        if path.exists() and not self.again:
-            return read_pairs(path)
-        store = Store(path.with_suffix(".jsonl"), code_digest(Path(occlusion_pairs.__file__)))
-        tasks = [
-            PairTask(name, seed, self.tracker, TRACKERS[self.tracker])
-            for seed in range(self.sequences)
-            for name in SCENARIOS
-        ]
-        missing = [task for task in tasks if task.name not in store]
-        work_through(missing, workers, path.stem, lambda task, result: store.add(task.name, result))
-        samples = [
-            sample
-            for task in tasks
-            for sample in parse_pairs(task.scenario, task.seed, store[task.name]["pairs"])
-        ]
-        write_pairs(path, samples)
-        store.path.unlink(missing_ok=True)
-        return samples
+    def tasks(self, out: Path) -> Tasks:
+        """Run the tracker through the scenarios."""
+        folder, config = sample_folder(out, Path(occlusion_pairs.__file__)), TRACKERS[self.tracker]
+        runs = [(name, seed) for seed in range(self.sequences) for name in SCENARIOS]
+        return Split(
+            [
+                SampleTask(folder / f"{name}_{seed}.npz", collect_pairs, (name, seed, config))
+                for name, seed in runs
+            ],
+            [],
+        )
 
-    def fit(self, data: list[PairSample]) -> Mapping[str, LearnedTable]:
+    def load(self, tasks: Tasks) -> PairSamples:
+        """Read the pairs of all runs."""
+        return load_samples(PairSamples, tasks.training)
+
+    def fit(self, data: PairSamples) -> Mapping[str, LearnedTable]:
         """Boost weighted pairs of features."""
-        check_samples(data)
+        if len(data) < LEAST:
+            raise BadInput(f"{len(data)} pairs: at least {LEAST} are needed; take more sequences")
         with Console(stderr=True).status("training"):
-            table = boost(*mirror(data))
-        by_scenario = Counter(sample.scenario for sample in data)
-        listed = ", ".join(f"{name} {count}" for name, count in by_scenario.items())
+            table = boost(*data.mirror())
+        listed = ", ".join(f"{name} {count}" for name, count in Counter(data.scenario.tolist()).items())
         about = {
             "trained on": f"{len(data)} pairs and their mirror images: {listed}",
             "weak classifiers": "weighted pairs of the six features (thesis, equation 7.4)",
         }
-        return {
-            f"{self.tracker}.yaml": LearnedTable(
-                scale=table.scale, classifiers=table.classifiers, about=about
-            )
-        }
+        return {f"{self.tracker}.yaml": replace(table, about=about)}
 
-    def evaluate(self, model: LearnedTable, data: list[PairSample]) -> Mapping[str, str]:
+    def evaluate(self, model: LearnedTable, data: PairSamples) -> Mapping[str, str]:
         """Measure the share of right answers."""
         return {
             "right on those": f"{accuracy(model, data):.1f} %",
@@ -110,15 +87,15 @@ class OcclusionTraining(Specification[list[PairSample]]):
         }
 
 
-def cross_accuracy(samples: Sequence[PairSample], rounds: int = ROUNDS) -> float:
+def cross_accuracy(samples: PairSamples, rounds: int = ROUNDS) -> float:
     """Leave one scenario out after the other, and return the share of right answers [%] on all of them."""
     right = 0.0
-    for name, count in Counter(sample.scenario for sample in samples).items():
-        others = [sample for sample in samples if sample.scenario != name]
-        if not others:
+    for name, count in Counter(samples.scenario.tolist()).items():
+        is_left_out = samples.scenario == name
+        if is_left_out.all():
             return float("nan")
-        table = boost(*mirror(others), rounds=rounds)
-        right += count * accuracy(table, [sample for sample in samples if sample.scenario == name])
+        table = boost(*samples.take(~is_left_out).mirror(), rounds=rounds)
+        right += count * accuracy(table, samples.take(is_left_out))
     return right / len(samples)
 
 

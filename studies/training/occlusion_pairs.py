@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.loop import Tick, closed_loop
-from peopleboy.scenarios.running.engine.task import Tell
+from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.studies.training.samples import Arrays
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.contour.contour_config import TrackerConfig
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
@@ -56,24 +52,50 @@ _LEAST_HIDDEN, _LEAST_GAP_M = 0.02, 0.3
 _EVERY, _PAUSE = 2, 15
 
 
+PairRow = tuple[int, str, str, Features, bool]
+"""Frame, names of the one and the other, features, and whether the one is in front."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PairSample:
-    """Two overlapping people at one instant.
+class PairSamples(Arrays):
+    """N times two overlapping people at one instant.
 
     Attributes:
-        scenario, seed, frame: where they are from.
-        one, other: their names.
-        features: (6,) the one's minus the other's.
-        is_front: whether the one is in front.
+        scenario, seed, frame: (N,) where they are from.
+        one, other: (N,) their names.
+        features: (N, 6) the one's minus the other's.
+        is_front: (N,) whether the one is in front.
     """
 
-    scenario: str
-    seed: int
-    frame: int
-    one: str
-    other: str
+    scenario: NDArray[np.str_]
+    seed: NDArray[np.int64]
+    frame: NDArray[np.int64]
+    one: NDArray[np.str_]
+    other: NDArray[np.str_]
     features: Features
-    is_front: bool
+    is_front: NDArray[np.bool_]
+
+    @classmethod
+    def from_rows(cls, scenario: str, seed: int, rows: Sequence[PairRow]) -> PairSamples:
+        """Take the pairs of a run."""
+        frame, one, other, features, is_front = zip(*rows, strict=True) if rows else [()] * 5
+        return cls(
+            scenario=np.full(len(rows), scenario),
+            seed=np.full(len(rows), seed),
+            frame=np.array(frame, np.int64),
+            one=np.array(one, np.str_),
+            other=np.array(other, np.str_),
+            features=np.array(features, np.float64).reshape(-1, len(FEATURES)),
+            is_front=np.array(is_front, np.bool_),
+        )
+
+    def mirror(self) -> tuple[Features, NDArray[np.bool_]]:
+        """Return features (2 N, 6) and labels (2 N,) of all pairs one way round, then of all the other way.
+
+        So as many are positive as negative (thesis, section 7.4).
+        """
+        labels = np.concatenate([self.is_front, ~self.is_front])
+        return np.concatenate([self.features, -self.features]), labels
 
 
 @dataclass(slots=True)
@@ -134,8 +156,8 @@ def is_in_front(one: PersonTruth, other: PersonTruth) -> bool | None:
     return gap > 0.0 if abs(gap) >= _LEAST_GAP_M else None
 
 
-def collect_pairs(scenario: str, seed: int, config: TrackerConfig) -> Iterator[PairSample]:
-    """Run a tracker through a scenario and yield the samples of each frame.
+def collect_pairs(scenario: str, seed: int, config: TrackerConfig) -> PairSamples:
+    """Run a tracker through a scenario, and keep what it measures of people who overlap.
 
     Raises:
         BadInput: an unknown scenario.
@@ -145,41 +167,19 @@ def collect_pairs(scenario: str, seed: int, config: TrackerConfig) -> Iterator[P
     loaded = load_scenario(scenario)
     order, episodes = RecordingOrder(config.depth.remembers_feet), Episodes()
     people = ContourTracker(config, stream(seed, "tracker"), order)
+    rows: list[PairRow] = []
     with World(loaded.world(seed)) as world:
         frames = round(loaded.duration_s * world.config.control_hz)
         for tick in closed_loop(world, people, loaded.make_behaviour(), frames):
-            for one, other, features in order.asked:
-                sample = _sample(loaded.name, seed, tick, one, other, features, episodes)
-                if sample is not None:
-                    yield sample
+            for *pair, features in order.asked:
+                one, other = (_true_person(figure, tick.truth.people) for figure in pair)
+                if one is None or other is None or one is other:
+                    continue
+                is_front = is_in_front(one, other)
+                if episodes.takes(one, other, tick.frame) and is_front is not None:
+                    rows.append((tick.frame, one.name, other.name, features, is_front))
             order.asked.clear()
-
-
-def _sample(
-    scenario: str,
-    seed: int,
-    tick: Tick,
-    one: ExpectedPerson,
-    other: ExpectedPerson,
-    features: Features,
-    episodes: Episodes,
-) -> PairSample | None:
-    """Identify two tracked people, and make a sample of them if they are fit for one."""
-    true_one, true_other = (_true_person(figure, tick.truth.people) for figure in (one, other))
-    if true_one is None or true_other is None or true_one is true_other:
-        return None
-    is_front = is_in_front(true_one, true_other)
-    if not episodes.takes(true_one, true_other, tick.frame) or is_front is None:
-        return None
-    return PairSample(
-        scenario=scenario,
-        seed=seed,
-        frame=tick.frame,
-        one=true_one.name,
-        other=true_other.name,
-        features=features,
-        is_front=is_front,
-    )
+    return PairSamples.from_rows(loaded.name, seed, rows)
 
 
 def _true_person(figure: ExpectedPerson, people: Sequence[PersonTruth]) -> PersonTruth | None:
@@ -192,29 +192,9 @@ def _true_person(figure: ExpectedPerson, people: Sequence[PersonTruth]) -> Perso
     return boxed[best] if overlap[best] >= _LEAST_IOU else None
 
 
-def mirror(samples: Sequence[PairSample]) -> tuple[Features, NDArray[np.bool_]]:
-    """Return features (2 P, 6) and labels (2 P,) of all pairs one way round, then of all the other way round.
-
-    So as many are positive as negative (thesis, section 7.4).
-    """
-    features = np.array([sample.features for sample in samples]).reshape(-1, len(FEATURES))
-    is_front = np.array([sample.is_front for sample in samples], dtype=bool)
-    return np.concatenate([features, -features]), np.concatenate([is_front, ~is_front])
-
-
-def check_samples(samples: Sequence[PairSample]) -> None:
-    """Refuse to train on next to nothing.
-
-    Raises:
-        BadInput: too few samples.
-    """
-    if len(samples) < LEAST:
-        raise BadInput(f"{len(samples)} pairs: at least {LEAST} are needed; take more sequences")
-
-
-def accuracy(table: LearnedTable, samples: Sequence[PairSample]) -> float:
+def accuracy(table: LearnedTable, samples: PairSamples) -> float:
     """Return the share of right answers [%] among pairs and their mirror images; no answer counts half."""
-    features, is_front = mirror(samples)
+    features, is_front = samples.mirror()
     return share_right(LearnedOrder.build(table).lead(features), is_front)
 
 
@@ -224,81 +204,3 @@ def share_right(lead: Features, is_front: NDArray[np.bool_]) -> float:
         return float("nan")
     right = np.where(is_front, lead, -lead)
     return float(100 * ((right > 0) + 0.5 * (right == 0)).mean())
-
-
-@dataclass(frozen=True, slots=True)
-class PairTask:
-    """Run a tracker through a scenario, and keep what it measured of people who overlap."""
-
-    scenario: str
-    seed: int
-    tracker: str
-    config: TrackerConfig
-    size: int = 1
-
-    @property
-    def name(self) -> str:
-        """Tracker and run."""
-        return f"{self.tracker} {self.scenario}-{self.seed}"
-
-    def __call__(self, tell: Tell) -> dict[str, Any]:  # noqa: ARG002
-        """Collect the samples."""
-        return {"pairs": plain_pairs(collect_pairs(self.scenario, self.seed, self.config))}
-
-
-def plain_pairs(samples: Iterable[PairSample]) -> list[list[object]]:
-    """Turn the samples of a run into plain data; its scenario and seed are left out."""
-    return [[s.frame, s.one, s.other, bool(s.is_front), *s.features.tolist()] for s in samples]
-
-
-def parse_pairs(scenario: str, seed: int, pairs: Sequence[Sequence[Any]]) -> list[PairSample]:
-    """Make samples out of plain data again, equal to the last digit."""
-    return [
-        PairSample(
-            scenario=scenario,
-            seed=seed,
-            frame=frame,
-            one=one,
-            other=other,
-            is_front=is_front,
-            features=np.array(features),
-        )
-        for frame, one, other, is_front, *features in pairs
-    ]
-
-
-_COLUMNS = ("scenario", "seed", "frame", "one", "other", *FEATURES, "is_front")
-
-
-def write_pairs(path: Path, samples: Sequence[PairSample]) -> None:
-    """Write samples as a CSV table, so that training can be repeated without a run."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(_COLUMNS)
-        for s in samples:
-            numbers = [f"{value:.6g}" for value in s.features]
-            writer.writerow([s.scenario, s.seed, s.frame, s.one, s.other, *numbers, int(s.is_front)])
-
-
-def read_pairs(path: Path) -> list[PairSample]:
-    """Read such a table.
-
-    Raises:
-        BadInput: a file that is missing or is no such table.
-    """
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            return [_parse_row(row) for row in csv.DictReader(file)]
-    except OSError as error:
-        raise BadInput(f"{path}: cannot be read: {error.strerror}") from None
-    except (KeyError, ValueError, TypeError) as error:
-        raise BadInput(f"{path}: must be a table of {', '.join(_COLUMNS)}; {error!r}") from None
-
-
-def _parse_row(row: dict[str, str]) -> PairSample:
-    features = [float(row[name]) for name in FEATURES]
-    if not np.isfinite(features).all():
-        raise ValueError(f"features must be finite, got {features}")
-    plain = [int(row["frame"]), row["one"], row["other"], bool(int(row["is_front"])), *features]
-    return parse_pairs(row["scenario"], int(row["seed"]), [plain])[0]

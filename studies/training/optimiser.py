@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Final
 
 import jax
@@ -69,11 +69,23 @@ class Optimiser:
             }
         return {name: float(result) for name, result in results.items()}
 
+    def run(self, batches: Iterable[tuple[Any, float]]) -> dict[str, float]:
+        """Take a step on each batch with its learning rate, and return the mean results of the loss."""
+        results = [self.step(batch, rate) for batch, rate in batches]
+        return {name: float(np.mean([one[name] for one in results])) for name in results[0]}
+
     @property
     def weights(self) -> dict[str, Floats]:
         """The weights, or their average."""
         kept = self._weights if self._average is None else self._average
         return {name: np.array(array) for name, array in kept.items()}
+
+
+def shuffled(count: int, size: int, rng: np.random.Generator) -> Iterator[NDArray[np.int64]]:
+    """Yield the rows of whole batches of so many samples, in a random order."""
+    order = rng.permutation(count)
+    for begin in range(0, count - size + 1, size):
+        yield order[begin : begin + size]
 
 
 def he_weights(rng: np.random.Generator, shape: tuple[int, ...], inputs: int) -> Floats:

@@ -98,6 +98,12 @@ def render_task(folder: Path, seed: int) -> SampleTask:
     return SampleTask(scenario_path(folder, seed).with_suffix(".npz"), render_random_scene, (folder, seed))
 
 
+def scene_calibration(task: SampleTask) -> PanoramaCalibration:
+    """Return the calibration of the camera that rendered the scene of a task that is done."""
+    folder, seed = task.arguments
+    return panorama_calibration(load_scenario(scenario_path(folder, seed)), seed)
+
+
 def panorama_calibration(scenario: Scenario, seed: int) -> PanoramaCalibration:
     """Return the calibration of a scenario's panoramic camera."""
     cameras = scenario.mounting((PANORAMA,)).world(seed).robot.cameras

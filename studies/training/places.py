@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from hashlib import sha256
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Final, NamedTuple
@@ -19,8 +18,7 @@ from pydantic import Field
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.atomic_output import writing_to
-from peopleboy.scenarios.running.engine.task import Workers
-from peopleboy.studies.training.optimiser import Optimiser, Weights
+from peopleboy.studies.training.optimiser import Optimiser, Weights, shuffled
 from peopleboy.studies.training.panorama_sequences import (
     PanoramaSequence,
     panorama_calibration,
@@ -29,7 +27,7 @@ from peopleboy.studies.training.panorama_sequences import (
     scenario_path,
 )
 from peopleboy.studies.training.random_scenes import FIRST_SEED
-from peopleboy.studies.training.samples import Arrays, SampleTask, collect_missing, load_samples
+from peopleboy.studies.training.samples import Arrays, SampleTask, Split, Tasks, load_samples, sample_folder
 from peopleboy.studies.training.specification import Specification
 from peopleboy.tracker.networks.inference import DenseNetwork
 from peopleboy.tracker.networks.weights_archive import SHIPPED
@@ -198,10 +196,6 @@ def _beside(one: _Standing, rng: np.random.Generator) -> Floats:
     return places[places[:, 1] > NEAREST_M]
 
 
-Split = tuple[PlaceSamples, PlaceSamples]
-"""For training and for validation."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PlaceWeights:
     """A model with the camera that it holds for.
@@ -222,7 +216,7 @@ class PlaceWeights:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PlacesTraining(Specification[Split]):
+class PlacesTraining(Specification[Split[PlaceSamples]]):
     """Train on scenes drawn at random, after `peopleboy train foreground --ship`, which it builds on."""
 
     sequences: Annotated[int, Field(ge=2, description="Scenes to train on.")] = 400
@@ -230,36 +224,38 @@ class PlacesTraining(Specification[Split]):
         Path, Field(description="Folder of rendered scenes, which `train foreground` uses, too.")
     ] = Path("runs/foreground/sequences")
 
-    def collect(self, out: Path, workers: Workers) -> Split:
+    def tasks(self, out: Path) -> Tasks:
         """Render scenes and sample them; samples depend on the foreground network."""
         with writing_to(self.rendered, "--rendered"):
             self.rendered.mkdir(parents=True, exist_ok=True)
-        folder = out / f"samples-{_digest()}"
+        folder = sample_folder(out, Path(__file__), SHIPPED / FOREGROUND)
 
         def task(seed: int, scenario: str = "") -> SampleTask:
             path = folder / f"{scenario or 'scene'}_{seed}.npz"
             return SampleTask(path, collect_places, (scenario, seed, self.rendered))
 
-        others = [task(seed) for seed in range(VALIDATION)]
-        tasks = [task(FIRST_SEED + k) for k in range(self.sequences)]
-        tasks += [task(FIRST_SEED + k, name) for name, count in LIBRARY.items() for k in range(count)]
-        collect_missing([*others, *tasks], workers, "samples")
-        return load_samples(PlaceSamples, tasks), load_samples(PlaceSamples, others)
+        training = [task(FIRST_SEED + k) for k in range(self.sequences)]
+        training += [task(FIRST_SEED + k, name) for name, count in LIBRARY.items() for k in range(count)]
+        return Split(training, [task(seed) for seed in range(VALIDATION)])
 
-    def fit(self, data: Split) -> Mapping[str, PlaceWeights]:
+    def load(self, tasks: Tasks) -> Split[PlaceSamples]:
+        """Read the samples."""
+        return Split(*(load_samples(PlaceSamples, part) for part in tasks))
+
+    def fit(self, data: Split[PlaceSamples]) -> Mapping[str, PlaceWeights]:
         """Train the three networks."""
-        samples, people = data[0], int(data[0].is_person.sum())
+        samples, people = data.training, int(data.training.is_person.sum())
         calibration = panorama_calibration(load_scenario(next(iter(LIBRARY))), FIRST_SEED)
         about = {
-            "trained on": f"{people} patches of people and {len(samples.distance_m) - people} of none, "
+            "trained on": f"{people} patches of people and {len(samples) - people} of none, "
             f"in {self.sequences} scenes drawn at random, and {', '.join(LIBRARY)}, seeds from {FIRST_SEED}"
         }
         view = view_of(calibration, calibration.width, calibration.height)
         return {FILE: PlaceWeights(model=fit_places(samples), view=view, about=about)}
 
-    def evaluate(self, model: PlaceWeights, data: Split) -> Mapping[str, str]:
+    def evaluate(self, model: PlaceWeights, data: Split[PlaceSamples]) -> Mapping[str, str]:
         """Measure offsets, their deviations, and presence."""
-        samples = data[1]
+        samples = data.validation
         found = model.model.look(samples.patches.astype(np.float32), samples.distance_m)
         is_person, is_found = samples.is_person, found.evidence > 0
         along, across = np.abs(found.offset_m - samples.offset_m)[is_person].mean(axis=0)
@@ -282,13 +278,6 @@ def collect_places(scenario: str, seed: int, rendered: Path) -> PlaceSamples:
             task(lambda _: None)
         sequence, loaded = PanoramaSequence.load(task.path), load_scenario(scenario_path(rendered, seed))
     return sample_places(sequence, panorama_calibration(loaded, seed), seed)
-
-
-def _digest() -> str:
-    """A hash of what samples depend on beside the sequences."""
-    digest = sha256((SHIPPED / FOREGROUND).read_bytes())
-    digest.update(Path(__file__).read_bytes())
-    return digest.hexdigest()[:8]
 
 
 class DenseRecipe(NamedTuple):
@@ -353,13 +342,8 @@ def fit_dense(
         partial(_dense_loss, len(widths) - 1, error, recipe.shrinkage), _glorot(widths, rng)
     )
     for epoch in range(recipe.epochs + max(recipe.epochs // 4, 1)):
-        rate, order = (
-            recipe.rate if epoch < recipe.epochs else recipe.rate / 10.0,
-            rng.permutation(len(inputs)),
-        )
-        for begin in range(0, len(order) - size + 1, size):
-            rows = order[begin : begin + size]
-            optimiser.step((inputs[rows], targets[rows]), rate)
+        rate = recipe.rate if epoch < recipe.epochs else recipe.rate / 10.0
+        optimiser.run(((inputs[rows], targets[rows]), rate) for rows in shuffled(len(inputs), size, rng))
     weights = optimiser.weights
     return DenseNetwork([(weights[f"weights{k}"], weights[f"bias{k}"]) for k in range(len(widths) - 1)])
 

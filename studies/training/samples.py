@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, ClassVar, Self, TypeVar
+from typing import Any, ClassVar, Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.scenarios.run_folder.atomic_output import atomic, writing_to
+from peopleboy.scenarios.running.engine.store import code_digest
 from peopleboy.scenarios.running.engine.task import Tell, Workers
 from peopleboy.scenarios.running.engine.work_through import work_through
 
@@ -20,11 +23,18 @@ class Arrays:
 
     IS_COMPRESSED: ClassVar[bool] = True
 
+    def __len__(self) -> int:
+        return len(getattr(self, fields(self)[0].name))
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Return the arrays by name."""
+        return {each.name: getattr(self, each.name) for each in fields(self)}
+
     def save(self, path: Path) -> None:
         """Write the arrays, whole or not at all."""
-        arrays: dict[str, Any] = {each.name: getattr(self, each.name) for each in fields(self)}
+        write: Callable[..., None] = np.savez_compressed if self.IS_COMPRESSED else np.savez
         with atomic(path) as part, part.open("wb") as file:
-            (np.savez_compressed if self.IS_COMPRESSED else np.savez)(file, **arrays)
+            write(file, **self.arrays())
 
     @classmethod
     def load(cls, path: Path) -> Self:
@@ -35,10 +45,33 @@ class Arrays:
     @classmethod
     def join(cls, parts: Sequence[Self]) -> Self:
         """Concatenate at least one part, array by array."""
-        return cls(*(np.concatenate([getattr(one, each.name) for one in parts]) for each in fields(cls)))
+        return cls(
+            **{each.name: np.concatenate([getattr(one, each.name) for one in parts]) for each in fields(cls)}
+        )
+
+    def take(self, rows: NDArray[Any]) -> Self:
+        """Return some rows of samples, whose arrays all have as many, by number or by a mask."""
+        return type(self)(**{name: array[rows] for name, array in self.arrays().items()})
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return the arrays as plain data."""
+        return {name: [one.dtype.str, one.shape, one.ravel().tolist()] for name, one in self.arrays().items()}
+
+    @classmethod
+    def from_plain(cls, plain: Mapping[str, Any]) -> Self:
+        """Make arrays of plain data, equal to the last digit."""
+        return cls(**{name: np.array(one, kind).reshape(shape) for name, (kind, shape, one) in plain.items()})
 
 
 AnyArrays = TypeVar("AnyArrays", bound=Arrays)
+Part = TypeVar("Part")
+
+
+class Split(NamedTuple, Generic[Part]):
+    """What a model is trained on, and what it is evaluated on."""
+
+    training: Part
+    validation: Part
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,20 +99,34 @@ class SampleTask:
         self.collect(*self.arguments).save(self.path)
 
 
-def collect_missing(tasks: Iterable[SampleTask], workers: Workers, title: str) -> None:
+Tasks = Split[list[SampleTask]]
+
+
+def sample_folder(out: Path, *further: Path) -> Path:
+    """Return a folder in which all samples come from the code, and from other files, as they are now."""
+    return out / f"samples-{code_digest(*further)}"
+
+
+def collect_missing(tasks: Tasks, workers: Workers) -> None:
     """Collect the samples of all tasks whose files are not there, so that a killed call resumes.
 
     Raises:
         BadInput: a path that cannot be used.
         TasksFailed: some tasks failed, after all others were done.
     """
-    missing = [task for task in tasks if not task.path.is_file()]
-    for folder in {task.path.parent for task in missing}:
+    missing = [task for task in (*tasks.validation, *tasks.training) if not task.path.is_file()]
+    folders = {task.path.parent for task in missing}
+    for folder in folders:
         with writing_to(folder):
             folder.mkdir(parents=True, exist_ok=True)
-    work_through(missing, workers, title)
+    try:
+        work_through(missing, workers, "samples")
+    finally:
+        for folder in folders:
+            with suppress(OSError):
+                folder.rmdir()  # which refuses, unless nothing was left there
 
 
-def load_samples(kind: type[AnyArrays], tasks: Iterable[SampleTask]) -> AnyArrays:
+def load_samples(kind: type[AnyArrays], tasks: Sequence[SampleTask]) -> AnyArrays:
     """Read the samples of tasks that are done."""
     return kind.join([kind.load(task.path) for task in tasks])

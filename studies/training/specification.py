@@ -8,13 +8,14 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
-from typing import Any, ClassVar, Final, Generic, TypeVar
+from typing import Any, ClassVar, Final, Generic, TypeVar, cast
 
 from rich.console import Console
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.atomic_output import atomic, writing_to
 from peopleboy.scenarios.running.engine.task import Workers
+from peopleboy.studies.training.samples import Tasks, collect_missing
 from peopleboy.tracker.networks.weights_archive import SHIPPED
 
 MODELS: Final[Mapping[str, tuple[str, str]]] = {
@@ -77,13 +78,20 @@ class Specification(ABC, Generic[Data]):
         return Path("runs") / model
 
     @abstractmethod
-    def collect(self, out: Path, workers: Workers) -> Data:
-        """Collect samples for training and validation; what is in the folder already is used.
+    def tasks(self, out: Path) -> Tasks:
+        """Return the tasks that collect samples; a file that is in the folder already is used.
 
         Raises:
-            BadInput: a path or sequences that cannot be used.
-            TasksFailed: some sequences failed, after all others were done.
+            BadInput: sequences that cannot be used.
         """
+
+    def load(self, tasks: Tasks) -> Data:
+        """Read what the tasks left; without a method of its own, a model is trained on the files.
+
+        Raises:
+            BadInput: there are too few samples.
+        """
+        return cast(Data, tasks)
 
     @abstractmethod
     def fit(self, data: Data) -> Mapping[str, Any]:
@@ -135,10 +143,12 @@ def train(specification: Specification[Data], out: Path, workers: Workers, *, sh
     with writing_to(out):
         out.mkdir(parents=True, exist_ok=True)
     try:
-        data = specification.collect(out, workers)
+        tasks = specification.tasks(out)
+        collect_missing(tasks, workers)
     finally:
         with suppress(OSError):
-            out.rmdir()  # which refuses, unless nothing was left there
+            out.rmdir()
+    data = specification.load(tasks)
     paths = []
     for file, model in specification.fit(data).items():
         results = specification.evaluate(model, data)
@@ -149,16 +159,11 @@ def train(specification: Specification[Data], out: Path, workers: Workers, *, sh
             folder.mkdir(parents=True, exist_ok=True)
             with atomic(folder / file) as part:
                 replace(model, about={**model.about, **results}).save(part)
-        if ship:
-            _remove_replaced(specification, folder / file, model)
+        for path in sorted(folder.iterdir()) if ship else ():
+            if path.name != file and specification.is_replaced(path, model):
+                path.unlink()
         paths.append(folder / file)
     return paths
-
-
-def _remove_replaced(specification: Specification[Data], shipped: Path, model: Any) -> None:
-    for path in sorted(shipped.parent.iterdir()):
-        if path != shipped and specification.is_replaced(path, model):
-            path.unlink()
 
 
 def report(line: str) -> None:

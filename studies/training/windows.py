@@ -18,10 +18,9 @@ from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.running.blind_drive import blind_drive
-from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.studies.training.random_scenes import FIRST_SEED, random_scene
-from peopleboy.studies.training.samples import Arrays, SampleTask, collect_missing, load_samples
+from peopleboy.studies.training.samples import Arrays, SampleTask, Split, Tasks, load_samples, sample_folder
 from peopleboy.studies.training.specification import Specification, missing_package
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR
 from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
@@ -231,41 +230,44 @@ def _jittered(window: Box, rng: np.random.Generator) -> Box:
     return left, top, grown * width, grown * height
 
 
-Split = tuple[WindowSamples, WindowSamples]
-"""For training and for validation."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WindowsTraining(Specification[Split]):
+class WindowsTraining(Specification[Split[WindowSamples]]):
     """Train machines for near and far windows, by colour alone and with depth, on scenes drawn at random."""
 
     sequences: Annotated[int, Field(ge=1, description="Scenes to train on.")] = 300
 
-    def collect(self, out: Path, workers: Workers) -> Split:
+    def tasks(self, out: Path) -> Tasks:
         """Run scenes, and keep windows."""
+        folder = sample_folder(out, Path(__file__))
 
         def task(scenario: str, seed: int, *, has_jitter: bool) -> SampleTask:
-            path = out / "samples" / f"{scenario or 'scene'}_{seed}.npz"
+            path = folder / f"{scenario or 'scene'}_{seed}.npz"
             return SampleTask(path, collect_windows, (scenario, seed, has_jitter))
 
-        others = [task(name, k, has_jitter=False) for name, count in VALIDATION.items() for k in range(count)]
-        tasks = [task("", FIRST_SEED + k, has_jitter=True) for k in range(self.sequences)]
-        collect_missing([*others, *tasks], workers, "samples")
-        return load_samples(WindowSamples, tasks), load_samples(WindowSamples, others)
+        return Split(
+            [task("", FIRST_SEED + k, has_jitter=True) for k in range(self.sequences)],
+            [task(name, k, has_jitter=False) for name, count in VALIDATION.items() for k in range(count)],
+        )
 
-    def fit(self, data: Split) -> Mapping[str, WindowModel]:
+    def load(self, tasks: Tasks) -> Split[WindowSamples]:
+        """Read the samples."""
+        return Split(*(load_samples(WindowSamples, part) for part in tasks))
+
+    def fit(self, data: Split[WindowSamples]) -> Mapping[str, WindowModel]:
         """Train both pairs of machines."""
         about = {"trained on": f"{self.sequences} scenes drawn at random, seeds from {FIRST_SEED}"}
         return {
             file_name(sees_depth=sees): WindowModel(
-                {kind: fit_machine(data[0], kind, sees_depth=sees) for kind in WindowRange}, about
+                {kind: fit_machine(data.training, kind, sees_depth=sees) for kind in WindowRange}, about
             )
             for sees in (False, True)
         }
 
-    def evaluate(self, model: WindowModel, data: Split) -> Mapping[str, str]:
+    def evaluate(self, model: WindowModel, data: Split[WindowSamples]) -> Mapping[str, str]:
         """Measure recall and false alarms by range."""
-        return {f"{kind}, on other scenes": evaluate_machine(model, data[1], kind) for kind in WindowRange}
+        return {
+            f"{kind}, on other scenes": evaluate_machine(model, data.validation, kind) for kind in WindowRange
+        }
 
 
 def fit_machine(samples: WindowSamples, kind: WindowRange, *, sees_depth: bool) -> Features:

@@ -38,7 +38,7 @@ class BoxRefinementNetwork(CropNetwork):
 
     def predict(self, planes: Planes, features: Planes, workspace: Workspace | None = None) -> Floats:
         """Return offsets (N, 4) for crops (N, 96, 72, 3) with features (N, 9), the score aside."""
-        outputs = self.outputs(planes, features[:, 1:], workspace)
+        outputs = self.outputs(planes, features, workspace)
         return np.asarray(outputs.astype(np.float64) * SCALES + USUAL)
 
 

@@ -154,12 +154,12 @@ class CropNetwork:
 
         Args:
             planes: the crops.
-            features: (N, features).
+            features: (N, F) numbers of which the network gets the last ones, as many as its architecture has.
             workspace: buffers; None for new ones, which cost a quarter of the time.
         """
-        weights, count = self.weights, features.shape[1]
+        weights, count = self.weights, self.ARCHITECTURE.features
         flat = np.empty((len(planes), len(weights["all"])), np.float32)
-        flat[:, -count:] = features
+        flat[:, -count:] = features[:, -count:]
         dense = DenseNetwork([(weights["all"], weights["all_bias"]), (weights["last"], weights["last_bias"])])
         with one_thread():
             flat[:, :-count] = self._convolve(planes, workspace or Workspace()).reshape(len(planes), -1)

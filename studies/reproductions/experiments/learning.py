@@ -17,14 +17,7 @@ from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.statistics import SHARE
 from peopleboy.studies.reproductions.tracker_settings import TrackerSetting
 from peopleboy.studies.reproductions.units import Measurement, Unit
-from peopleboy.studies.training.occlusion_pairs import (
-    LEAST,
-    SCENARIOS,
-    PairSample,
-    collect_pairs,
-    parse_pairs,
-    plain_pairs,
-)
+from peopleboy.studies.training.occlusion_pairs import LEAST, SCENARIOS, PairSamples, collect_pairs
 from peopleboy.tracker.contour.occlusion.pair_features import FEATURES
 from peopleboy.tracker.contour.occlusion.weak_classifiers import weighted_sums
 
@@ -95,13 +88,7 @@ def _learned(
     plan = using.plan
     collected = {name: _pair_units(plan, setting) for name, setting in TRACKERS.items()}
     examples = {
-        name: tuple(
-            example
-            for (scenario, seed, _), result in zip(
-                (unit.arguments for unit in collected[name]), results, strict=True
-            )
-            for example in parse_pairs(scenario, seed, result["pairs"])
-        )
+        name: PairSamples.join([PairSamples.from_plain(result) for result in results])
         for name, results in using.grouped(collected).items()
     }
     units = {
@@ -123,9 +110,7 @@ def _pair_units(plan: Plan, setting: TrackerSetting) -> list[Unit]:
     ]
 
 
-def learn_unit(
-    way: Classifiers, plan: Plan, examples: tuple[PairSample, ...], tracker: str, split: int
-) -> Unit:
+def learn_unit(way: Classifiers, plan: Plan, examples: PairSamples, tracker: str, split: int) -> Unit:
     """Learn from one split of a tracker's examples."""
     key = (
         f"learn {','.join(way.features)} by {way.most} | {len(examples)} pairs of {TRACKERS[tracker].key}, "
@@ -136,11 +121,11 @@ def learn_unit(
 
 def measure_pairs(scenario: str, seed: int, setting: TrackerSetting) -> Result:
     """Run a tracker through a scenario, and keep what it measured of people who overlap."""
-    return {"pairs": plain_pairs(collect_pairs(scenario, seed, setting.config()))}
+    return collect_pairs(scenario, seed, setting.config()).to_plain()
 
 
 def learn_pairs(
-    features: tuple[str, ...], most: int, rounds: int, split: int, examples: tuple[PairSample, ...]
+    features: tuple[str, ...], most: int, rounds: int, split: int, examples: PairSamples
 ) -> Result:
     """Learn from examples that are split at random, and scenario by scenario, and test on the rest.
 

@@ -106,7 +106,7 @@ def draw_correlations(using: Measurement) -> Figure:
 def draw_path(using: Measurement) -> Figure:
     """Draw a piece of a path on the floor, true and estimated (figure 6)."""
     (first,) = using.results(walk_units(using.plan, ROOMS[0])[:1])
-    return panoramic_figures.draw_path(DistanceSamples.from_rows(first["rows"]))
+    return panoramic_figures.draw_path(DistanceSamples.from_plain(first))
 
 
 def webcams(using: Measurement) -> Samples:
@@ -141,15 +141,18 @@ def _runs(runs: Iterable[ErrorSummary]) -> ImageErrors:
 
 def walk_units(plan: Plan, room: str) -> list[Unit]:
     """List the runs in which people walk in a room before the panoramic camera."""
-    return [Unit(f"walk {room}-{seed}", collect_distances, (room, seed)) for seed in range(plan.walks)]
+    return [Unit(f"walk {room}-{seed}", measure_walk, (room, seed)) for seed in range(plan.walks)]
+
+
+def measure_walk(room: str, seed: int) -> Result:
+    """Run people through a room, and keep what is measured of them."""
+    return collect_distances(room, seed).to_plain()
 
 
 def examples_of(using: Measurement, room: str) -> list[DistanceSamples]:
     """Return what was measured in each run; all rooms' runs are asked for at once."""
     using.results(unit for one in ROOMS for unit in walk_units(using.plan, one))
-    return [
-        DistanceSamples.from_rows(result["rows"]) for result in using.results(walk_units(using.plan, room))
-    ]
+    return [DistanceSamples.from_plain(result) for result in using.results(walk_units(using.plan, room))]
 
 
 def _split_units(plan: Plan, room: str, split: str, walks: Sequence[DistanceSamples]) -> list[Unit]:

@@ -3,28 +3,39 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
+from itertools import islice
 from pathlib import Path
-from typing import Any, ClassVar, Final, NamedTuple
+from typing import Annotated, Any, ClassVar, Final, NamedTuple
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import optax
 from numpy.typing import NDArray
+from pydantic import Field
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.running.engine.task import Workers
-from peopleboy.studies.training.detector.world_sequences import render_task
+from peopleboy.studies.training.detector.augmentation import Version, versions
+from peopleboy.studies.training.detector.boosting import in_threads
+from peopleboy.studies.training.detector.world_sequences import load_images, render_task
 from peopleboy.studies.training.detector.worlds import LATER, seeds_of
-from peopleboy.studies.training.optimiser import Optimiser, Weights, he_weights
-from peopleboy.studies.training.samples import SampleTask, collect_missing
+from peopleboy.studies.training.optimiser import Optimiser, Weights, he_weights, shuffled
+from peopleboy.studies.training.samples import Arrays, SampleTask, Split, Tasks
 from peopleboy.studies.training.specification import Specification, report
 from peopleboy.tracker.boxes import Floats, iou
 from peopleboy.tracker.detector.box_regression import OFFSETS, decode_boxes
-from peopleboy.tracker.detector.crops import FEATURES, Crops, Planes, normalise_crops
+from peopleboy.tracker.detector.crops import (
+    FEATURES,
+    Crops,
+    Planes,
+    crop_features,
+    cut_crops,
+    normalise_crops,
+)
+from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.networks.inference import CHANNELS, Architecture, CropNetwork, CropSize
 
 Array = jax.Array | Planes
@@ -39,7 +50,9 @@ _HELD_BACK: Final = 10  # of so many worlds one is not trained on
 _AT_ONCE: Final = 256  # crops
 
 
-class CropSamples(NamedTuple):
+@jax.tree_util.register_dataclass
+@dataclass(frozen=True, slots=True, eq=False)
+class CropSamples(Arrays):
     """Crops of images, with the people that they show.
 
     Attributes:
@@ -55,19 +68,21 @@ class CropSamples(NamedTuple):
     offsets: Planes
 
     @classmethod
-    def join(cls, parts: Iterable[CropSamples], size: CropSize) -> CropSamples:
-        """Concatenate samples with crops of a size."""
-        none = cls(
-            np.empty((0, size.rows, size.columns, CHANNELS), np.uint8),
-            np.empty((0, FEATURES), np.float32),
-            np.empty(0, np.float32),
-            np.empty((0, OFFSETS), np.float32),
-        )
-        return cls(*(np.concatenate(column) for column in zip(none, *parts, strict=True)))
+    def empty(cls, size: CropSize) -> CropSamples:
+        """Return no samples with crops of a size."""
+        none = (size.rows, size.columns, CHANNELS), (FEATURES,), (), (OFFSETS,)
+        kinds = (np.uint8, np.float32, np.float32, np.float32)
+        return cls(*(np.empty((0, *shape), kind) for shape, kind in zip(none, kinds, strict=True)))
 
-    def take(self, rows: NDArray[np.intp]) -> CropSamples:
-        """Return the samples of these rows."""
-        return CropSamples(self.crops[rows], self.features[rows], self.overlap[rows], self.offsets[rows])
+    @classmethod
+    def cut(
+        cls, version: Version, found: Detections, overlap: Floats, offsets: Floats, size: CropSize
+    ) -> CropSamples:
+        """Cut detections out of an image."""
+        image, mount, _ = version
+        crops = cut_crops(image.grey, image.change, found.box, size)
+        features = crop_features(found, crops, (image.grey.shape[0], image.grey.shape[1]), mount)
+        return cls(crops, features, overlap.astype(np.float32), offsets.astype(np.float32))
 
     def mirror(self) -> CropSamples:
         """Swap left and right."""
@@ -77,17 +92,15 @@ class CropSamples(NamedTuple):
         return CropSamples(self.crops[:, :, ::-1], features, self.overlap, offset)
 
 
-CropLoss = Callable[[Weights, Array, CropSamples, Array | float], tuple[jax.Array, dict[str, jax.Array]]]
-"""Of weights, normalised crops, samples, and what (N, units) of dropout multiplies units by."""
+CropLoss = Callable[[jax.Array, CropSamples], tuple[jax.Array, dict[str, jax.Array]]]
+"""Of the outputs (N, outputs) of a network, and the samples: what is minimised, and results to report."""
 
 
 class CropData(NamedTuple):
-    """Tasks of sequences and samples, for training and for validation."""
+    """Tasks of sequences, and the samples of all."""
 
-    training: list[SampleTask]
-    validation: list[SampleTask]
-    samples: CropSamples
-    others: CropSamples
+    tasks: Tasks
+    samples: Split[CropSamples]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,14 +114,18 @@ class CropTraining(Specification[CropData]):
     FILE: ClassVar[str]
     EPOCHS: ClassVar[int]
     DROPOUT: ClassVar[float]
+    VERSIONS: ClassVar[int]
+    """Of each image to train on."""
+
+    sequences: Annotated[int, Field(ge=5, le=2000, description="Worlds to train on.")] = 600
 
     def default_folder(self, model: str) -> Path:  # noqa: ARG002
         """Return the folder that all models of the detector share."""
         return Path("runs/detector")
 
     @abstractmethod
-    def sample(self, task: SampleTask, *, augments: bool) -> CropSamples:
-        """Collect the samples of a sequence."""
+    def sample(self, version: Version, *, augments: bool) -> CropSamples:
+        """Collect the samples of an image; its random numbers draw how they are augmented."""
 
     @abstractmethod
     def check(self, others: CropSamples) -> None:
@@ -119,39 +136,41 @@ class CropTraining(Specification[CropData]):
         """
 
     @abstractmethod
-    def finish(
-        self, weights: dict[str, Planes], about: Mapping[str, str], others: CropSamples
-    ) -> CropNetwork:
-        """Make a network of trained weights."""
+    def loss(self, outputs: jax.Array, batch: CropSamples) -> tuple[jax.Array, dict[str, jax.Array]]:
+        """Return what is minimised for the outputs for a batch, and results to report."""
 
-    def loss(
-        self, weights: Weights, planes: Array, batch: CropSamples, kept: Array | float
-    ) -> tuple[jax.Array, dict[str, jax.Array]]:
-        """Return what is minimised for a batch, and results to report."""
-        raise NotImplementedError
-
-    def collect(self, out: Path, workers: Workers) -> CropData:
-        """Render worlds, and collect samples of their sequences."""
+    def tasks(self, out: Path) -> Tasks:
+        """Render worlds."""
         tasks = [render_task(out / "sequences", seed) for seed in later_seeds(self.sequences)]
-        collect_missing(tasks, workers, "sequences")
         held = [task for task in tasks if seed_of(task) % _HELD_BACK == _HELD_BACK - 1] or tasks[-1:]
-        training, size = [task for task in tasks if task not in held], self.NETWORK.ARCHITECTURE.crop
-        samples = CropSamples.join((self.sample(task, augments=True) for task in training), size)
-        others = CropSamples.join((self.sample(task, augments=False) for task in held), size)
+        return Split([task for task in tasks if task not in held], held)
+
+    def load(self, tasks: Tasks) -> CropData:
+        """Collect samples of the worlds."""
+        samples = Split(self._samples(tasks.training, augments=True), self._samples(tasks.validation))
         report(
-            f"{len(training)} sequences, {len(samples.overlap)} samples for training, "
-            f"{len(others.overlap)} for validation"
+            f"{len(tasks.training)} sequences, {len(samples.training)} samples for training, "
+            f"{len(samples.validation)} for validation"
         )
-        self.check(others)
-        return CropData(training, held, samples, others)
+        self.check(samples.validation)
+        return CropData(tasks, samples)
+
+    def _samples(self, tasks: Iterable[SampleTask], *, augments: bool = False) -> CropSamples:
+        parts = [CropSamples.empty(self.NETWORK.ARCHITECTURE.crop)]
+        for task in tasks:
+            images, rng = load_images([task.path]), np.random.default_rng(seed_of(task))
+            drawn = versions(images, rng, self.VERSIONS if augments else 0)
+            # Only augmented images have random numbers of their own.
+            each = in_threads if augments else map
+            parts += each(partial(self.sample, augments=augments), drawn)
+        return CropSamples.join(parts)
 
     def fit(self, data: CropData) -> Mapping[str, CropNetwork]:
         """Train the network."""
-        weights = fit_crops(
-            self.NETWORK.ARCHITECTURE, self.loss, data.samples, epochs=self.EPOCHS, dropout=self.DROPOUT
-        )
-        about = {"trained on": f"{len(data.training)} sequences, {len(data.samples.overlap)} samples"}
-        return {self.FILE: self.finish(weights, about, data.others)}
+        samples, architecture = data.samples.training, self.NETWORK.ARCHITECTURE
+        weights = fit_crops(architecture, self.loss, samples, epochs=self.EPOCHS, dropout=self.DROPOUT)
+        about = {"trained on": f"{len(data.tasks.training)} sequences, {len(samples)} samples"}
+        return {self.FILE: self.NETWORK(weights, about)}
 
 
 def later_seeds(worlds: int) -> list[int]:
@@ -168,7 +187,7 @@ def predictions(network: Any, samples: CropSamples) -> Floats:
     """Return what a network predicts (N, outputs) for samples."""
     parts = [
         network.predict(normalise_crops(samples.crops[k : k + _AT_ONCE]), samples.features[k : k + _AT_ONCE])
-        for k in range(0, len(samples.overlap), _AT_ONCE)
+        for k in range(0, len(samples), _AT_ONCE)
     ]
     return np.concatenate([np.empty((0, network.ARCHITECTURE.outputs)), *parts])
 
@@ -208,9 +227,9 @@ def fit_crops(
     Raises:
         BadInput: there are too few samples.
     """
-    rng, batches = np.random.default_rng(0), epochs * (len(samples.overlap) // BATCH)
-    if not batches:
-        raise BadInput(f"{len(samples.overlap)} samples, at least {BATCH} are needed; take more sequences")
+    rng, count = np.random.default_rng(0), epochs * (len(samples) // BATCH)
+    if not count:
+        raise BadInput(f"{len(samples)} samples, at least {BATCH} are needed; take more sequences")
 
     def augmented_loss(
         weights: Weights, inputs: tuple[Planes, CropSamples], key: jax.Array
@@ -219,7 +238,8 @@ def fit_crops(
         for_crops, for_units = jax.random.split(key)
         shape = (len(planes), architecture.units)
         kept = (jax.random.uniform(for_units, shape) >= dropout) / (1.0 - dropout)
-        return loss(weights, augment_crops(jnp.asarray(planes), for_crops), batch, kept)
+        varied = augment_crops(jnp.asarray(planes), for_crops)
+        return loss(network_outputs(architecture, weights, varied, batch.features, kept), batch)
 
     optimiser = Optimiser(
         augmented_loss,
@@ -228,24 +248,22 @@ def fit_crops(
         decay=_DECAY,
         averages=True,
     )
-    rate = optax.warmup_cosine_decay_schedule(0.0, _RATE, min(_WARM_UP, batches // 2), batches)
-    total = Counter[str]()
-    for number, batch in enumerate(_batches(samples, rng, epochs), 1):
-        inputs = (normalise_crops(batch.crops), batch)
-        total.update(optimiser.step(inputs, float(rate(number - 1))))
-        if number % _REPORTED == 0:
-            means = ", ".join(f"{name} {value / _REPORTED:.3f}" for name, value in total.items())
-            report(f"{number} of {batches} batches: {means}")
-            total.clear()
+    rate = optax.warmup_cosine_decay_schedule(0.0, _RATE, min(_WARM_UP, count // 2), count)
+    left = ((batch, float(rate(number))) for number, batch in enumerate(_batches(samples, rng, epochs)))
+    while some := list(islice(left, _REPORTED)):
+        means = ", ".join(f"{name} {value:.3f}" for name, value in optimiser.run(some).items())
+        report(f"{optimiser.steps} of {count} batches: {means}")
     return optimiser.weights
 
 
-def _batches(samples: CropSamples, rng: np.random.Generator, epochs: int) -> Iterator[CropSamples]:
+def _batches(
+    samples: CropSamples, rng: np.random.Generator, epochs: int
+) -> Iterator[tuple[Planes, CropSamples]]:
     for _ in range(epochs):
-        order = rng.permutation(len(samples.overlap))
-        for begin in range(0, len(order) - BATCH + 1, BATCH):
-            batch = samples.take(np.sort(order[begin : begin + BATCH]))
-            yield batch.mirror() if rng.random() < 0.5 else batch
+        for rows in shuffled(len(samples), BATCH, rng):
+            batch = samples.take(np.sort(rows))
+            batch = batch.mirror() if rng.random() < 0.5 else batch
+            yield normalise_crops(batch.crops), batch
 
 
 def network_outputs(
@@ -257,7 +275,7 @@ def network_outputs(
         architecture: of the network.
         weights: of it.
         planes: (N, rows, columns, 3) crops.
-        features: (N, features) of the detections.
+        features: (N, 9) of the detections, of which it gets the last ones.
         kept: (N, units) by what units are multiplied, for dropout.
     """
     here = jnp.asarray(planes)
@@ -271,7 +289,7 @@ def network_outputs(
             dimension_numbers=("NHWC", "HWIO", "NHWC"),
         )
         here = jax.nn.relu(here + weights[f"bias{layer}"])
-    flat = jnp.concatenate([here.reshape(len(here), -1), features], axis=1)
+    flat = jnp.concatenate([here.reshape(len(here), -1), features[:, -architecture.features :]], axis=1)
     units = kept * jax.nn.relu(flat @ weights["all"] + weights["all_bias"])
     return jnp.asarray(units @ weights["last"] + weights["last_bias"])
 

@@ -4,37 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, Final
+from typing import ClassVar, Final
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
 
 from peopleboy.bad_input import BadInput
-from peopleboy.studies.training.detector.augmentation import Version, versions
+from peopleboy.studies.training.detector.augmentation import Version
 from peopleboy.studies.training.detector.crop_samples import (
-    Array,
     CropData,
     CropSamples,
     CropTraining,
     mean_overlaps,
-    network_outputs,
     predictions,
-    seed_of,
 )
-from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images
-from peopleboy.studies.training.optimiser import Weights, huber
-from peopleboy.studies.training.samples import SampleTask
+from peopleboy.studies.training.detector.world_sequences import ThermalImage
+from peopleboy.studies.training.optimiser import huber
 from peopleboy.tracker.boxes import area, cover, intersection, iou
 from peopleboy.tracker.detector.box_refinement import FILE, SCALES, USUAL, BoxRefinementNetwork
 from peopleboy.tracker.detector.box_regression import encode_boxes
-from peopleboy.tracker.detector.crops import Planes, crop_features, cut_crops
 from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.detector.window import Floats
 
-_VERSIONS: Final = 4  # of each image
 _HARDLY_VISIBLE: Final = 0.3  # of people that are hidden or not upright are trained on
 _INSIDE: Final = 0.25  # of a box, at least
 _TALL_PX: Final = 16.0
@@ -60,26 +53,23 @@ class BoxRefinementTraining(CropTraining):
     FILE: ClassVar[str] = FILE
     EPOCHS: ClassVar[int] = 2
     DROPOUT: ClassVar[float] = 0.2
+    VERSIONS: ClassVar[int] = 4
 
-    sequences: Annotated[int, Field(ge=5, le=2000, description="Worlds to train on.")] = 600
-
-    def sample(self, task: SampleTask, *, augments: bool) -> CropSamples:
-        """Collect people in a sequence, whose seed draws how images are augmented and boxes displaced."""
-        rng = np.random.default_rng(seed_of(task))
-        drawn = versions(list(load_images([task.path])), rng, _VERSIONS if augments else 0)
-        return CropSamples.join(map(sample_version, drawn), BoxRefinementNetwork.ARCHITECTURE.crop)
+    def sample(self, version: Version, *, augments: bool) -> CropSamples:  # noqa: ARG002
+        """Collect the people of an image, with displaced boxes."""
+        people = version.image.box[_is_sampled(version.image, version.rng)]
+        boxes = _displace(people, version.rng)
+        found = Detections.from_trees(boxes, np.zeros(len(boxes)))
+        size = self.NETWORK.ARCHITECTURE.crop
+        return CropSamples.cut(version, found, iou(boxes, people), encode_boxes(boxes, people), size)
 
     def check(self, others: CropSamples) -> None:
         """Refuse sequences without people."""
-        if not len(others.overlap):
+        if not len(others):
             raise BadInput("no people are visible in the validation sequences; take more sequences")
 
-    def loss(
-        self, weights: Weights, planes: Array, batch: CropSamples, kept: Array | float
-    ) -> tuple[jax.Array, dict[str, jax.Array]]:
+    def loss(self, outputs: jax.Array, batch: CropSamples) -> tuple[jax.Array, dict[str, jax.Array]]:
         """Return the losses of overlap (Yu et al., UnitBox 2016) and of offsets in units."""
-        architecture = BoxRefinementNetwork.ARCHITECTURE
-        outputs = network_outputs(architecture, weights, planes, batch.features[:, 1:], kept)
         off = jnp.abs(outputs - (batch.offsets - USUAL) / SCALES)
         offsets = jnp.clip(outputs, -_CLIPPED, _CLIPPED) * SCALES + USUAL
         overlap = _iou(offsets, jnp.asarray(batch.offsets))
@@ -87,36 +77,13 @@ class BoxRefinementTraining(CropTraining):
         whole = _OVERLAP * (1.0 - overlap) + _UNITS * units
         return whole.mean(), {"overlap": overlap.mean(), "units off": off.mean()}
 
-    def finish(
-        self,
-        weights: dict[str, Planes],
-        about: Mapping[str, str],
-        others: CropSamples,  # noqa: ARG002
-    ) -> BoxRefinementNetwork:
-        """Make the network."""
-        return BoxRefinementNetwork(weights, about)
-
     def evaluate(self, model: BoxRefinementNetwork, data: CropData) -> Mapping[str, str]:
         """Measure by how much boxes are nearer to people."""
-        others = data.others
-        rows = np.ones(len(others.overlap), np.bool_)
+        others = data.samples.validation
+        rows = np.ones(len(others), np.bool_)
         before, after = mean_overlaps(predictions(model, others), others, rows)
-        return {
-            f"on {len(data.validation)} others": f"{len(rows)} boxes: mean overlap {before:.3f} before, "
-            f"{after:.3f} refined"
-        }
-
-
-def sample_version(version: Version) -> CropSamples:
-    """Collect the people of an image, with displaced boxes."""
-    image, mount, rng = version
-    people = image.box[_is_sampled(image, rng)]
-    boxes = _displace(people, rng)
-    crops = cut_crops(image.grey, image.change, boxes, BoxRefinementNetwork.ARCHITECTURE.crop)
-    found = Detections.from_trees(boxes, np.zeros(len(boxes)))
-    features = crop_features(found, crops, (image.grey.shape[0], image.grey.shape[1]), mount)
-    offsets = encode_boxes(boxes, people).astype(np.float32)
-    return CropSamples(crops, features, iou(boxes, people).astype(np.float32), offsets)
+        result = f"{len(rows)} boxes: mean overlap {before:.3f} before, {after:.3f} refined"
+        return {f"on {len(data.tasks.validation)} others": result}
 
 
 def _is_sampled(image: ThermalImage, rng: np.random.Generator) -> NDArray[np.bool_]:

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.training.detector.boosting import Binned, Boosting
 from peopleboy.studies.training.detector.evaluation import calibrate, evaluate_trees
 from peopleboy.studies.training.detector.mining import (
@@ -24,7 +23,7 @@ from peopleboy.studies.training.detector.mining import (
 )
 from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images, render_task
 from peopleboy.studies.training.detector.worlds import KINDS, seeds_of
-from peopleboy.studies.training.samples import collect_missing
+from peopleboy.studies.training.samples import Split, Tasks
 from peopleboy.studies.training.specification import Specification, report
 from peopleboy.tracker.detector.box_regression import BoxRegression
 from peopleboy.tracker.detector.cascade import Cascade
@@ -76,17 +75,8 @@ _LAST: Final = -4.0
 _LINEAR_FROM: Final = 0.9  # quantile of errors from which on the loss of boxes is linear (Huber)
 
 
-@dataclass(frozen=True, slots=True)
-class CascadeData:
-    """Files of sequences for training, for calibration, and for validation."""
-
-    training: list[Path]
-    calibration: list[Path]
-    validation: list[Path]
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CascadeTraining(Specification[CascadeData]):
+class CascadeTraining(Specification[Tasks]):
     """Train on random worlds: as drawn, full of people, plain, both, or warm.
 
     A tenth is held back, to calibrate scores.
@@ -114,41 +104,37 @@ class CascadeTraining(Specification[CascadeData]):
         """The kinds of windows that are trained."""
         return [kind for kind in WindowKind if kind in self.windows]
 
-    def collect(self, out: Path, workers: Workers) -> CascadeData:
+    def tasks(self, out: Path) -> Tasks:
         """Render the worlds."""
-        folder = out / "sequences"
-        validation = [render_task(folder, seed) for seed in range(VALIDATION)]
-        tasks = [render_task(folder, seed) for seed in seeds_of(self.sequences)]
-        collect_missing([*validation, *tasks], workers, "sequences")
-        held = tasks[_HELD_BACK - 1 :: _HELD_BACK] or tasks[-1:]
-        splits = ([task for task in tasks if task not in held], held, validation)
-        return CascadeData(*([task.path for task in split] for split in splits))
+        seeds = seeds_of(self.sequences), range(VALIDATION)
+        return Split(*([render_task(out / "sequences", seed) for seed in part] for part in seeds))
 
-    def fit(self, data: CascadeData) -> Mapping[str, PeopleModel]:
+    def fit(self, data: Tasks) -> Mapping[str, PeopleModel]:
         """Train the trees of the chosen kinds."""
-        images, shipped = list(load_images(data.training)), shipped_people_trees()
+        held = data.training[_HELD_BACK - 1 :: _HELD_BACK] or data.training[-1:]
+        images = load_images(one.path for one in data.training if one not in held)
+        others, shipped = load_images(one.path for one in held), shipped_people_trees()
         if self.only_boxes:
             trees = {kind: with_boxes(images, shipped.trees[kind].cascade, kind) for kind in self.kinds}
         else:
-            trees = fit_trees(images, list(load_images(data.calibration)), self.kinds)
+            trees = fit_trees(images, others, self.kinds)
         counts = ((len(kind.seeds(self.sequences)), kind) for kind in KINDS)
         drawn = ", ".join(f"{count} {kind.description} from seed {kind.first_seed}" for count, kind in counts)
         parts = ("where {} people are",) if self.only_boxes else ("{} people", "where {} people are")
         about = {
-            part.format(kind): f"{drawn}; {len(data.calibration)} of them held back"
+            part.format(kind): f"{drawn}; {len(held)} of them held back"
             for part in parts
             for kind in self.kinds
         }
         before = shipped if self.only_boxes or len(trees) < len(WindowKind) else PeopleModel({})
         return {FILE: PeopleModel({**before.trees, **trees}, {**before.about, **about})}
 
-    def evaluate(self, model: PeopleModel, data: CascadeData) -> Mapping[str, str]:
+    def evaluate(self, model: PeopleModel, data: Tasks) -> Mapping[str, str]:
         """Measure detections in worlds that were not trained on."""
+        images = load_images(task.path for task in data.validation)
         return {
-            f"on worlds 0 to {VALIDATION - 1}, {mount}": str(
-                evaluate_trees(model, load_images(data.validation), knows_mount=mount == "mount known")
-            )
-            for mount in ("mount known", "mount unknown")
+            f"on worlds 0 to {VALIDATION - 1}, {mount}": str(evaluate_trees(model, images, knows_mount=knows))
+            for mount, knows in (("mount known", True), ("mount unknown", False))
         }
 
 

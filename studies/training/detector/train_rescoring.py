@@ -3,46 +3,38 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import partial
-from typing import Annotated, ClassVar, Final
+from dataclasses import dataclass
+from typing import ClassVar, Final
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
 
-from peopleboy.studies.training.detector.augmentation import Version, versions
-from peopleboy.studies.training.detector.boosting import in_threads
+from peopleboy.studies.training.detector.augmentation import Version
 from peopleboy.studies.training.detector.crop_samples import (
-    Array,
     CropData,
     CropSamples,
     CropTraining,
     mean_overlaps,
-    network_outputs,
     predictions,
-    seed_of,
 )
 from peopleboy.studies.training.detector.evaluation import check_labels, log_odds_line
-from peopleboy.studies.training.detector.world_sequences import load_images
-from peopleboy.studies.training.optimiser import Weights, huber
-from peopleboy.studies.training.samples import SampleTask
+from peopleboy.studies.training.optimiser import huber
 from peopleboy.tracker.boxes import Floats, iou
 from peopleboy.tracker.detector.box_regression import OFFSETS, encode_boxes
-from peopleboy.tracker.detector.crops import SCORES, Planes, crop_features, cut_crops
+from peopleboy.tracker.detector.crops import SCORES
 from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.detector.detector import SMALLEST_PX, WEAKEST, detect_with_trees
-from peopleboy.tracker.detector.people_trees import PeopleModel, shipped_people_trees
+from peopleboy.tracker.detector.people_trees import shipped_people_trees
 from peopleboy.tracker.detector.rescoring import FILE, SCALES, USUAL, RescoringNetwork
+from peopleboy.tracker.networks.inference import CropNetwork
 
 POSITIVE: Final = 0.35
 """IoU from which on a detection is a person."""
 NEGATIVE: Final = 0.2
 """IoU up to which it is none; what is between is neither."""
 
-_VERSIONS: Final = 2  # of each image
 _JITTERED: Final = 0.5  # of detections are trained on a second time, elsewhere
 _ASIDE: Final = (0.04, 0.05)  # deviations of where, in heights to the right and down
 _GROWN: Final = 0.09  # of the logarithm of the size
@@ -59,26 +51,22 @@ class RescoringTraining(CropTraining):
     FILE: ClassVar[str] = FILE
     EPOCHS: ClassVar[int] = 4
     DROPOUT: ClassVar[float] = 0.4
+    VERSIONS: ClassVar[int] = 2
 
-    sequences: Annotated[int, Field(ge=5, le=2000, description="Worlds to train on.")] = 600
-
-    def sample(self, task: SampleTask, *, augments: bool) -> CropSamples:
-        """Collect what the cascade detects in a sequence, whose seed draws how its images are augmented."""
-        rng, trees = np.random.default_rng(seed_of(task)), shipped_people_trees()
-        drawn = versions(list(load_images([task.path])), rng, _VERSIONS if augments else 0)
-        parts = in_threads(partial(sample_version, trees=trees, jitters=augments), drawn)
-        return CropSamples.join(parts, RescoringNetwork.ARCHITECTURE.crop)
+    def sample(self, version: Version, *, augments: bool) -> CropSamples:
+        """Collect what the cascade detects in an image; some of it again, a little elsewhere."""
+        image, mount, rng = version
+        trees = shipped_people_trees()
+        found = detect_with_trees(trees, image.grey, image.change, mount, SMALLEST_PX, WEAKEST)
+        found = _jitter(found, rng) if augments else found
+        return CropSamples.cut(version, found, *_match(found.box, image.box), self.NETWORK.ARCHITECTURE.crop)
 
     def check(self, others: CropSamples) -> None:
         """Refuse samples by which no scores can be calibrated."""
         check_labels(_labelled(np.zeros(len(others.overlap)), others)[1])
 
-    def loss(
-        self, weights: Weights, planes: Array, batch: CropSamples, kept: Array | float
-    ) -> tuple[jax.Array, dict[str, jax.Array]]:
+    def loss(self, outputs: jax.Array, batch: CropSamples) -> tuple[jax.Array, dict[str, jax.Array]]:
         """Return the losses of log odds, and of offsets in units."""
-        architecture = RescoringNetwork.ARCHITECTURE
-        outputs = network_outputs(architecture, weights, planes, batch.features, kept)
         score = outputs[:, 0] + SCORES * batch.features[:, 0]
         is_person = batch.overlap >= POSITIVE
         counts = is_person | (batch.overlap < NEGATIVE)
@@ -90,37 +78,24 @@ class RescoringTraining(CropTraining):
         }
         return entropy.mean() + _OFFSETS * huber(off, _LINEAR_FROM).mean(), results
 
-    def finish(
-        self, weights: dict[str, Planes], about: Mapping[str, str], others: CropSamples
-    ) -> RescoringNetwork:
-        """Calibrate the scores."""
-        line = np.array([1.0, 0.0], np.float32)
-        return with_log_odds(RescoringNetwork(weights | {"line": line}, about), others)
+    def fit(self, data: CropData) -> Mapping[str, CropNetwork]:
+        """Train the network, and calibrate its scores."""
+        network = CropTraining.fit(self, data)[FILE]
+        return {FILE: with_log_odds(network, data.samples.validation)}
 
     def evaluate(self, model: RescoringNetwork, data: CropData) -> Mapping[str, str]:
         """Measure by how much scores and boxes are better than the cascade's."""
-        others, predicted = data.others, predictions(model, data.others)
+        others = data.samples.validation
+        predicted = predictions(model, others)
         first, is_person = _labelled(SCORES * others.features[:, 0].astype(np.float64), others)
         second, _ = _labelled(predicted[:, 0], others)
         losses = [np.logaddexp(0.0, np.where(is_person, -s, s)).mean() for s in (first, second)]
         before, after = mean_overlaps(predicted[:, 1:], others, others.overlap >= POSITIVE)
-        return {
-            f"on {len(data.validation)} others": f"{len(first)} detections, {is_person.sum()} of people: log "
-            f"loss {losses[0]:.3f} of the cascade, {losses[1]:.3f} rescored; mean overlap {before:.3f}, "
-            f"{after:.3f}"
-        }
-
-
-def sample_version(version: Version, *, trees: PeopleModel, jitters: bool) -> CropSamples:
-    """Collect what trees detect in an image; with jitter, some of it again, a little elsewhere."""
-    image, mount, rng = version
-    found = detect_with_trees(trees, image.grey, image.change, mount, SMALLEST_PX, WEAKEST)
-    if jitters:
-        found = _jitter(found, rng)
-    crops = cut_crops(image.grey, image.change, found.box, RescoringNetwork.ARCHITECTURE.crop)
-    overlap, offset = _match(found.box, image.box)
-    features = crop_features(found, crops, (image.grey.shape[0], image.grey.shape[1]), mount)
-    return CropSamples(crops, features, overlap.astype(np.float32), offset.astype(np.float32))
+        result = (
+            f"{len(first)} detections, {is_person.sum()} of people: log loss {losses[0]:.3f} of the cascade, "
+            f"{losses[1]:.3f} rescored; mean overlap {before:.3f}, {after:.3f}"
+        )
+        return {f"on {len(data.tasks.validation)} others": result}
 
 
 def _jitter(found: Detections, rng: np.random.Generator) -> Detections:
@@ -146,15 +121,16 @@ def _match(box: Floats, people: Floats) -> tuple[Floats, Floats]:
     return overlap, offset
 
 
-def with_log_odds(network: RescoringNetwork, others: CropSamples) -> RescoringNetwork:
+def with_log_odds(network: CropNetwork, others: CropSamples) -> RescoringNetwork:
     """Calibrate a network so that its scores are log odds on samples that it was not trained on.
 
     Raises:
         BadInput: scikit-learn is missing, or all samples have the same label.
     """
-    score, is_person = _labelled(predictions(network, others)[:, 0], others)
-    line = np.array(log_odds_line(score, is_person), np.float32)
-    return replace(network, weights={**network.weights, "line": line})
+    weights = {**network.weights, "line": np.array([1.0, 0.0], np.float32)}
+    score, is_person = _labelled(predictions(RescoringNetwork(weights), others)[:, 0], others)
+    weights["line"] = np.array(log_odds_line(score, is_person), np.float32)
+    return RescoringNetwork(weights, network.about)
 
 
 def _labelled(score: Floats, samples: CropSamples) -> tuple[Floats, NDArray[np.bool_]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -148,12 +148,10 @@ class ThermalImage:
     is_clear: NDArray[np.bool_]
 
 
-def load_images(paths: Iterable[Path]) -> Iterator[ThermalImage]:
-    """Yield all images of sequences."""
-    for path in paths:
-        sequence = ThermalSequence.load(path)
-        for k in range(len(sequence.grey)):
-            yield _image(sequence, k)
+def load_images(paths: Iterable[Path]) -> list[ThermalImage]:
+    """Read all images of sequences."""
+    sequences = map(ThermalSequence.load, paths)
+    return [_image(sequence, k) for sequence in sequences for k in range(len(sequence.grey))]
 
 
 def _image(sequence: ThermalSequence, k: int) -> ThermalImage:

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import jax
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.studies.training.detector.crop_samples import CropSamples, first_weights
+from peopleboy.studies.training.detector.crop_samples import (
+    CropSamples,
+    CropTraining,
+    first_weights,
+    network_outputs,
+)
 from peopleboy.tracker.detector.box_regression import OFFSETS
-from peopleboy.tracker.detector.crops import CHANNELS, FEATURES
+from peopleboy.tracker.detector.crops import CHANNELS, FEATURES, Planes
 from peopleboy.tracker.networks.inference import Architecture
 
 
@@ -31,6 +37,14 @@ def drawn_crops(architecture: Architecture, count: int, seed: int = 0) -> CropSa
             crop[rows // 2 - 4 : rows // 2 + 4, columns // 12 : -(columns // 12), 0] = 220
     crops[..., 2] = 255
     return CropSamples(crops, features, np.where(is_person, 0.8, 0.0).astype(np.float32), offsets)
+
+
+def loss_of(
+    training: CropTraining, weights: dict[str, NDArray[np.float32]], planes: Planes, samples: CropSamples
+) -> tuple[jax.Array, dict[str, jax.Array]]:
+    """Return what is minimised for samples with normalised crops, and results."""
+    architecture = training.NETWORK.ARCHITECTURE
+    return training.loss(network_outputs(architecture, weights, planes, samples.features), samples)
 
 
 def drawn_weights(

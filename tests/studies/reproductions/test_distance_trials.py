@@ -164,13 +164,8 @@ def test_noise_makes_up_for_what_the_paper_has_more_and_for_nothing_else():
 def test_walks_end_where_the_person_changes_or_an_image_is_missing():
     run = film()
     kept = np.delete(np.arange(400), [50, 51])
-    cut = DistanceSamples(
-        person=run.person[kept],
-        time_s=run.time_s[kept],
-        cues=run.cues[kept],
-        bearing_rad=run.bearing_rad[kept],
-        true_m=run.true_m[kept],
-    )
+    rows = np.column_stack([run.person, run.time_s, run.cues, run.bearing_rad, run.true_m])
+    cut = DistanceSamples.from_rows(rows[kept])
     pieces = walks(cut, cut.true_m)
     assert [len(true) for true, _ in pieces] == [50, 148, 200]
     assert all(np.array_equal(true, seen) for true, seen in pieces)

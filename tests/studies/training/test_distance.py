@@ -78,9 +78,13 @@ def test_it_leaves_a_network_that_knows_its_camera_and_what_it_was_trained_on(le
 
 
 def test_a_second_lesson_takes_the_examples_that_are_there_and_gives_the_same_file(lesson: Path) -> None:
-    before = {path.name: path.read_bytes() for path in lesson.iterdir()}
+    def files() -> dict[Path, bytes]:
+        return {path: path.read_bytes() for path in lesson.rglob("*") if path.is_file()}
+
+    before = files()
+    assert len(before) == 2
     assert train(lesson.parent / "stroll.yaml", lesson) == 0
-    assert {path.name: path.read_bytes() for path in lesson.iterdir()} == before
+    assert files() == before
 
 
 @pytest.mark.heavy

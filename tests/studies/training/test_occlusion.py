@@ -1,3 +1,4 @@
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -11,43 +12,32 @@ from peopleboy.studies.reproductions.occlusion_splits import (
     random_split,
     split_by_scenario,
 )
+from peopleboy.studies.training import occlusion
 from peopleboy.studies.training.occlusion import OcclusionTraining
 from peopleboy.studies.training.occlusion_pairs import (
     LEAST,
     Episodes,
-    PairSample,
+    PairSamples,
     is_in_front,
-    mirror,
-    read_pairs,
     share_right,
-    write_pairs,
 )
 from peopleboy.studies.training.specification import train
 from peopleboy.tracker.contour.occlusion.learned_table import LearnedTable
 from tests.helpers.calls.command_line import refusal
-from tests.helpers.calls.refused import assert_names, refused
+from tests.helpers.calls.refused import assert_names
 from tests.helpers.runs.synthetic_ticks import person
 
 
-def examples(count: int, seed: int) -> list[PairSample]:
+def examples(count: int, seed: int) -> PairSamples:
     """Pairs of four scenarios, in which a mix of top and bottom tells who is in front, with some noise."""
     rng = np.random.default_rng(seed)
     made = []
     for number in range(count):
         features = rng.normal(0, 0.05, 6)
         is_front = bool(features[2] - features[1] + rng.normal(0, 0.01) > 0)
-        made.append(
-            PairSample(
-                scenario=f"made_up_{number % 4}",
-                seed=seed,
-                frame=number,
-                one="ann",
-                other="bob",
-                features=features,
-                is_front=is_front,
-            )
-        )
-    return made
+        made.append((number, "ann", "bob", features, is_front))
+    drawn = PairSamples.from_rows("drawn", seed, made)
+    return replace(drawn, scenario=np.array([f"made_up_{number % 4}" for number in range(count)]))
 
 
 def test_whoever_hides_more_of_the_other_is_in_front_and_else_whoever_is_clearly_nearer():
@@ -73,39 +63,42 @@ def test_nothing_is_taken_from_a_total_occlusion_until_the_two_have_been_apart()
 def test_no_pair_and_no_scenario_is_both_learned_from_and_tested_on():
     given = examples(300, 0)
     split = random_split(given, np.random.default_rng(0))
-    learned, tested = ({id(one) for one in part} for part in (split.learned, split.tested))
+    learned, tested = (set(part.frame.tolist()) for part in split)
     assert (len(learned), len(tested)) == (73, 48)
     assert not learned & tested
     by_scenario = split_by_scenario(given, np.random.default_rng(0))
-    learned, tested = ({one.scenario for one in part} for part in (by_scenario.learned, by_scenario.tested))
+    learned, tested = (set(part.scenario.tolist()) for part in by_scenario)
     assert len(learned) == 3
     assert not learned & tested
-    assert len(by_scenario.learned) + len(by_scenario.tested) == 300
+    assert sum(map(len, by_scenario)) == 300
 
 
 def test_however_uneven_scenarios_are_one_is_left_to_test_with():
-    few, many = examples(8, 0), [replace(one, scenario="most") for one in examples(60, 1)]
+    many = replace(examples(60, 1), scenario=np.full(60, "most"))
     for seed in range(10):
-        split = split_by_scenario([*few, *many], np.random.default_rng(seed))
-        assert split.tested
-        assert split.learned
+        split = split_by_scenario(PairSamples.join([examples(8, 0), many]), np.random.default_rng(seed))
+        assert all(len(part) for part in split)
 
 
 def test_a_feature_that_tells_nothing_is_right_in_half_of_all_answers():
-    given = [replace(one, features=one.features * [1, 1, 1, 1, 0, 1]) for one in examples(60, 0)]
+    given = examples(60, 0)
+    given = replace(given, features=given.features * [1, 1, 1, 1, 0, 1])
     found = learn_split(given, ("colour_o",), 1, 4, np.random.default_rng(0))
     assert (found.held_out, found.unseen, found.table.classifiers) == (50.0, 50.0, ())
 
 
 def test_as_many_examples_are_positive_as_negative():
-    features, is_front = mirror(examples(31, 0))
+    features, is_front = examples(31, 0).mirror()
     assert is_front.sum() == 31
     assert np.array_equal(features[:31], -features[31:])
 
 
-def test_what_is_trained_says_from_how_much_and_how_well(tmp_path):
-    write_pairs(tmp_path / "pairs.csv", examples(100, 0))
+def test_what_is_trained_says_from_how_much_and_how_well(tmp_path, monkeypatch):
+    monkeypatch.setattr(occlusion, "SCENARIOS", ["drawn"])
     training = OcclusionTraining(sequences=1)
+    (task,) = training.tasks(tmp_path).training
+    task.path.parent.mkdir()
+    examples(100, 0).save(task.path)
     (path,) = train(training, tmp_path, Workers(), ship=False)
     assert path == tmp_path / "contour.yaml"
     trained = LearnedTable.load(path)
@@ -129,31 +122,19 @@ def test_no_answer_counts_half_and_no_question_nothing():
     assert np.isnan(share_right(np.zeros(0), np.zeros(0, bool)))
 
 
-def test_examples_survive_their_file(tmp_path):
-    path = tmp_path / "pairs.csv"
-    written = examples(7, 3)
-    write_pairs(path, written)
-    read = read_pairs(path)
-    for one, other in zip(written, read, strict=True):
-        assert other.features == pytest.approx(one.features, rel=1e-4)
-        assert (one.scenario, one.seed, one.frame, one.one, one.other, one.is_front) == (
-            other.scenario, other.seed, other.frame, other.one, other.other, other.is_front,
-        )  # fmt: skip
-
-
-@pytest.mark.parametrize("text", ["a,b\n1,2\n", "scenario,seed\nx,one\n"])
-def test_a_file_that_is_no_table_of_examples_is_refused(tmp_path, text):
-    path = tmp_path / "pairs.csv"
-    path.write_text(text)
-    with refused(path, "scenario"):
-        read_pairs(path)
-    with refused(tmp_path / "nothing.csv"):
-        read_pairs(tmp_path / "nothing.csv")
+@pytest.mark.parametrize("count", [0, 7])
+def test_examples_survive_their_file_and_plain_data(count, tmp_path):
+    written = examples(count, 3)
+    written.save(tmp_path / "pairs.npz")
+    plain = json.loads(json.dumps(written.to_plain()))
+    for read in (PairSamples.load(tmp_path / "pairs.npz"), PairSamples.from_plain(plain)):
+        for name, array in written.arrays().items():
+            np.testing.assert_array_equal(getattr(read, name), array, strict=True)
 
 
 def test_too_few_pairs_of_a_tracker_teach_nothing():
     few, enough = (
-        learn_pairs(("top", "bottom"), 2, 5, 0, tuple(examples(count, 1))) for count in (LEAST - 1, LEAST)
+        learn_pairs(("top", "bottom"), 2, 5, 0, examples(count, 1)) for count in (LEAST - 1, LEAST)
     )
     assert np.isnan([few["held out"], few["unseen scenarios"]]).all()
     assert few["best"] == []

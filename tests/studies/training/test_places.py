@@ -11,7 +11,7 @@ import pytest
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.studies.training import places, specification
 from peopleboy.studies.training.panorama_sequences import panorama_calibration
-from peopleboy.studies.training.places import DenseRecipe, PlaceSamples, fit_places
+from peopleboy.studies.training.places import DenseRecipe, PlaceSamples, PlacesTraining, fit_places
 from peopleboy.tracker.panoramic.people.figure_patch import PATCH
 from peopleboy.tracker.panoramic.people.place_model import load_places
 from tests.helpers.calls.command_line import refusal, run_cli
@@ -71,10 +71,14 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         recipe: DenseRecipe = getattr(places, name)
         monkeypatch.setattr(places, name, recipe._replace(epochs=epochs))
     monkeypatch.setattr(places, "LIBRARY", {"room_long": 1})
-    examples = tmp_path / "out" / f"samples-{places._digest()}"
-    examples.mkdir(parents=True)
-    for scenario, seed in (("", 0), ("", 100), ("", 101), ("room_long", 100)):
-        plain(seed).save(examples / f"{scenario or 'scene'}_{seed}.npz")
+    training = PlacesTraining(sequences=2, rendered=tmp_path / "films")
+    tasks = training.tasks(tmp_path / "out")
+    assert [task.name for part in tasks for task in part] == [
+        "scene_100", "scene_101", "room_long_100", "scene_0",
+    ]  # fmt: skip
+    for task in (*tasks.training, *tasks.validation):
+        task.path.parent.mkdir(parents=True, exist_ok=True)
+        plain(task.arguments[1]).save(task.path)
     return tmp_path
 
 

@@ -58,7 +58,7 @@ def test_of_whom_nothing_is_seen_nobody_is_told(tmp_path: Path) -> None:
     film = drawn_film(0, 1)
     film.shown_px[:] = 8.0
     film.save(tmp_path / "film.npz")
-    assert len(next(load_images([tmp_path / "film.npz"])).box) == 0
+    assert len(load_images([tmp_path / "film.npz"])[0].box) == 0
 
 
 def test_a_shot_mirrored_twice_is_itself(shots: list[ThermalImage]) -> None:

@@ -1,3 +1,5 @@
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import jax
@@ -6,13 +8,13 @@ import pytest
 
 from peopleboy.studies.training.detector.augmentation import versions
 from peopleboy.studies.training.detector.crop_samples import CropSamples
-from peopleboy.studies.training.detector.train_box_refinement import BoxRefinementTraining, sample_version
+from peopleboy.studies.training.detector.train_box_refinement import BoxRefinementTraining
 from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.detector.box_refinement import SCALES, BoxRefinementNetwork
 from peopleboy.tracker.detector.box_regression import decode_boxes
 from peopleboy.tracker.detector.crops import normalise_crops
-from tests.helpers.images.drawn_crops import drawn_crops, drawn_weights
+from tests.helpers.images.drawn_crops import drawn_crops, drawn_weights, loss_of
 from tests.helpers.images.drawn_films import drawn_film
 
 
@@ -20,12 +22,13 @@ from tests.helpers.images.drawn_films import drawn_film
 def shots(tmp_path_factory: pytest.TempPathFactory) -> list[ThermalImage]:
     path = Path(tmp_path_factory.mktemp("films")) / "film.npz"
     drawn_film(0, 4).save(path)
-    return list(load_images([path]))
+    return load_images([path])
 
 
 def samples_of(images: list[ThermalImage], seed: int, count: int) -> CropSamples:
     drawn = versions(images, np.random.default_rng(seed), count)
-    return CropSamples.join(map(sample_version, drawn), BoxRefinementNetwork.ARCHITECTURE.crop)
+    parts = [BoxRefinementTraining().sample(one, augments=count > 0) for one in drawn]
+    return CropSamples.join([CropSamples.empty(BoxRefinementNetwork.ARCHITECTURE.crop), *parts])
 
 
 def test_boxes_are_about_people_and_offsets_lead_to_them(shots: list[ThermalImage]) -> None:
@@ -33,7 +36,7 @@ def test_boxes_are_about_people_and_offsets_lead_to_them(shots: list[ThermalImag
     people = sum(len(shot.box) for shot in shots)
     assert 0 < len(looks.overlap) <= people
     assert looks.crops.shape[1:3] == BoxRefinementNetwork.ARCHITECTURE.crop[:2]
-    assert len({len(each) for each in looks}) == 1
+    assert len({len(each) for each in looks.arrays().values()}) == 1
     assert 0.6 < looks.overlap.mean() < 0.95
     assert np.abs(looks.offsets[:, 0]).max() < 0.2
     assert np.abs(looks.offsets[:, 2]).max() < 0.7
@@ -49,7 +52,7 @@ def test_each_image_is_learned_from_four_times(shots: list[ThermalImage]) -> Non
 
 def test_the_same_random_numbers_give_the_same_examples(shots: list[ThermalImage]) -> None:
     one, same = (samples_of(shots, 1, 4) for _ in range(2))
-    for a, b in zip(one, same, strict=True):
+    for a, b in zip(one.arrays().values(), same.arrays().values(), strict=True):
         np.testing.assert_array_equal(a, b, strict=True)
 
 
@@ -67,7 +70,7 @@ def test_who_is_mostly_outside_is_not_learned_from(shots: list[ThermalImage]) ->
 
 
 FORM = BoxRefinementNetwork.ARCHITECTURE
-loss = jax.jit(BoxRefinementTraining().loss)
+loss = jax.jit(partial(loss_of, BoxRefinementTraining()))
 WINDOW = np.array([[40.0, 50.0, 20.0, 80.0]])
 
 
@@ -80,7 +83,7 @@ def test_the_loss_is_that_of_what_boxes_do_not_share_and_huber_s_of_places() -> 
     off = np.abs(ours - looks.offsets) / SCALES
     bent = np.where(off < 1.0, off**2 / 2.0, off - 0.5)
     assert bent.max() < 8.0
-    told = loss(weights, planes, looks, 1.0)
+    told = loss(weights, planes, looks)
     assert float(told[0]) == pytest.approx(4.0 * (1.0 - shared).mean() + 0.3 * bent.mean(), rel=1e-3)
     assert float(told[1]["units off"]) == pytest.approx(off.mean(), rel=1e-3)
 
@@ -88,13 +91,13 @@ def test_the_loss_is_that_of_what_boxes_do_not_share_and_huber_s_of_places() -> 
 def test_somebody_else_s_box_teaches_no_units() -> None:
     looks, weights = drawn_crops(FORM, 3), drawn_weights(FORM)
     planes = normalise_crops(looks.crops)
-    far = looks._replace(offsets=looks.offsets + np.float32(3.0))
-    assert float(loss(weights, planes, far, 1.0)[0]) == pytest.approx(4.0 + 0.3 * 8.0, rel=1e-5)
+    far = replace(looks, offsets=looks.offsets + np.float32(3.0))
+    assert float(loss(weights, planes, far)[0]) == pytest.approx(4.0 + 0.3 * 8.0, rel=1e-5)
 
 
 def test_the_score_of_what_was_found_says_nothing_of_where() -> None:
     looks, weights = drawn_crops(FORM, 3), drawn_weights(FORM)
     planes, other = normalise_crops(looks.crops), looks.features.copy()
     other[:, 0] += 1.0
-    one, same = (loss(weights, planes, looks._replace(features=n), 1.0) for n in (looks.features, other))
+    one, same = (loss(weights, planes, replace(looks, features=n)) for n in (looks.features, other))
     assert float(one[0]) == float(same[0])

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 
 from peopleboy.scenarios.running.engine.task import Workers
-from peopleboy.studies.training.detector import crop_samples, train_box_refinement
+from peopleboy.studies.training.detector import crop_samples
 from peopleboy.studies.training.detector.crop_samples import (
     CropSamples,
     augment_crops,
@@ -22,7 +23,7 @@ from peopleboy.studies.training.detector.crop_samples import (
 from peopleboy.studies.training.detector.train_box_refinement import BoxRefinementTraining
 from peopleboy.studies.training.detector.train_rescoring import RescoringTraining
 from peopleboy.studies.training.detector.worlds import KINDS, LATER, seeds_of, world_of
-from peopleboy.studies.training.samples import SampleTask
+from peopleboy.studies.training.samples import SampleTask, collect_missing
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.detector.box_refinement import BoxRefinementNetwork
 from peopleboy.tracker.detector.box_regression import decode_boxes
@@ -40,10 +41,10 @@ LINE = {"line": np.array([1.0, 0.0], np.float32)}
 @pytest.mark.parametrize("kind", [RescoringNetwork, BoxRefinementNetwork])
 def test_what_is_taught_is_what_the_tracker_computes(kind: type[CropNetwork]) -> None:
     looks, weights = drawn_crops(kind.ARCHITECTURE, 4), drawn_weights(kind.ARCHITECTURE)
-    planes, numbers = normalise_crops(looks.crops), looks.features[:, : kind.ARCHITECTURE.features]
-    ours = kind(weights).outputs(planes, numbers)
+    planes = normalise_crops(looks.crops)
+    ours = kind(weights).outputs(planes, looks.features)
     np.testing.assert_allclose(
-        np.asarray(jax.jit(partial(network_outputs, kind.ARCHITECTURE))(weights, planes, numbers)),
+        np.asarray(jax.jit(partial(network_outputs, kind.ARCHITECTURE))(weights, planes, looks.features)),
         ours,
         atol=1e-3,
     )
@@ -134,8 +135,8 @@ def test_overlap_of_offsets_is_that_of_the_boxes() -> None:
     rng = np.random.default_rng(0)
     told, true = (rng.normal(0.0, 0.03, (20, 4)) + np.array([0.0, 0.0, 0.0, 0.22]) for _ in range(2))
     before = rng.random(20).astype(np.float32)
-    none = CropSamples.join([], BoxRefinementNetwork.ARCHITECTURE.crop)
-    looks = none._replace(offsets=true.astype(np.float32), overlap=before)
+    none = CropSamples.empty(BoxRefinementNetwork.ARCHITECTURE.crop)
+    looks = replace(none, offsets=true.astype(np.float32), overlap=before)
     window = np.tile([40.0, 50.0, 30.0, 80.0], (20, 1))
     expected = iou(decode_boxes(window, told), decode_boxes(window, true))
     rows = np.arange(20) > 6
@@ -164,11 +165,10 @@ def test_one_of_ten_is_held_back_and_sequences_that_are_there_are_used(
     def task(folder: Path, seed: int) -> SampleTask:
         return SampleTask(folder / f"world_{seed}.npz", render, (seed,))  # type: ignore[arg-type]
 
-    none = CropSamples.join([], BoxRefinementNetwork.ARCHITECTURE.crop)
     monkeypatch.setattr(crop_samples, "render_task", task)
-    monkeypatch.setattr(BoxRefinementTraining, "sample", lambda *_, **__: none)
-    monkeypatch.setattr(BoxRefinementTraining, "check", lambda *_: None)
-    first, again = (BoxRefinementTraining(sequences=100).collect(tmp_path, Workers(1)) for _ in range(2))
+    first, again = (BoxRefinementTraining(sequences=100).tasks(tmp_path) for _ in range(2))
+    for tasks in (first, again):
+        collect_missing(tasks, Workers(1))
     assert sorted(made) == sorted(later_seeds(100))
     assert [one.path for one in first.training] == [one.path for one in again.training]
     assert all(seed_of(one) % 10 == 9 for one in first.validation)
@@ -204,8 +204,8 @@ def test_training_leaves_a_network_that_says_how_good_it_is(
 def test_training_that_cannot_be_evaluated_is_refused_before_it_begins(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    none = CropSamples.join([], BoxRefinementNetwork.ARCHITECTURE.crop)
-    monkeypatch.setattr(train_box_refinement, "sample_version", lambda _: none)
+    none = CropSamples.empty(BoxRefinementNetwork.ARCHITECTURE.crop)
+    monkeypatch.setattr(BoxRefinementTraining, "sample", lambda *_, **__: none)
     chosen = ("--sequences", 10, "--out", tmp_path, "--workers", 1)
     assert run_cli("train", "box-refinement", *chosen) == 2
     assert "no people are visible in the validation sequences" in capsys.readouterr().err
