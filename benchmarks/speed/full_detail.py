@@ -27,7 +27,8 @@ from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import make_named_tracker
 from peopleboy.sim.cameras.kinds import THERMAL_PRESETS
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
-from peopleboy.sim.places.rooms import build_place, straight_corridor
+from peopleboy.sim.places.make_place import build_place
+from peopleboy.sim.places.place_config import straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
 from peopleboy.sim.world_config import WorldConfig

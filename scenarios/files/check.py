@@ -2,31 +2,30 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.bad_input import BadInput, Key, found_in
+from peopleboy.bad_input import BadInput, Key, dotted, found_in
 from peopleboy.scenarios.files.check_moves import MovedThings
-from peopleboy.scenarios.files.check_people import (
-    BODY_M,
-    ROBOT_M,
-    check_company,
-    check_distance,
-    check_person,
-)
 from peopleboy.scenarios.files.people import PersonSpec
 from peopleboy.scenarios.files.robot import ORACLE, RobotSpec, check_cameras
 from peopleboy.scenarios.files.scenario_file import ScenarioSpec
 from peopleboy.sim.people.person_config import Waypoint
 from peopleboy.sim.places.floor_plan import FloorPlan, Rectangle
-from peopleboy.sim.places.furniture.place_things import describe_floor, name_things
-from peopleboy.sim.places.furniture.thing_config import KINDS
 from peopleboy.sim.places.place import Place
+from peopleboy.sim.truth.truth import BORDER
 from peopleboy.sim.world_config import CONTROL_HZ
 from peopleboy.tracker.trackers import TRACKERS
+from peopleboy.wording import hint
+
+BODY_M = 0.2  # clearance that the middle of a person keeps from walls and things
+ROBOT_M = 0.27  # radius of the circle around the robot
+_ONE_PLACE_M = 0.05
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,8 +64,8 @@ class Ground:
         for box, name in self._blocking(waypoint):
             if box.contains(x, y):
                 return f"({x:g}, {y:g}) is in or within {BODY_M:g} m of {name!r}; move it away"
-        if not any(area.contains(x, y) for area in self.plan.walkable()):
-            return f"({x:g}, {y:g}) is outside the floor; {describe_floor(self.plan)}"
+        if not self.plan.contains(x, y):
+            return f"({x:g}, {y:g}) is outside the floor; {self.plan.describe()}"
         return None
 
     def _leg_fault(self, start: Waypoint, end: Waypoint) -> str | None:
@@ -89,18 +88,13 @@ class Ground:
 
 def make_ground(spec: ScenarioSpec, plan: FloorPlan, place: Place) -> Ground:
     """Collect what people must walk around."""
-    names = name_things(spec.things)
-    named = zip(names, spec.things, strict=True)
-    seats = frozenset(name for name, thing in named if thing.kind in KINDS and KINDS[thing.kind].is_seat)
     return Ground(
         plan=plan,
         boxes=tuple(_rectangle(row).grown(BODY_M) for row in place.obstacles),
         names=place.obstacle_names,
-        seats=seats,
+        seats=place.seats,
         moved=MovedThings(
             place=place,
-            seats=seats,
-            keys={name: ("things", index) for index, name in enumerate(names)},
             duration_s=spec.duration_s,
         ),
     )
@@ -118,20 +112,20 @@ def check_scenario(spec: ScenarioSpec, people: Sequence[tuple[Key, PersonSpec]],
         BadInput: with the key of what it is.
     """
     _check_duration(spec.duration_s)
-    check_company(people, ground.moved.place)
-    _check_robot(spec, ground)
-    with found_in("robot", "cameras"):
-        check_cameras(spec.robot)
     _check_order("at_s", [light.at_s for light in spec.lights], ("lights",))
     _check_faults(spec)
+    _check_company(people, ground.moved.place)
+    _check_robot(spec, ground)
     for key, person in people:
         with found_in(*key):
-            check_person(person, spec.duration_s, [other.name for _, other in people])
+            _check_person(person, spec.duration_s, [other.name for _, other in people])
             fault = ground.fault(person)
             if fault is not None:
                 raise fault
-            check_distance(person, spec.robot)
+            _check_distance(person, spec.robot)
     ground.moved.check(people, spec.robot.at_m, ROBOT_M)
+    with found_in("robot", "cameras"):
+        check_cameras(spec.robot)
 
 
 def crosses(box: Rectangle, start: tuple[float, float], end: tuple[float, float]) -> bool:
@@ -156,6 +150,99 @@ def _check_duration(duration_s: float) -> None:
         )
 
 
+def _check_company(people: Sequence[tuple[Key, PersonSpec]], place: Place) -> None:
+    """Refuse people who cannot be there together."""
+    _check_names(people, place)
+    _check_groups(people)
+    _check_starts(people)
+
+
+def _check_person(person: PersonSpec, duration_s: float, names: Sequence[str]) -> None:
+    """Refuse a person who cannot do what the script says in so many seconds, among people of these names."""
+    _check_times(person, duration_s)
+    _check_faces(person, names)
+
+
+def _check_distance(person: PersonSpec, robot: RobotSpec) -> None:
+    """Refuse a person who starts in the robot."""
+    distance = math.dist(person.path[0].at_m, robot.at_m)
+    if distance < ROBOT_M + BODY_M:
+        raise BadInput(
+            f"{person.name!r} starts {distance:.2g} m from the robot's middle, inside it; "
+            f"keep {ROBOT_M + BODY_M:g} m",
+            key=("path", 0, "at_m"),
+        )
+
+
+def _check_names(people: Sequence[tuple[Key, PersonSpec]], place: Place) -> None:
+    """Refuse people whom the truth could not tell from each other, or from what else it names."""
+    standing = {fixture.name.split("/")[0] for fixture in place.fixtures}
+    seen: dict[str, Key] = {}
+    for key, person in people:
+        if person.name in standing:
+            raise BadInput(f"name {person.name!r} is that of something in the place; choose another", key=key)
+        if person.name == BORDER:
+            raise BadInput(f"name {BORDER!r} is taken by the image's border; choose another", key=key)
+        if person.name == "robot":
+            raise BadInput("name 'robot' is taken by the robot; choose another", key=key)
+        if person.name in seen:
+            other = dotted(seen[person.name])
+            raise BadInput(f"name {person.name!r} is also that of {other}; give each its own", key=key)
+        seen[person.name] = key
+
+
+def _check_groups(people: Sequence[tuple[Key, PersonSpec]]) -> None:
+    """Refuse people who are to keep together and cannot compare how far they have got."""
+    first: dict[str, PersonSpec] = {}
+    sizes = Counter(person.group for _, person in people)
+    for key, person in people:
+        if person.group is None:
+            continue
+        if sizes[person.group] == 1:
+            raise BadInput(
+                f"{person.group!r} has nobody but {person.name!r}; give it to others, too, or leave it out",
+                key=(*key, "group"),
+            )
+        other = first.setdefault(person.group, person)
+        if len(other.path) != len(person.path):
+            raise BadInput(
+                f"{person.group!r}: {person.name!r} has {len(person.path)} points of its path, and "
+                f"{other.name!r} {len(other.path)}; give them as many",
+                key=(*key, "group"),
+            )
+
+
+def _check_starts(people: Sequence[tuple[Key, PersonSpec]]) -> None:
+    """Refuse people who come at the same time to the same place, and would be one body."""
+    for index, (key, person) in enumerate(people):
+        for _, other in people[:index]:
+            is_there = math.dist(person.path[0].at_m, other.path[0].at_m) < _ONE_PLACE_M
+            if is_there and person.enter_s == other.enter_s:
+                raise BadInput(
+                    f"{person.name!r} starts where {other.name!r} does, in the same body; move one of them",
+                    key=(*key, "path", 0, "at_m"),
+                )
+
+
+def _check_times(person: PersonSpec, duration_s: float) -> None:
+    if person.enter_s >= duration_s:
+        raise BadInput(
+            f"{person.enter_s:g} must be before the end, duration_s {duration_s:g}", key=("enter_s",)
+        )
+    for index in range(1, len(person.path)):
+        if math.dist(person.path[index - 1].at_m, person.path[index].at_m) < 0.05:
+            raise BadInput("it is the point before; use pause_s there to stay", key=("path", index, "at_m"))
+
+
+def _check_faces(person: PersonSpec, names: Sequence[str]) -> None:
+    known = [*(name for name in names if name != person.name), "robot"]
+    for index, waypoint in enumerate(person.path):
+        if isinstance(waypoint.face, str) and waypoint.face not in known:
+            raise BadInput(
+                f"unknown name {waypoint.face!r}; {hint(waypoint.face, known)}", key=("path", index, "face")
+            )
+
+
 def _check_robot(spec: ScenarioSpec, ground: Ground) -> None:
     with found_in("robot"):
         _check_start(spec.robot, ground)
@@ -171,8 +258,8 @@ def _check_start(robot: RobotSpec, ground: Ground) -> None:
             raise BadInput(
                 f"({x:g}, {y:g}) is in or within {ROBOT_M:g} m of {name!r}; move it away", key=("at_m",)
             )
-    if not any(area.contains(x, y) for area in ground.plan.walkable()):
-        raise BadInput(f"({x:g}, {y:g}) is outside the floor; {describe_floor(ground.plan)}", key=("at_m",))
+    if not ground.plan.contains(x, y):
+        raise BadInput(f"({x:g}, {y:g}) is outside the floor; {ground.plan.describe()}", key=("at_m",))
 
 
 def _check_behaviour(robot: RobotSpec) -> None:

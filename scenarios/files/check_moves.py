@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -37,14 +37,10 @@ class MovedThings:
 
     Attributes:
         place: in which they are.
-        seats: names of things that one may sit on.
-        keys: of each thing in the scenario file.
         duration_s: of a run.
     """
 
     place: Place
-    seats: frozenset[str]
-    keys: Mapping[str, Key]
     duration_s: float
     _boxes: dict[str, BoxSet] = field(default_factory=dict)
 
@@ -86,9 +82,9 @@ class MovedThings:
         """
         held: dict[str, list[tuple[Mover, Action]]] = {}
         for mover in self.place.movers:
-            self._check_robot(mover, 0.0, robot, robot_m, self.keys[mover.name])
+            self._check_robot(mover, 0.0, robot, robot_m, _key(self.place, mover))
             for index, action in enumerate(mover.actions):
-                key: Key = (*self.keys[mover.name], "actions", index)
+                key: Key = (*_key(self.place, mover), "actions", index)
                 for time_s in _times(action):
                     self._check_robot(mover, time_s, robot, robot_m, key)
                     self._check_things(mover, time_s, key)
@@ -99,7 +95,7 @@ class MovedThings:
 
     def _is_in_the_way(self, mover: Mover, standing: _Spot, time_s: float, near_m: float) -> bool:
         state = mover.at(time_s)
-        if not state.is_there or (standing.sits and mover.name in self.seats):
+        if not state.is_there or (standing.sits and mover.name in self.place.seats):
             return False
         boxes = self._boxes[mover.name].moved(state.stance).between(STEP_M, HEAD_M)
         return boxes.distance(standing.at) < near_m
@@ -167,6 +163,11 @@ def _check_hand(mover: Mover, action: Action, person: PersonSpec, key: Key) -> N
                 f"{at[1]:.2f}); it must be {REACH_M:g} m or nearer",
                 key=(*key, "by"),
             )
+
+
+def _key(place: Place, mover: Mover) -> Key:
+    """Where the scenario file declares a thing."""
+    return ("things", place.things.index(mover.name))
 
 
 def _check_free(mover: Mover, action: Action, before: list[tuple[Mover, Action]], key: Key) -> None:

@@ -13,7 +13,7 @@ from peopleboy.bad_input import BadInput, found_in
 from peopleboy.behaviours.make_behaviour import BEHAVIOURS
 from peopleboy.scenarios.files.validation import GivenCamera
 from peopleboy.settings import Point, Seconds, meaning_of
-from peopleboy.sim.cameras.kinds import check_rate, colour_from_thermal, configure_camera
+from peopleboy.sim.cameras.kinds import colour_from_thermal, configure_camera
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world_config import CONTROL_HZ
 
@@ -121,7 +121,7 @@ class RobotSpec:
         own = {}
         for name, given in self.cameras.items():
             with found_in(name):
-                own[name] = configure_camera(given)
+                own[name] = configure_camera(given, CONTROL_HZ)
         return replace(
             usual,
             at_m=self.at_m,
@@ -149,7 +149,6 @@ def check_cameras(robot: RobotSpec) -> None:
                 raise BadInput(
                     f"must be {CONTROL_HZ}, as the tracker wants it; leave it out", key=("rate_hz",)
                 )
-            check_rate(given.get("rate_hz"), CONTROL_HZ)
     cameras = robot.config().cameras
     colour_from_thermal(cameras)
     for name, camera in cameras.items():

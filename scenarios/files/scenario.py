@@ -232,9 +232,9 @@ def make_scenario(spec: ScenarioSpec, folder: Path) -> Scenario:
     Raises:
         BadInput: something cannot be; the message begins with the key, or is about a file beside.
     """
+    everybody = _everybody(spec)
     with found_in("place"):
         plan = lay_out(spec.place)
-    everybody = _everybody(spec)
     place = make_place(
         spec.place,
         plan,

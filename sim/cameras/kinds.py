@@ -233,17 +233,19 @@ KINDS: Final[dict[str, CameraKind]] = {
 }
 
 
-def configure_camera(given: Mapping[str, Any]) -> CameraConfig:
+def configure_camera(given: Mapping[str, Any], control_hz: int) -> CameraConfig:
     """Return the settings of a camera: those of its preset or usual for its kind, but for what is given.
 
     Args:
         given: `kind`, and perhaps `preset`; values by the keys of the settings and of the geometry.
+        control_hz: [Hz] the control rate, which the camera's own must divide.
 
     Raises:
         BadInput: with the key of a value that does not fit the others.
     """
     kind = KINDS[given["kind"]]
     usual = kind.presets[given["preset"]] if "preset" in given else kind.config()
+    check_rate(given.get("rate_hz"), control_hz)
     return with_keys(replace(usual, camera=with_keys(usual.camera, given)), given)
 
 

@@ -65,6 +65,8 @@ def find_model(path: Path | str) -> Path:
 # Where PyBullet looks for what a URDF names, from the URDF's own folder.
 MESH_PLACES = (".", "..", "../..")
 _GREY = (0.5, 0.5, 0.5)
+# How an OBJ names its materials, and these their textures; the name is a line's last word.
+_NAMED = {".obj": r"^mtllib\s+(?:.*\s)?(\S+)\s*$", ".mtl": r"^(?:map_\w+|bump)\s+(?:.*\s)?(\S+)\s*$"}
 
 Numbers = NDArray[np.float64]
 Joints = dict[str, ElementTree.Element]  # by the link that hangs on it
@@ -120,6 +122,29 @@ def mesh_files(path: Path) -> Iterator[str]:
     """
     for mesh in parse_urdf(path).iter("mesh"):
         yield mesh.get("filename", "")
+
+
+def files_of(urdf: Path) -> Iterator[Path]:
+    """Yield a URDF and all files that it needs: its meshes, their materials and textures."""
+    yield urdf
+    for part in parse_urdf(urdf).iter():
+        name = part.get("filename", "").removeprefix("package://")
+        places = [urdf.parent / place / name for place in MESH_PLACES] if name else []
+        for path in [path for path in places if path.is_file()][:1]:
+            yield path
+            yield from _named_by(path)
+
+
+def _named_by(path: Path) -> Iterator[Path]:
+    """Yield what a mesh or a material names in turn."""
+    pattern = _NAMED.get(path.suffix.lower())
+    if pattern is None:
+        return
+    for name in re.findall(pattern, path.read_text("utf-8", errors="replace"), re.MULTILINE):
+        other = path.parent / name
+        if other.is_file():
+            yield other
+            yield from _named_by(other)
 
 
 def parse_urdf(path: Path) -> ElementTree.Element:

@@ -197,6 +197,20 @@ class FloorPlan:
     areas: tuple[tuple[str, Rectangle], ...]
     doors: tuple[Door, ...] = ()
 
+    def __post_init__(self) -> None:
+        """Refuse doors that do not fit into their walls, or whose lobby would cut into the place.
+
+        Raises:
+            BadInput: a door is wider than its wall, overlaps another, or has no space behind.
+        """
+        for index, door in enumerate(self.doors):
+            self._check_fits(index, door)
+            for other_index, other in enumerate(self.doors[:index]):
+                if self.opening(door).grown(WALL_M).meets(self.opening(other)):
+                    raise BadInput(
+                        f"overlaps doors[{other_index}] in wall {door.wall!r}", key=("doors", index)
+                    )
+
     def wall(self, name: str) -> Wall:
         """Find a wall.
 
@@ -238,6 +252,18 @@ class FloorPlan:
             placed += [(wall, block) for block in subtract(wall.side.strip(wall.area, WALL_M), taken)]
         return _join_stubs(placed)
 
+    def contains(self, x: float, y: float) -> bool:
+        """Whether a point is on the floor, lobbies of open doors included."""
+        return any(area.contains(x, y) for area in self.walkable())
+
+    def describe(self) -> str:
+        """Return where the floor is, for messages."""
+        parts = (
+            f"{f'{name} has ' if name else ''}x {a.min_x:g} to {a.max_x:g} and y {a.min_y:g} to {a.max_y:g}"
+            for name, a in self.areas
+        )
+        return f"the floor: {', '.join(parts)}"
+
     def bounds(self) -> Rectangle:
         """The rectangle around all floor and walls."""
         floor = self.walkable()
@@ -247,6 +273,27 @@ class FloorPlan:
             max(area.max_x for area in floor),
             max(area.max_y for area in floor),
         ).grown(WALL_M)
+
+    def _check_fits(self, index: int, door: Door) -> None:
+        wall = self.wall(door.wall)
+        low, high = wall.side.span(wall.area)
+        half = door.width_m / 2.0 + WALL_M
+        if not low + half <= door.along_m <= high - half:
+            raise BadInput(
+                f"{door.along_m:g} does not leave room for a door of {door.width_m:g} m "
+                f"in wall {door.wall!r}, which reaches from {low:g} to {high:g} m",
+                key=("doors", index, "along_m"),
+            )
+        behind = (
+            (self.lobby(door).grown(WALL_M), self.opening(door)) if door.is_open else (self.opening(door),)
+        )
+        for name, area in self.areas:
+            if any(part.meets(area) for part in behind):
+                raise BadInput(
+                    f"{door.along_m:g} puts the door of wall {door.wall!r} into {name or 'the room'}; "
+                    f"choose a place with {WALL_M + door.lobby_m:g} m behind the wall",
+                    key=("doors", index, "along_m"),
+                )
 
     def _lobby_walls(self) -> tuple[Wall, ...]:
         return tuple(
@@ -291,39 +338,6 @@ def _join_stubs(blocks: list[tuple[Wall, Rectangle]]) -> tuple[tuple[Wall, Recta
                 joined = others
                 break
     return tuple(joined)
-
-
-def check_doors(plan: FloorPlan) -> None:
-    """Refuse doors that do not fit into their walls, or whose lobby would cut into the place.
-
-    Raises:
-        BadInput: a door is wider than its wall, overlaps another, or has no space behind.
-    """
-    for index, door in enumerate(plan.doors):
-        _check_fits(plan, index, door)
-        for other_index, other in enumerate(plan.doors[:index]):
-            if plan.opening(door).grown(WALL_M).meets(plan.opening(other)):
-                raise BadInput(f"overlaps doors[{other_index}] in wall {door.wall!r}", key=("doors", index))
-
-
-def _check_fits(plan: FloorPlan, index: int, door: Door) -> None:
-    wall = plan.wall(door.wall)
-    low, high = wall.side.span(wall.area)
-    half = door.width_m / 2.0 + WALL_M
-    if not low + half <= door.along_m <= high - half:
-        raise BadInput(
-            f"{door.along_m:g} does not leave room for a door of {door.width_m:g} m in wall {door.wall!r}, "
-            f"which reaches from {low:g} to {high:g} m",
-            key=("doors", index, "along_m"),
-        )
-    behind = (plan.lobby(door).grown(WALL_M), plan.opening(door)) if door.is_open else (plan.opening(door),)
-    for name, area in plan.areas:
-        if any(part.meets(area) for part in behind):
-            raise BadInput(
-                f"{door.along_m:g} puts the door of wall {door.wall!r} into {name or 'the room'}; "
-                f"choose a place with {WALL_M + door.lobby_m:g} m behind the wall",
-                key=("doors", index, "along_m"),
-            )
 
 
 def _facing(wall: Wall) -> Rectangle:

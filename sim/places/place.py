@@ -85,6 +85,8 @@ class Place:
         light: (time [s], level) steps of the room's light; level 1 is full, 0 is dark.
         movers: the things to which something happens.
         sun: the sun, where it shines in; only `detail: full` shows it.
+        things: names of the things in it, in the order in which they were given.
+        seats: names of those that one may sit on.
     """
 
     fixtures: tuple[Fixture, ...]
@@ -95,6 +97,8 @@ class Place:
     light: tuple[tuple[float, float], ...] = ((0.0, 1.0),)
     movers: tuple[Mover, ...] = ()
     sun: Sun | None = None
+    things: tuple[str, ...] = ()
+    seats: frozenset[str] = frozenset()
 
     def obstacles_at(self, time_s: float) -> NDArray[np.float64]:
         """(K, 4) [m] as `obstacles`, with what is moved where it is at a time."""

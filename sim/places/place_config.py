@@ -9,9 +9,8 @@ from pydantic import BeforeValidator, Field
 
 from peopleboy.bad_input import BadInput, Key
 from peopleboy.settings import Celsius, Share, Word
-from peopleboy.sim.places.floor_plan import Door, FloorPlan, check_doors
+from peopleboy.sim.places.floor_plan import Door, FloorPlan, Rectangle
 from peopleboy.sim.places.place import Sun
-from peopleboy.sim.places.rooms import l_corridor, straight_corridor, t_corridor
 from peopleboy.sim.shapes.materials import Colour
 from peopleboy.wording import hint
 
@@ -212,9 +211,46 @@ def lay_out(config: PlaceConfig) -> FloorPlan:
             )
     for name in config.temperatures.single_walls_c:
         check_wall(plan, ("temperatures", "single_walls_c"), name)
-    plan = replace(plan, doors=config.doors)
-    check_doors(plan)
-    return plan
+    return replace(plan, doors=config.doors)
+
+
+def straight_corridor(length_m: float, width_m: float) -> FloorPlan:
+    """A corridor or a rectangular room: length along x from x = 0, width centred on y = 0."""
+    return FloorPlan(areas=(("", Rectangle(0.0, -width_m / 2.0, length_m, width_m / 2.0)),))
+
+
+def l_corridor(
+    first_m: float, second_m: float, width_m: float, turn: Literal["left", "right"] = "left"
+) -> FloorPlan:
+    """A corridor along x from x = 0 whose end turns to the left (+y) or right (-y).
+
+    Args:
+        first_m: [m] length of the first leg, including the corner.
+        second_m: [m] length of the second leg beyond the first one's side.
+        width_m: [m] width of both.
+        turn: where the second leg goes.
+    """
+    half = width_m / 2.0
+    left, right = first_m - width_m, first_m
+    second = (
+        Rectangle(left, half, right, half + second_m)
+        if turn == "left"
+        else Rectangle(left, -half - second_m, right, -half)
+    )
+    return FloorPlan(areas=(("first", Rectangle(0.0, -half, first_m, half)), ("second", second)))
+
+
+def t_corridor(stem_m: float, bar_m: float, width_m: float) -> FloorPlan:
+    """A corridor along x from x = 0 that ends in the middle of a corridor along y.
+
+    Args:
+        stem_m: [m] length of the stem up to the bar.
+        bar_m: [m] length of the bar.
+        width_m: [m] width of both.
+    """
+    half = width_m / 2.0
+    bar = Rectangle(stem_m, -bar_m / 2.0, stem_m + width_m, bar_m / 2.0)
+    return FloorPlan(areas=(("stem", Rectangle(0.0, -half, stem_m, half)), ("bar", bar)))
 
 
 def check_wall(plan: FloorPlan, key: Key, name: str) -> None:

@@ -12,7 +12,8 @@ from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import DepthConfig, ThermalConfig
 from peopleboy.sim.cameras.depth import show_depth
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
-from peopleboy.sim.places.rooms import build_place, straight_corridor
+from peopleboy.sim.places.make_place import build_place
+from peopleboy.sim.places.place_config import straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.sim.world import World

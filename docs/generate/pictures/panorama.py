@@ -12,7 +12,8 @@ from peopleboy.scenarios.drawing.overlay import draw_truth, enlarge, people_part
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.sim.cameras.camera_config import PanoramaConfig, ThermalConfig
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
-from peopleboy.sim.places.rooms import build_place, straight_corridor
+from peopleboy.sim.places.make_place import build_place
+from peopleboy.sim.places.place_config import straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
 from peopleboy.sim.world_config import WorldConfig

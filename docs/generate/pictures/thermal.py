@@ -22,7 +22,8 @@ from peopleboy.sim.people.body.anthropometry import Sex
 from peopleboy.sim.people.body.clothes import BOTTOMS, SKIN_C, TOPS, Clothes
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.furniture.thing_config import KINDS
-from peopleboy.sim.places.rooms import build_place, straight_corridor
+from peopleboy.sim.places.make_place import build_place
+from peopleboy.sim.places.place_config import straight_corridor
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Detail

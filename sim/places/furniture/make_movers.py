@@ -11,7 +11,6 @@ import numpy as np
 from peopleboy.bad_input import BadInput, found_in
 from peopleboy.sim.places.extent import fixture_extent
 from peopleboy.sim.places.floor_plan import FloorPlan
-from peopleboy.sim.places.furniture.place_things import describe_floor
 from peopleboy.sim.places.furniture.thing_config import ActionConfig, ThingConfig
 from peopleboy.sim.places.moving import LASTING, Action, ActionKind, Mover, Stance
 from peopleboy.sim.places.place import Fixture
@@ -170,9 +169,9 @@ def _action(spec: ActionConfig, before: Stance) -> Action:
 def _check_target(spec: ActionConfig, action: Action, mover: Mover, plan: FloorPlan) -> None:
     before = mover.at(action.at_s).stance
     x, y, _ = action.target.position_m
-    if not any(area.contains(x, y) for area in plan.walkable()):
+    if not plan.contains(x, y):
         key = "hinge_m" if spec.to_m is None else "to_m"
-        raise BadInput(f"({x:g}, {y:g}) is outside the floor; {describe_floor(plan)}", key=(key,))
+        raise BadInput(f"({x:g}, {y:g}) is outside the floor; {plan.describe()}", key=(key,))
     way_m = math.dist(before.position_m, action.target.position_m)
     if action.takes_s and way_m > FASTEST_M_S * action.takes_s:
         raise BadInput(

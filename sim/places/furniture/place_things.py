@@ -77,7 +77,7 @@ class Furnishing:
         stance = self._stance(thing, extent)
         x, y, _ = stance.position_m
         if not any(area.grown(_GAP_M).contains(x, y) for area in self.plan.walkable()):
-            raise BadInput(f"({x:g}, {y:g}) is outside the floor; {describe_floor(self.plan)}", key=("at_m",))
+            raise BadInput(f"({x:g}, {y:g}) is outside the floor; {self.plan.describe()}", key=("at_m",))
         depth, width, height = (float(side) for side in extent[1] - extent[0])
         size = None if urdf is not None else (depth, width, height)
         return build_thing(thing, stance, name=name, size_m=size, air_c=self.air_c, urdf=urdf)
@@ -158,15 +158,6 @@ def extent_of(fixtures: Sequence[Fixture]) -> Extent:
     """The box around all fixtures of a thing."""
     extents = np.array([fixture_extent(fixture) for fixture in fixtures])
     return np.array([extents[:, 0].min(axis=0), extents[:, 1].max(axis=0)])
-
-
-def describe_floor(plan: FloorPlan) -> str:
-    """Return where the floor is, for messages."""
-    parts = (
-        f"{f'{name} has ' if name else ''}x {a.min_x:g} to {a.max_x:g} and y {a.min_y:g} to {a.max_y:g}"
-        for name, a in plan.areas
-    )
-    return f"the floor: {', '.join(parts)}"
 
 
 def _urdf_extent(urdf: str) -> Extent:

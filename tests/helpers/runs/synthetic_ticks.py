@@ -16,7 +16,8 @@ from peopleboy.scenarios.loop.run_events import LogLine
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
-from peopleboy.sim.places.rooms import build_place, straight_corridor
+from peopleboy.sim.places.make_place import build_place
+from peopleboy.sim.places.place_config import straight_corridor
 from peopleboy.sim.truth.truth import Owners, PersonTruth, Truth
 from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanation, Ellipse

@@ -6,8 +6,9 @@ from functools import cache
 from peopleboy.sim.cameras.camera_config import ColourConfig, ThermalConfig
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
+from peopleboy.sim.places.make_place import build_place
 from peopleboy.sim.places.place import Fixture, Place
-from peopleboy.sim.places.rooms import build_place, straight_corridor
+from peopleboy.sim.places.place_config import straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig, SonarConfig
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import Part, Shape, ShapeKind

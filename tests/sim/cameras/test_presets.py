@@ -21,7 +21,8 @@ from peopleboy.sim.cameras.depth import (
 )
 from peopleboy.sim.cameras.imaging.surfaces import make_material_table
 from peopleboy.sim.cameras.kinds import DEPTH_PRESETS, image_names
-from peopleboy.sim.places.rooms import build_place, straight_corridor
+from peopleboy.sim.places.make_place import build_place
+from peopleboy.sim.places.place_config import straight_corridor
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Material

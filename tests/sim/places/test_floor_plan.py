@@ -14,10 +14,10 @@ from peopleboy.sim.places.floor_plan import (
     Door,
     FloorPlan,
     Rectangle,
-    check_doors,
     subtract,
 )
-from peopleboy.sim.places.rooms import build_place, l_corridor, straight_corridor, t_corridor
+from peopleboy.sim.places.make_place import build_place
+from peopleboy.sim.places.place_config import l_corridor, straight_corridor, t_corridor
 from tests.helpers.calls.refused import refused
 from tests.helpers.worlds.boxes import fighting_faces, first_hit, world_boxes
 
@@ -47,7 +47,7 @@ def plans(draw: st.DrawFn) -> FloorPlan:
         along = low + (high - low) * draw(st.floats(0.1, 0.9))
         door = Door(wall=wall.name, along_m=round(along, 2), is_open=draw(st.booleans()))
         try:
-            check_doors(replace(plan, doors=(*doors, door)))
+            replace(plan, doors=(*doors, door))
         except BadInput:
             continue
         doors.append(door)
@@ -156,10 +156,10 @@ def test_the_corner_of_an_l_corridor_is_open() -> None:
 )
 def test_doors_that_do_not_fit_are_refused(door: Door) -> None:
     with refused(f"doors[0].along_m: {door.along_m:g}", f"'{door.wall}'"):
-        check_doors(replace(l_corridor(8.0, 5.0, 2.0), doors=(door,)))
+        replace(l_corridor(8.0, 5.0, 2.0), doors=(door,))
 
 
 def test_doors_that_overlap_are_refused() -> None:
     doors = (Door(wall="north", along_m=3.0), Door(wall="north", along_m=3.5))
     with pytest.raises(BadInput, match="overlaps"):
-        check_doors(replace(straight_corridor(6.0, 3.0), doors=doors))
+        replace(straight_corridor(6.0, 3.0), doors=doors)

@@ -9,9 +9,10 @@ import pytest
 from peopleboy.sim.people.person import PersonConfig, Waypoint
 from peopleboy.sim.places.furniture.build_thing import build_thing
 from peopleboy.sim.places.furniture.thing_config import ThingConfig
+from peopleboy.sim.places.make_place import build_place
 from peopleboy.sim.places.moving import Action, ActionKind, Mover, Stance
 from peopleboy.sim.places.place import Place
-from peopleboy.sim.places.rooms import build_place, straight_corridor
+from peopleboy.sim.places.place_config import straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.events import STANDS_S, ThingLog
 from peopleboy.sim.truth.truth import Backgrounds

@@ -1,18 +1,12 @@
-"""Rooms and corridors: floor, ceiling, walls and doors as fixtures, built from a floor plan."""
+"""Shells of places, built from a floor plan: floor, walls and doors; a ceiling, or houses and a sky."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Literal
+from dataclasses import dataclass, field, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
-from peopleboy.sim.places.extent import fixture_extent
-from peopleboy.sim.places.floor_plan import Door, FloorPlan, Rectangle, Wall, check_doors
-from peopleboy.sim.places.moving import Mover
-from peopleboy.sim.places.place import Fixture, Place, Sun, is_in_the_way
+from peopleboy.sim.places.floor_plan import WALL_M, Door, FloorPlan, Rectangle, Wall, WallSide
+from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.shapes.materials import Covering, Material, Pattern, PatternKind
 from peopleboy.sim.shapes.shapes import Part, Shape, ShapeKind
 
@@ -20,6 +14,11 @@ from peopleboy.sim.shapes.shapes import Part, Shape, ShapeKind
 SINK_M = 0.05
 
 _LEAF_M = 0.03  # how far a closed door's leaf stands out of its wall
+_FAR_M = 30.0  # from the street to where the world ends
+_SKY_M = 24.0  # how high the sky hangs
+_STEP_M = 0.02  # how much lower it is where nobody walks
+_LOBBY_M = 2.6  # how high the walls of a lobby are
+_HORIZON = {WallSide.NORTH: "north", WallSide.SOUTH: "south", WallSide.EAST: "east", WallSide.WEST: "west"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,102 +72,11 @@ class Surfaces:
         return self.named.get(wall.name, self.walls)
 
 
-def straight_corridor(length_m: float, width_m: float) -> FloorPlan:
-    """A corridor or a rectangular room: length along x from x = 0, width centred on y = 0."""
-    return FloorPlan(areas=(("", Rectangle(0.0, -width_m / 2.0, length_m, width_m / 2.0)),))
+def room_shell(plan: FloorPlan, height_m: float, materials: Surfaces) -> tuple[Fixture, ...]:
+    """Build the fixtures of rooms and corridors: a ray from any point inside meets a surface.
 
-
-def l_corridor(
-    first_m: float, second_m: float, width_m: float, turn: Literal["left", "right"] = "left"
-) -> FloorPlan:
-    """A corridor along x from x = 0 whose end turns to the left (+y) or right (-y).
-
-    Args:
-        first_m: [m] length of the first leg, including the corner.
-        second_m: [m] length of the second leg beyond the first one's side.
-        width_m: [m] width of both.
-        turn: where the second leg goes.
+    No two visible faces lie in one plane and overlap.
     """
-    half = width_m / 2.0
-    left, right = first_m - width_m, first_m
-    second = (
-        Rectangle(left, half, right, half + second_m)
-        if turn == "left"
-        else Rectangle(left, -half - second_m, right, -half)
-    )
-    return FloorPlan(areas=(("first", Rectangle(0.0, -half, first_m, half)), ("second", second)))
-
-
-def t_corridor(stem_m: float, bar_m: float, width_m: float) -> FloorPlan:
-    """A corridor along x from x = 0 that ends in the middle of a corridor along y.
-
-    Args:
-        stem_m: [m] length of the stem up to the bar.
-        bar_m: [m] length of the bar.
-        width_m: [m] width of both.
-    """
-    half = width_m / 2.0
-    bar = Rectangle(stem_m, -bar_m / 2.0, stem_m + width_m, bar_m / 2.0)
-    return FloorPlan(areas=(("stem", Rectangle(0.0, -half, stem_m, half)), ("bar", bar)))
-
-
-def build_place(
-    plan: FloorPlan,
-    *,
-    height_m: float = 2.7,
-    surfaces: Surfaces | None = None,
-    shell: tuple[Fixture, ...] | None = None,
-    things: tuple[Fixture, ...] = (),
-    surroundings_c: float = 21.0,
-    light: tuple[tuple[float, float], ...] = ((0.0, 1.0),),
-    movers: tuple[Mover, ...] = (),
-    sun: Sun | None = None,
-) -> Place:
-    """Build the shell of a place, unless one is given, and put things into it, some of which are moved.
-
-    No two visible faces of the shell lie in one plane and overlap, and the inside is closed all around:
-    a ray from any point of the floor plan meets a surface.
-
-    Raises:
-        BadInput: a door does not fit.
-    """
-    check_doors(plan)
-    materials = Surfaces() if surfaces is None else surfaces
-    fixtures = (*(_shell(plan, height_m, materials) if shell is None else shell), *things)
-    moved = {mover.name for mover in movers}
-    names, boxes = obstacles(tuple(f for f in fixtures if f.name.split("/")[0] not in moved))
-    bounds = plan.bounds()
-    return Place(
-        fixtures=fixtures,
-        obstacles=boxes,
-        obstacle_names=names,
-        bounds=(bounds.min_x, bounds.min_y, bounds.max_x, bounds.max_y),
-        surroundings_c=surroundings_c,
-        light=light,
-        movers=movers,
-        sun=sun,
-    )
-
-
-def obstacles(fixtures: tuple[Fixture, ...]) -> tuple[tuple[str, ...], NDArray[np.float64]]:
-    """List everything solid that a walking person can bump into.
-
-    Returns:
-        The K names, and (K, 4) [m] min x, min y, max x, max y.
-    """
-    blocking = [
-        (fixture.name.split("/")[0], extent[:, :2].ravel())
-        for fixture in fixtures
-        if fixture.is_solid
-        for extent in [fixture_extent(fixture)]
-        if is_in_the_way(extent[0, 2], extent[1, 2])
-    ]
-    boxes = np.array([box for _, box in blocking], float).reshape(-1, 4)
-    boxes.setflags(write=False)
-    return tuple(name for name, _ in blocking), boxes
-
-
-def _shell(plan: FloorPlan, height_m: float, materials: Surfaces) -> tuple[Fixture, ...]:
     outside = plan.bounds().grown(SINK_M)
     walls = tuple(
         block_fixture(
@@ -222,3 +130,66 @@ def block_fixture(name: str, block: Rectangle, bottom_m: float, top_m: float, ma
         part=Part(name=name, shapes=(shape,), material=material),
         position=(x, y, (bottom_m + top_m) / 2.0),
     )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StreetLook:
+    """What a street has that a room has not.
+
+    Attributes:
+        houses: names of the walls that are fronts of houses; the others are not there.
+        house_m: [m] height of the houses.
+        sky_c: [degC] what the sky seems to have at the horizon.
+    """
+
+    houses: frozenset[str]
+    house_m: float
+    sky_c: float
+
+
+def street_shell(plan: FloorPlan, look: StreetLook, surfaces: Surfaces) -> tuple[Fixture, ...]:
+    """Build the fixtures of a street: a ray from any point on it meets a surface."""
+    far = plan.bounds().grown(_FAR_M)
+    street = replace(surfaces.floor, covering=Covering.STREET, colour_pattern=Pattern(), shine=0.0)
+    sky = Material(
+        temperature_c=look.sky_c, emissivity=1.0, rgb=(0.36, 0.5, 0.72), glow=0.45, covering=Covering.SKY
+    )
+    houses = tuple(
+        block_fixture(
+            f"wall_{wall.name}/{number}",
+            block,
+            -SINK_M,
+            look.house_m if wall.name in look.houses else _LOBBY_M,
+            replace(
+                surfaces.of_wall(wall),
+                covering=Covering.FACADE if wall.name in look.houses else Covering.PLASTER,
+            ),
+        )
+        for number, (wall, block) in enumerate(plan.wall_pieces(), start=1)
+        if wall.name in look.houses or wall.name.startswith("door_")
+    )
+    return (
+        block_fixture("floor", plan.bounds().grown(SINK_M), -2.0 * SINK_M, 0.0, street),
+        block_fixture("floor/far", far.grown(SINK_M), -3.0 * SINK_M, -_STEP_M, street),
+        replace(
+            block_fixture("ceiling", far.grown(SINK_M), _SKY_M, _SKY_M + 2.0 * SINK_M, sky), is_solid=False
+        ),
+        *(_horizon(name, side.strip(far, WALL_M), sky) for side, name in _HORIZON.items()),
+        *houses,
+        *(
+            build_door(plan, number, door, look.house_m - SINK_M, _fronts(surfaces))
+            for number, door in enumerate(plan.doors, start=1)
+        ),
+    )
+
+
+def _fronts(surfaces: Surfaces) -> Surfaces:
+    """The looks with those of houses on every wall."""
+    named = {name: replace(look, covering=Covering.FACADE) for name, look in surfaces.named.items()}
+    return replace(surfaces, walls=replace(surfaces.walls, covering=Covering.FACADE), named=named)
+
+
+def _horizon(name: str, strip: Rectangle, sky: Material) -> Fixture:
+    material = replace(sky, covering=Covering.SKYLINE)
+    fixture = block_fixture(f"wall_horizon/{name}", strip, -SINK_M, _SKY_M + SINK_M, material)
+    return replace(fixture, is_solid=False)
