@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
+from peopleboy.geometry.small_matrices import inverse
 
 Floats = NDArray[np.float64]
 
@@ -66,7 +67,7 @@ class PinholeCalibration:
             matrix = getattr(self, name)
             if np.shape(matrix) != shape or not np.isfinite(matrix).all():
                 raise BadInput(f"calibration: {name} must be {shape} and finite, got {np.shape(matrix)}")
-        unprojected = self.robot_from_camera[:3, :3] @ np.linalg.inv(self.intrinsics)
+        unprojected = self.robot_from_camera[:3, :3] @ inverse(self.intrinsics)
         object.__setattr__(self, "_robot_from_pixel", unprojected)
 
     @property

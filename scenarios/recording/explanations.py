@@ -14,6 +14,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.pose2 import Pose2
+from peopleboy.geometry.small_matrices import principal_axes
 from peopleboy.scenarios.drawing.palette import Rgb, track_colour
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.recording.marks import (
@@ -270,8 +272,9 @@ def row_bars(figure: MeasuredFigure) -> Line:
 def floor_ellipse(place: FloorPlace, camera: CameraGeometry) -> list[Line]:
     """Draw the ellipse on the floor that holds 95 % of where a person may stand, in parts at the seam."""
     xx, xy, yy = place.covariance_m2
-    variance, axes = np.linalg.eigh(np.array([[xx, xy], [xy, yy]]))
-    ring = np.stack([np.cos(_ROUND), np.sin(_ROUND)], axis=1) * np.sqrt(np.maximum(variance, 0.0))
+    variances, angle = principal_axes(xx, xy, yy)
+    axes = Pose2(heading=angle).rotation
+    ring = np.stack([np.cos(_ROUND), np.sin(_ROUND)], axis=1) * np.sqrt(np.maximum(variances, 0.0))
     floor = np.zeros((len(_ROUND), 3))
     floor[:, :2] = np.array(place.position_m) + CHI_95 * ring @ axes.T
     pixels = camera.project(transform(invert_pose(camera.robot_from_camera), floor))

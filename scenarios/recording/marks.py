@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.small_matrices import principal_axes
 from peopleboy.scenarios.drawing.overlay import map_box
 from peopleboy.scenarios.drawing.palette import ROBOT, TRUTH, Rgb, person_colour, track_colour
 from peopleboy.scenarios.loop.loop import Tick
@@ -110,9 +111,9 @@ def places(tracks: Iterable[Track], sightings: Mapping[int, Sequence[str]]) -> E
 
 def _ellipse(xx: float, xy: float, yy: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Return semi-axes [m] and quaternion of a covariance's 95 % ellipse."""
-    variance, axes = np.linalg.eigh(np.array([[xx, xy], [xy, yy]]))
-    along, across = CHI_95 * np.sqrt(np.maximum(variance[::-1], FLAT_M**2))
-    half_turn = math.atan2(axes[1, 1], axes[0, 1]) / 2.0
+    variances, angle = principal_axes(xx, xy, yy)
+    along, across = CHI_95 * np.sqrt(np.maximum(variances, FLAT_M**2))
+    half_turn = angle / 2.0
     return (float(along), float(across), FLAT_M), (0.0, 0.0, math.sin(half_turn), math.cos(half_turn))
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.small_matrices import inverse
 from peopleboy.settings import with_keys
 from peopleboy.sim.cameras.camera_config import (
     CameraConfig,
@@ -360,12 +361,16 @@ def affine_between(thermal: Pinhole, colour: Pinhole, depth_m: float) -> Matrix:
     columns, rows = np.linspace(0.0, thermal.width - 1.0, 9), np.linspace(0.0, thermal.height - 1.0, 9)
     u, v = (grid.ravel() for grid in np.meshgrid(columns, rows))
     pixels = np.stack([u, v, np.ones_like(u)], axis=1)
-    points = depth_m * pixels @ np.linalg.inv(thermal.intrinsics).T
+    points = depth_m * pixels @ inverse(thermal.intrinsics).T
     colour_from_thermal = invert_pose(colour.robot_from_camera) @ thermal.robot_from_camera
     seen = colour.project(transform(colour_from_thermal, points))
     if not np.isfinite(seen).all():
         raise BadInput(f"the colour camera does not see the plane {depth_m} m before the thermal camera")
-    return np.asarray(np.linalg.lstsq(pixels, seen)[0].T, np.float64)
+    # Least squares, as projections: columns and rows of a grid about its middle are orthogonal.
+    middle, away = pixels.mean(axis=0), pixels - pixels.mean(axis=0)
+    slopes = [(away[:, axis, None] * seen).sum(axis=0) / np.square(away[:, axis]).sum() for axis in (0, 1)]
+    offset = seen.mean(axis=0) - slopes[0] * middle[0] - slopes[1] * middle[1]
+    return np.stack([*slopes, offset], axis=1)
 
 
 # Where things of the thermal image are in the colour image.

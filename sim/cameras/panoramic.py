@@ -46,7 +46,11 @@ def panorama_image(
     Returns:
         (H, W, 3) linear light, 1 being full scale.
     """
-    part_from_camera = np.linalg.inv(world_from_part) @ world_from_camera
+    part_from_world = world_from_part[:, :3, :3].transpose(0, 2, 1)
+    part_from_camera = np.tile(np.eye(4), (len(world_from_part), 1, 1))
+    part_from_camera[:, :3, :3] = part_from_world @ world_from_camera[:3, :3]
+    offsets = world_from_camera[:3, 3] - world_from_part[:, :3, 3]
+    part_from_camera[:, :3, 3] = (part_from_world @ offsets[:, :, None])[:, :, 0]
     directions, slopes = _lines(camera)
     image = _radiance_image(
         view.part, view.depth, view.normal, part_from_camera, directions, slopes,

@@ -22,6 +22,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.geometry.small_matrices import solve
 from peopleboy.tracker.contour.contour_config import BoxConfig, TrackerConfig
 from peopleboy.tracker.contour.particles import CROWN, Floats, H, W, X, Y
 from peopleboy.tracker.elementary import exponential, logarithm
@@ -208,7 +209,7 @@ def _weights(camera_height_m: float) -> tuple[float, float]:
         ]
     )
     slopes = np.array([camera_height_m, PERSON_M - camera_height_m])  # at a distance of 1 m
-    certain = np.linalg.solve(covariance, slopes)
+    certain = solve(covariance, slopes)
     foot, head = (certain / (certain @ slopes)).tolist()
     return foot, head
 

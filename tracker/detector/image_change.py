@@ -10,6 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.small_matrices import inverse
 from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.frame import Odometry
 
@@ -36,7 +37,7 @@ def rotation_homography(mount: Mount, shape: tuple[int, int], turn_rad: float) -
     # Upright axis in the camera's frame, x right, y down, z forward; a camera that looks down has it behind.
     axis = np.array([0.0, -math.cos(pitch), -math.sin(pitch)])
     rotation, _ = cv2.Rodrigues(-turn_rad * axis)
-    return np.asarray(inward @ rotation @ np.linalg.inv(inward), np.float64)
+    return np.asarray(inward @ rotation @ inverse(inward), np.float64)
 
 
 def shift_homography(before: Grey, now: Grey) -> Matrix:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
+from peopleboy.geometry import small_matrices
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.frame import PANORAMA, Frame
 from peopleboy.tracker.track import FloorPlace, Status, Track
@@ -46,7 +47,7 @@ def mahalanobis2(one: Track, other: Track) -> float:
         return np.inf
     away = np.subtract(one.place.position_m, other.place.position_m)
     error = _matrix(one.place) + _matrix(other.place) + _spread(FLOOR_M2)
-    return float(away @ np.linalg.solve(error, away))
+    return small_matrices.mahalanobis2(away, error)
 
 
 def is_same_way(one: Track, other: Track) -> bool:

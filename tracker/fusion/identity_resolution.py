@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from peopleboy.geometry.small_matrices import principal_axes
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.fusion.fused_person import FusedPerson, SensorTrack
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
@@ -121,7 +122,9 @@ class IdentityResolution:
         late_s, last_m = self.time_s - person.seen_s, person.motion.place_m
         if guest.appearance is not None and person.appearance_m is not None:
             late_s, last_m = self.time_s - person.appearance_s, person.appearance_m
-        slack_m = 2.0 * math.sqrt(float(np.linalg.eigvalsh(guest.motion.place_m2)[-1]))
+        (xx, xy), (_, yy) = guest.motion.place_m2.tolist()
+        (widest, _), _ = principal_axes(xx, xy, yy)
+        slack_m = 2.0 * math.sqrt(widest)
         reach_m = config.reach_m + config.fastest_m_s * late_s + slack_m
         found = math.dist(guest.motion.place_m, last_m) / reach_m
         return found if found <= 1.0 else math.inf

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from peopleboy.geometry.small_matrices import mahalanobis2, principal_axes
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.fusion.fused_person import FusedPerson, SensorTrack
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
@@ -23,7 +25,7 @@ def distance2(person: FusedPerson, reported: SensorTrack, floor_m: float) -> flo
     """
     away = reported.place_m - person.motion.place_m
     error = reported.error_m2 + person.motion.place_m2 + np.eye(2) * floor_m**2
-    return float(away @ np.linalg.solve(error, away))
+    return mahalanobis2(away, error)
 
 
 def cost(
@@ -53,8 +55,11 @@ def is_contradicted(person: FusedPerson, reported: SensorTrack, config: FusionCo
     deep = person.deep
     if reported.box is None or deep is None or not deep.is_clear:
         return False
-    across = np.linalg.eigh(reported.error_m2)[1][:, 0]  # the line of sight, along which heat is unsure
-    return abs(float(across @ (reported.place_m - deep.place_m))) > config.beside_m
+    (xx, xy), (_, yy) = reported.error_m2.tolist()
+    _, sight = principal_axes(xx, xy, yy)  # the line of sight, along which heat is unsure
+    x, y = (reported.place_m - deep.place_m).tolist()
+    aside_m: float = abs(math.cos(sight) * y - math.sin(sight) * x)
+    return aside_m > config.beside_m
 
 
 def _unlikeness(person: FusedPerson, reported: SensorTrack, config: FusionConfig) -> float:

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.small_matrices import solve
 from peopleboy.tracker.frame import Calibration
 
 Linear = NDArray[np.float32]
@@ -41,7 +42,7 @@ def floor_rows(calibration: Calibration, height: int) -> FloorRows:
     zero, one = np.zeros(3), np.ones(3)
     rows = calibration.project(np.stack([_THREE_M, zero, zero], axis=1))[:, 1]
     lines = np.stack([_THREE_M, one, -rows], axis=1)
-    horizon, slope, offset = np.linalg.solve(lines, rows * _THREE_M).tolist()
+    horizon, slope, offset = solve(lines, rows * _THREE_M).tolist()
     below = np.arange(height) - horizon
     nearest = np.maximum(below, 1e-6)  # rows above the horizon show no floor
     distance = np.clip((slope - offset * (nearest + horizon)) / nearest, 0.0, FARTHEST_M).astype(np.float32)

@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.geometry.small_matrices import fit_line
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
 from peopleboy.tracker.rgbd.u_depth import FARTHEST_M, NEAREST_M, STEP_1_M
@@ -89,7 +90,7 @@ def find_walls(tall: Floats, view: DepthView) -> tuple[DepthWall, ...]:
         on = _strongest(u, disparity)
         if np.count_nonzero(on) < _LEAST_COLUMNS:
             break
-        slope, offset = np.polyfit(u[on], disparity[on], 1).tolist()
+        slope, offset = fit_line(u[on], disparity[on])
         left, right = columns[on][[0, -1]].tolist()
         walls.append(DepthWall(slope=slope, offset_px=offset, left=left, right=right))
         columns = columns[~on & (np.abs(offset + slope * u - disparity) >= _OFF_PX)]

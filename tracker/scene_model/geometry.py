@@ -10,6 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.small_matrices import inverse
 from peopleboy.tracker.frame import (
     DEPTH,
     DEPTH_AMPLITUDE,
@@ -77,7 +78,7 @@ class Geometry:
         ours = self.calibration
         turn = theirs.intrinsics @ theirs.robot_from_camera[:3, :3].T
         shift = turn @ (ours.robot_from_camera[:3, 3] - theirs.robot_from_camera[:3, 3])
-        unprojected = turn @ ours.robot_from_camera[:3, :3] @ np.linalg.inv(ours.intrinsics)
+        unprojected = turn @ ours.robot_from_camera[:3, :3] @ inverse(ours.intrinsics)
         return np.asarray(_look_up(depth_m, unprojected, shift, frame.grey(THERMAL), warm), np.int8)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from peopleboy.geometry.pose2 import Pose2
+from peopleboy.geometry.small_matrices import symmetric_eigen
 from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.scene_model.geometry import Geometry
 from peopleboy.tracker.scene_model.scene import Metres
@@ -105,7 +106,7 @@ def _stepped(pose: Pose2, points: Floats, targets: Floats, normals: Floats) -> t
     rows = np.stack([normals[:, 0], normals[:, 1], x * normals[:, 1] - y * normals[:, 0]], axis=1)
     weight = 1.0 / np.maximum(np.abs(apart), 0.02)  # outliers count by their distance, not by its square
     matrix = rows.T @ (rows * weight[:, None])
-    values, vectors = np.linalg.eigh(matrix)
+    values, vectors = symmetric_eigen(matrix)
     known = values > 0.02 * values[-1]
     move = vectors[:, known] @ ((vectors[:, known].T @ (rows.T @ (weight * apart))) / values[known])
     dx, dy, turn = move.tolist()

@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.geometry.small_matrices import inverse
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.track import FloorPlace
 from peopleboy.tracker.tracking.config import KalmanConfig
@@ -63,7 +64,7 @@ def initiate(boxes: Floats, view: Viewpoint, config: KalmanConfig) -> StateEstim
     feet = view.feet(boxes)
     build = np.zeros(len(feet))
     slope = view.slopes(feet, build)
-    back = np.linalg.inv(slope[:, :, :3])
+    back = inverse(slope[:, :, :3])
     grown = back @ slope[:, :, 3:]
     covariance = np.zeros((len(feet), STATE, STATE))
     noise = np.square(boxes[:, 3:] * _deviations(config))[:, :, None] * np.eye(3)

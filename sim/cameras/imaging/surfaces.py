@@ -14,6 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.geometry.small_matrices import inverse
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.vectors import multiply
 from peopleboy.sim.shapes.materials import TEXEL_STEP, Finish, Material, Painting, PatternKind, Unrolling
@@ -256,7 +257,7 @@ def combine(rays: Matrix, world_from_camera: Matrix, world_from_part: Matrix) ->
 @lru_cache(maxsize=16)
 def rays_through(camera: Pinhole) -> Matrix:
     """(3, 3): the ray through pixel (u, v) in the optical frame is this @ (u, v, 1)."""
-    rays = np.asarray(np.linalg.inv(camera.intrinsics), np.float64)
+    rays = inverse(camera.intrinsics)
     rays.setflags(write=False)
     return rays
 

@@ -282,7 +282,9 @@ class Gait:
             limits.append(gap[:, 2] + np.sqrt(reach**2 - gap[:, 0] ** 2 - gap[:, 1] ** 2))
         limit = np.min(limits, axis=0)
         twice_a_cycle = fourier_basis(np.arange(PHASES) / PHASES)[:, [0, 3, 4]]
-        curve = twice_a_cycle @ (np.linalg.lstsq(twice_a_cycle, limit, rcond=None)[0] * [1.0, _BOB, _BOB])
+        # Least squares are projections here, as the columns are orthogonal over a whole cycle.
+        fit = (twice_a_cycle * limit[:, None]).sum(axis=0) / np.square(twice_a_cycle).sum(axis=0)
+        curve = twice_a_cycle @ (fit * [1.0, _BOB, _BOB])
         height: Array = curve - np.max(curve - limit)
         return height
 

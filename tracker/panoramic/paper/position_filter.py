@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.small_matrices import inverse
+
 Floats = NDArray[np.float64]
 
 STEP_S = 1.0 / 3.0
@@ -78,9 +80,7 @@ class PositionFilter:
     def update(self, before: Estimate, measured_m: Floats, steps: float = 1.0) -> Estimate:
         """Take in the position (2,) [m] that is measured so many steps after the last one."""
         expected = self.predict(before, steps)
-        gain = expected.covariance_m2 @ np.linalg.inv(
-            expected.covariance_m2 + self.noise.measurement_m2
-        )  # Eq. 9
+        gain = expected.covariance_m2 @ inverse(expected.covariance_m2 + self.noise.measurement_m2)  # Eq. 9
         position = expected.position_m + gain @ (measured_m - expected.position_m)  # Eq. 7
         return Estimate(
             position_m=position,

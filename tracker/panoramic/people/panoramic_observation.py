@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.geometry.pose2 import Pose2
+from peopleboy.geometry.small_matrices import mahalanobis2
 from peopleboy.tracker.panoramic.people.figure_patch import Map
 from peopleboy.tracker.panoramic.people.floor_motion import Floats, FloorMotion
 from peopleboy.tracker.panoramic.people.panorama_patches import PanoramaScene
@@ -61,7 +62,7 @@ class Onlooker:
         if seen is None:
             return None
         away = seen.place_m - motion.place_m
-        is_near = away @ np.linalg.solve(motion.place_m2 + seen.error_m2, away) < self.config.gate
+        is_near = mahalanobis2(away, motion.place_m2 + seen.error_m2) < self.config.gate
         return seen if is_near else None
 
     def at(self, scene: PanoramaScene, polar: Floats) -> Sighting | None:
