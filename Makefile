@@ -1,5 +1,6 @@
-# `make demo` and `make test` set up what they need. Everything lives in .venv.
+# `make demo` and `make test` set up what they need. Everything lives in .venv; PYTHON chooses another Python.
 VENV := .venv
+PYTHON ?= python3.11
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed# what `peopleboy` needs
 READY := $(VENV)/.ready# and what its development does
@@ -8,7 +9,7 @@ PIP := $(BIN)/uv pip install --quiet --python $(BIN)/python --constraint constra
 # Bytecode that is kept saves each of the processes that tests start some of its start.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-pages test-heavy test-install lint format bench peers rl pages docs dist docker forget-kernels clean
+.PHONY: demo test test-pages test-heavy test-install lint format bench peers rl pages docs dist lock audit docker forget-kernels clean
 
 demo: $(INSTALLED)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
@@ -49,7 +50,7 @@ peers: $(READY)
 # For examples/train_follower.py. PyPI's torch would bring gigabytes of CUDA along.
 rl: $(READY)
 	$(PIP) --no-deps --index-url https://download.pytorch.org/whl/cpu torch
-	$(PIP) --editable '.[rl]'
+	$(PIP) --editable '.[rl,viewer]'
 
 # The parts of pages that are made from the code, and from the figures in docs/results.yaml.
 pages: $(READY)
@@ -66,6 +67,16 @@ dist: $(READY)
 	$(BIN)/uv build --quiet --python $(BIN)/python
 	$(BIN)/python -m twine check --strict dist/*
 
+# The newest versions that fit together: uv.lock for uv, and the same as constraints for pip.
+lock: $(INSTALLED)
+	$(BIN)/uv lock --quiet --upgrade
+	.ci/constraints > constraints.txt
+
+# What looks at workflows, Dockerfile and metadata.
+audit: $(READY)
+	$(PIP) --group audit
+	.ci/audit
+
 # An image in which `peopleboy` is the command.
 docker:
 	docker build --tag peopleboy .
@@ -80,19 +91,22 @@ clean: forget-kernels
 $(INSTALLED): pyproject.toml constraints.txt
 	@set -e; \
 	if [ ! -x $(BIN)/python ]; then \
+	  for python in "$(PYTHON)" python3.11 python3.12 python3.13 python3; do \
+	    if "$$python" -c 'import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))' 2>/dev/null; then \
+	      "$$python" -m venv $(VENV); break; \
+	    fi; \
+	  done; \
+	fi; \
+	if [ ! -x $(BIN)/python ]; then \
 	  if command -v uv >/dev/null 2>&1; then uv venv --quiet --seed --python 3.11 $(VENV); \
-	  elif command -v python3.11 >/dev/null 2>&1; then python3.11 -m venv $(VENV); \
-	  elif python3 -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' 2>/dev/null; then python3 -m venv $(VENV); \
-	  else echo "PeopleBoy needs Python 3.11: install python3.11 with its venv module, or uv (https://docs.astral.sh/uv)" >&2; exit 2; \
+	  else echo "PeopleBoy needs Python 3.11, 3.12 or 3.13 with its venv module, or uv (https://docs.astral.sh/uv)" >&2; exit 2; \
 	  fi; \
 	fi
 	# uv installs all the rest in a fifth of pip's time.
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt uv
-	$(PIP) --editable .
+	$(PIP) --editable '.[viewer]'
 	@touch $(INSTALLED)
 
 $(READY): $(INSTALLED)
 	$(PIP) --editable '.[dev]'
-	# Both ask for opencv-python, which would overwrite the headless build; what else they need is there.
-	$(PIP) --no-deps trackeval trackers
 	@touch $(READY)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from peopleboy.bad_input import BadInput, found_in
 from peopleboy.sim.cameras.kinds import check_rate
 from peopleboy.sim.people.person_config import PersonConfig
-from peopleboy.sim.physics.physics_engine import PHYSICS, PhysicsName
+from peopleboy.sim.physics.physics_engine import PHYSICS, PhysicsName, default_physics
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Detail
@@ -42,7 +42,7 @@ class WorldConfig:
     physics_hz: int = 240
     control_hz: int = CONTROL_HZ
     renderer: str = "raycast"
-    physics: PhysicsName = "bullet"
+    physics: PhysicsName = field(default_factory=default_physics)
     detail: Detail = "plain"
 
     def __post_init__(self) -> None:

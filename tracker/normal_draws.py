@@ -3,7 +3,7 @@
 numpy takes a number's sign in a branch that no processor can predict, which costs more than all the rest.
 Here words are drawn first, and turned into numbers without such branches.
 
-`rng.standard_normal` draws the same bits. With it this module and llvmlite could go, but a step of the
+`rng.standard_normal` draws the same bits. With it this module could go, but a step of the
 contour filter with 1000 samples would take 0.133 ms instead of 0.107 ms, and a whole update of the contour
 tracker on crossing_3 would take 11 to 18 % longer (CPU time, two turns: 1.69 to 1.88 and 1.49 to 1.76 ms).
 
@@ -19,8 +19,8 @@ from functools import lru_cache
 from typing import Any, Final, cast
 
 import numpy as np
-from llvmlite import ir
 from numba import njit, types
+from numba.core.cgutils import ir  # type: ignore[attr-defined]  # the llvmlite of this numba
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 

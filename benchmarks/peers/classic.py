@@ -103,7 +103,7 @@ class _Parts:
             from stonesoup.predictor.kalman import KalmanPredictor
             from stonesoup.updater.kalman import KalmanUpdater
         except ImportError as error:
-            message = "benchmarks.peers: Stone Soup is missing; pip install -e '.[classic]' installs it"
+            message = "benchmarks.peers: Stone Soup is missing; pip install --group peers installs it"
             raise SystemExit(message) from error
         steps = [ConstantVelocity(_ACCELERATION)] * 2 + [RandomWalk(_GROWTH)] * 2
         self._measure = LinearGaussian(6, _PLACES, np.diag(np.square(_NOISE_PX)))

@@ -38,12 +38,18 @@ if TYPE_CHECKING:
 )
 def view(folder: Path, web: bool, port: int | None) -> None:
     """Open the recording of a run in the rerun viewer."""
-    from peopleboy.scenarios.recording.recording_file import is_whole, layers_in, recording_in
+    from peopleboy.scenarios.recording.recording_file import (
+        check_installed,
+        is_whole,
+        layers_in,
+        recording_in,
+    )
     from peopleboy.scenarios.recording.viewer import open_viewer, serve
 
     if port is not None and not web:
         raise BadInput(f"--port {port}: is where --web serves; give --web too, or neither")
     recording = recording_in(folder)
+    check_installed("view")
     if not is_whole(recording):
         click.echo(f"peopleboy: {recording}: was cut off; what it holds is shown", err=True)
     layers = [recording, *layers_in(folder)]

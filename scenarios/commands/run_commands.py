@@ -65,6 +65,7 @@ def run(
     """
     from peopleboy.scenarios.files.load import load_scenario
     from peopleboy.scenarios.files.suite import suite_names
+    from peopleboy.scenarios.recording.recording_file import check_installed
     from peopleboy.scenarios.recording.viewer import live_viewer
 
     is_suite = scenario in suite_names()
@@ -78,6 +79,8 @@ def run(
     options = given.make(seed=seed, out=given.out or Path("runs") / name)
     if loaded is not None:
         loaded = options.applied_to(loaded)
+    if live:
+        check_installed("--live")
     if live and (loaded is None or not options.record or not output.is_wordy):
         raise BadInput(
             "--live: shows the recording of one run, and prints where; give one scenario, without --no-rrd, "
@@ -118,6 +121,7 @@ def _run_one(scenario: Scenario, options: RunOptions, output: Output) -> None:
 
 
 def _show(scores: RunScores, options: RunOptions) -> None:
+    from peopleboy.scenarios.recording.recording_file import is_recorded
     from peopleboy.scenarios.scores.run_scores import headline
     from peopleboy.scenarios.scores.show_scores import print_drive, print_scores
 
@@ -130,7 +134,7 @@ def _show(scores: RunScores, options: RunOptions) -> None:
     for note in scores.notes:
         tell_note(note)
     click.echo(f"{options.out / 'contact_sheet.png'} shows the key moments.")
-    if options.record:
+    if is_recorded(options.record):
         click.echo(f"peopleboy view {options.out} plays the recording.")
 
 

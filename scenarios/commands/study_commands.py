@@ -131,7 +131,7 @@ class _Models(click.Group):
 def train() -> None:
     """Train one of the models that the trackers use, on rendered sequences.
 
-    Samples and weights are left in a folder; a killed call resumes. Needs pip install '.[train]'.
+    Samples and weights are left in a folder; a killed call resumes. Needs pip install 'peopleboy[studies]'.
     """
 
 

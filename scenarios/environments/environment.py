@@ -337,6 +337,9 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     def _show_first(self) -> None:
         """Show the episode's first instant, in a viewer that is there already or opened now."""
         if self._viewer is None:
+            from peopleboy.scenarios.recording.recording_file import check_installed
+
+            check_installed('render_mode="human"')
             from peopleboy.scenarios.recording.live_picture import LivePicture  # here, as it loads rerun
 
             self._viewer = LivePicture(print)

@@ -25,7 +25,6 @@ from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
-from pycocotools.mask import encode
 
 from peopleboy.scenarios.export.camera_images import (
     CORNER_PX,
@@ -147,8 +146,25 @@ def annotation(person: PersonTruth, instance: NDArray[np.uint8]) -> dict[str, An
 
 
 def _encoded(mask: NDArray[np.bool_]) -> dict[str, Any]:
-    """Encode a mask (H, W) by the lengths of its runs, column by column, as text."""
-    return {"size": list(mask.shape), "counts": encode(np.asfortranarray(mask, np.uint8))["counts"].decode()}
+    """Encode a mask (H, W) by the lengths of its runs, column by column, as text.
+
+    Runs of 0 and 1 alternate, 0 first. From the fourth run on, the difference to the last but one is written,
+    in groups of 5 bits, the lowest first; bit 5 says whether more follow.
+
+    Source: `rleToString` in maskApi.c of pycocotools, whose text this is.
+    """
+    column = np.pad(mask.ravel(order="F"), (1, 1), constant_values=(False, not mask[-1, -1]))
+    ends = np.flatnonzero(column[1:] != column[:-1])
+    runs = np.diff(ends, prepend=0).tolist()
+    text = ""
+    for i, run in enumerate(runs):
+        rest = run - runs[i - 2] if i > 2 else run
+        is_last = False
+        while not is_last:
+            group, rest = rest & 31, rest >> 5
+            is_last = rest == (-1 if group & 16 else 0)
+            text += chr(group + (48 if is_last else 80))
+    return {"size": list(mask.shape), "counts": text}
 
 
 def _truth(person: PersonTruth) -> dict[str, Any]:

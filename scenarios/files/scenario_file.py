@@ -15,7 +15,7 @@ from peopleboy.scenarios.files.people import GroupSpec, PersonSpec
 from peopleboy.scenarios.files.robot import RobotSpec
 from peopleboy.scenarios.files.validation import STRICT
 from peopleboy.settings import Seconds, Word
-from peopleboy.sim.physics.physics_engine import PhysicsName
+from peopleboy.sim.physics.physics_engine import PhysicsName, default_physics
 from peopleboy.sim.places.furniture.thing_config import ThingConfig
 from peopleboy.sim.places.place_config import PlaceConfig
 from peopleboy.sim.shapes.materials import Detail
@@ -114,9 +114,11 @@ class ScenarioSpec:
         PhysicsName,
         Field(
             description="what moves the robot: `bullet` has the dynamics of PyBullet, which must be "
-            "installed; `kinematic` lets it roll without slip, needs no PyBullet and is quicker"
+            "installed; `kinematic` lets it roll without slip, needs no PyBullet and is quicker; left out, "
+            "it is `bullet`, or `kinematic` where PyBullet is not installed",
+            json_schema_extra={"default": "bullet"},
         ),
-    ] = "bullet"
+    ] = field(default_factory=default_physics)
     lights: Annotated[
         tuple[LightSpec, ...],
         Field(

@@ -16,7 +16,7 @@ from peopleboy.scenarios.export.replay import replay
 from peopleboy.scenarios.files.own_files import keep_own_files
 from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.finished_runs.foreign_tracks import UNKNOWN, foreign_tracks
-from peopleboy.scenarios.recording.recorder import Recorder
+from peopleboy.scenarios.recording.recording_file import is_recorded
 from peopleboy.scenarios.run_folder.atomic_output import atomic, check_out, writing_to
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_whole_runs, read_run, runs_in
 from peopleboy.scenarios.run_folder.folder import RunFolder
@@ -76,7 +76,9 @@ def import_tracks(what: TrackImport, report: Callable[[int, int], None]) -> RunS
         keep_own_files(run.scenario.kept_files(), part)
         title = f"{run.title}, tracks of {what.name}"
         recorder = None
-        if what.record:
+        if is_recorded(what.record):
+            from peopleboy.scenarios.recording.recorder import Recorder  # here, as it loads rerun
+
             path = part / "recording.rrd"
             recorder = stack.enter_context(Recorder(path, run.world, title=title, watched=(what.camera,)))
         watchers = Watchers(run.world, title, recorder, faults=run.scenario.spec.faults)

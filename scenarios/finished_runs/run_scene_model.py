@@ -17,7 +17,7 @@ import pyarrow.parquet as pq
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.finished_runs.run_frames import PersonPositions, check_frames, run_frames
 from peopleboy.scenarios.finished_runs.true_events import KINDS, PersonNames, TrueEvent, thing_names
-from peopleboy.scenarios.recording.scene_layer import SceneRecording
+from peopleboy.scenarios.recording.recording_file import is_recorded
 from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import write_png
@@ -150,7 +150,9 @@ def _run(
     with ExitStack() as stack:
         lines = stack.enter_context((folder / LINES).open("w", encoding="utf-8"))
         layer = None
-        if options.record:
+        if is_recorded(options.record):
+            from peopleboy.scenarios.recording.scene_layer import SceneRecording  # here, as it loads rerun
+
             layer = stack.enter_context(SceneRecording(folder / RECORDING, _title(run), first))
         for frame in run_frames(run):
             number = round(frame.time_s * run.rate_hz) + 1

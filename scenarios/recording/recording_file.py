@@ -2,25 +2,59 @@
 
 from __future__ import annotations
 
+import importlib.util
+import logging
 import os
 import subprocess
 import sys
 from collections.abc import Collection
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from rerun.chunk import RrdReader
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.recording.layout import camera_path
 from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.scenarios.run_folder.finished_run import runs_in
 
+MISSING = "needs rerun: pip install 'peopleboy[viewer]'"
+
 # What a file of rerun's begins with, and what ends one that was closed.
 _HEAD, _FOOT, _FOOT_BYTES = b"RRF2", b"RRF2FOOT", 12
+
+
+def is_installed() -> bool:
+    """Return whether rerun is installed, without loading it."""
+    return importlib.util.find_spec("rerun") is not None
+
+
+def check_installed(what: str) -> None:
+    """Refuse what needs rerun where it is not installed.
+
+    Args:
+        what: needs it, such as an option.
+
+    Raises:
+        BadInput: rerun is not installed.
+    """
+    if not is_installed():
+        raise BadInput(f"{what}: {MISSING}")
+
+
+def is_recorded(is_wanted: bool) -> bool:
+    """Return whether a recording is written: if it is wanted and rerun is installed; log a notice if not."""
+    if is_wanted and not is_installed():
+        _note_once(f"no recording is written: {MISSING}")
+        return False
+    return is_wanted
+
+
+@cache
+def _note_once(notice: str) -> None:
+    logging.getLogger(__name__).warning("peopleboy: %s", notice)
 
 
 def recording_in(folder: Path) -> Path:
@@ -88,6 +122,12 @@ def recorded_images(recording: Path, camera: str, frames: Collection[int]) -> di
 
     Frames at which there is none are left out; so are all of a file that is not whole or cannot be read.
     """
+    if not is_installed():
+        return {}
+    from rerun.chunk import RrdReader
+
+    from peopleboy.scenarios.recording.layout import camera_path
+
     wanted, path = set(frames), f"/{camera_path(camera)}/image"
     found: dict[int, NDArray[np.uint8]] = {}
     try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import yaml
 
@@ -18,7 +19,7 @@ from peopleboy.scenarios.loop.faults import FaultySensors, FaultyTracker
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.scenarios.loop.run_events import LogLine, RunEvents
 from peopleboy.scenarios.loop.tracker_by_name import check_cameras, make_named_tracker, tracker_cameras
-from peopleboy.scenarios.recording.recorder import Recorder
+from peopleboy.scenarios.recording.recording_file import is_recorded
 from peopleboy.scenarios.run_folder.atomic_output import left_by_sigterm
 from peopleboy.scenarios.run_folder.finished_run import open_run, read_run
 from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versions
@@ -33,6 +34,9 @@ from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.trackers import knows_again
+
+if TYPE_CHECKING:
+    from peopleboy.scenarios.recording.recorder import Recorder
 
 
 class Watchers:
@@ -152,7 +156,9 @@ def run(
         keep_own_files(scenario.kept_files(), options.out)
         title = f"{scenario.name}, seed {options.seed}, tracker {name}"
         recorder = None
-        if options.record:
+        if is_recorded(options.record):
+            from peopleboy.scenarios.recording.recorder import Recorder  # here, as it loads rerun
+
             recorder = stack.enter_context(
                 Recorder(
                     options.out / "recording.rrd",

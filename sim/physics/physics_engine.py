@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import importlib.util
+import logging
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Final, Literal, Protocol, get_args, runtime_checkable
@@ -171,6 +173,15 @@ class Rasteriser(Protocol):
     ) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
         """Draw the world, or only the bodies of some names: parts (H, W) and depths (H, W) [m]."""
         ...
+
+
+@functools.cache
+def default_physics() -> PhysicsName:
+    """Return PyBullet, or kinematic physics where PyBullet is not installed; log a notice then, once."""
+    if importlib.util.find_spec("pybullet") is not None:
+        return "bullet"
+    logging.getLogger(__name__).warning("peopleboy: PyBullet is not installed; physics is kinematic")
+    return "kinematic"
 
 
 def check_physics(name: PhysicsName) -> None:

@@ -18,10 +18,10 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind, Vector
 
-MISSING = "pybullet is not installed: its wheels are for Linux and Python 3.10 or 3.11; use Python 3.11"
+MISSING = "PyBullet is not installed: there are wheels for Python 3.11 to 3.13 on Linux, macOS and Windows"
 """What is said wherever PyBullet or its models are needed and are not there."""
 
-MISSING_PHYSICS = f"{MISSING}, or physics kinematic, which needs none"
+MISSING_PHYSICS = f"{MISSING}; install it, or choose physics kinematic, which needs none"
 """What is said where PyBullet is to move the robot and is not there."""
 
 

@@ -79,10 +79,13 @@ def load_triangles(path: Path) -> NDArray[np.float64]:
     it heeds the rotations in a DAE file, so that TinyRenderer draws the few files with any in another way.
 
     Raises:
-        BadInput: there is no such file, it cannot be read, or it holds no triangle.
+        BadInput: there is no such file, it cannot be read, it holds no triangle, or trimesh is
+            not installed.
     """
-    import trimesh  # here, as it takes a second to load, and most worlds have no meshes
-
+    try:
+        import trimesh  # here, as it takes a second to load, and most worlds have no meshes
+    except ImportError as error:
+        raise BadInput(f"mesh {path}: reading it needs trimesh: pip install 'peopleboy[meshes]'") from error
     try:
         mesh: Any = trimesh.load(path, force="mesh", process=False, skip_materials=True)
         triangles = np.array(mesh.triangles, np.float64) * _unit_m(path)
