@@ -94,7 +94,7 @@ class Patrol:
         return self._round.command(percept)
 
     def _notices(self, percept: Percept) -> bool:
-        """Return whether there is a person whom the robot has not followed yet."""
+        """Return whether there is a person that the robot has not followed yet."""
         return any(self._is_new(person) for person in percept.people)
 
     def _is_new(self, person: SeenPerson) -> bool:

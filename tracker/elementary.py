@@ -2,7 +2,7 @@
 
 Those of numpy and of the C library take other roads on other processors, and their last bits differ. These
 are sums and products of float32 in an order that is written down; no product is joined with a sum. numba has
-to be told so (`fastmath=False`), or a kernel inherits such liberties from the one that first calls it.
+to say so (`fastmath=False`), or a kernel inherits such liberties from the one that first calls it.
 """
 
 from __future__ import annotations

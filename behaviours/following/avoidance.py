@@ -23,7 +23,7 @@ class AvoidConfig:
         half_width_m: [m] half of the lane to keep free: half the hull, and what the guard keeps beside it.
         reach_m: [m] obstacles farther from the robot's origin are of no concern yet.
         fade_m: [m] over this much of the reach the swerve grows to its full size.
-        widest_rad: [rad] largest swerve; the camera should not lose whom it looks at.
+        widest_rad: [rad] largest swerve; the camera should keep the followed person in view.
     """
 
     half_width_m: float = 0.68

@@ -95,7 +95,7 @@ def look_again(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OccluderConfig:
-    """Who can hide whom.
+    """Which people can occlude the followed one.
 
     Attributes:
         behind_rad: [rad] farthest off the person that a person who hides it can be.

@@ -77,7 +77,7 @@ def cells_of(part: ModelPart, box: Box, scale: float = 1.0) -> Cells:
 
 
 def check_box(box: Box, shape: tuple[int, ...]) -> None:
-    """Refuse a box of whom head or torso are not in an image of this shape.
+    """Refuse a box whose head or torso is outside an image of this shape.
 
     Raises:
         BadInput: they are not, or the box is none.

@@ -174,7 +174,7 @@ class ContourTracker:
             self._config = believed_from(self._given, self._belief)
 
     def _remembered(self, view: FrameView) -> tuple[TrackedPerson, ...]:
-        """Carry on the memory of people for whom no samples look any more, but of those not for too long."""
+        """Keep the memory of people who are no longer searched, for a limited time."""
         later = (
             replace(
                 person,
@@ -228,7 +228,7 @@ class ContourTracker:
         return ()
 
     def _identify(self, view: FrameView, time_s: float) -> None:
-        """Find out who those are of whom too little was seen when they were found."""
+        """Identify people of whom too little was visible when they were found."""
         for person in self._persons:
             if person.is_unidentified and not person.is_hidden:
                 found = self._identified(person, view, time_s)

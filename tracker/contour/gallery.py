@@ -28,7 +28,7 @@ COMPARED = 0.5  # share of a person's known looks that must be seen of who may b
 def least_mismatch(
     found: TrackedPerson, lost: Sequence[TrackedPerson], view: FrameView, config: TrackerConfig
 ) -> TrackedPerson | None:
-    """Take the one of the people who were lost against whom least speaks; None if that is too much."""
+    """Return the lost person of the lowest cost; None if the cost is too high."""
     costs = [mismatch(found, person, view, config) for person in lost]
     best = int(np.argmin(costs))
     return lost[best] if costs[best] < WORST else None

@@ -22,7 +22,7 @@ _FIRST_BITS, _NEXT_BITS = 11, 10  # of 31: the sign is none
 def sharp_weights(fit: Floats, likeness: Floats, sharpness: float, floor: float) -> Floats:
     """Weigh (N,) by the exponential of contour and looks together; the best has 1.
 
-    The floor stands for a person hidden by something unknown, of whom neither would be seen.
+    The floor stands for a person occluded by something unknown, who is visible in neither.
 
     Args:
         fit: (N,) of the contour.

@@ -14,7 +14,7 @@ from peopleboy.tracker.boxes import area, cover, intersection
 Floats = NDArray[np.float64]
 
 SHARED: Final = 0.65  # of the smaller box: from then on two boxes are of one person
-_ALIKE: Final = 0.5  # IoU of boxes of whom the mean is taken
+_ALIKE: Final = 0.5  # IoU of boxes whose mean is taken
 _TOUCHED: Final = 0.12  # share of a box that is theirs who are to its left and right, each at least
 _BETWEEN: Final = 0.6  # share of it that is one's or the other's
 

@@ -38,7 +38,7 @@ _CUT_OVER: Final = (6, 9)
 """Rows above and below the image from which on a window is of a person who is cut off."""
 _CUT_PX: Final = 48.0  # height of the smallest people who are looked for cut off
 _LEAST_ROWS: Final = 7  # of cells in an image: a third of a window
-_LEAST_WHOLE_ROWS: Final = 12  # likewise; it shows the larger part of whom it cuts off
+_LEAST_WHOLE_ROWS: Final = 12  # likewise; it shows the larger part of a person that it cuts off
 _CONTEXT: Final = 12
 """Cells above and below a window that its channels depend on."""
 

@@ -21,7 +21,7 @@ ABOVE_PX: Final = (ROWS * CELL_PX - PERSON_PX) / 2.0
 
 
 class WindowKind(StrEnum):
-    """Whom windows show: people who are mostly in the image, or such of whom head or feet are beyond it."""
+    """What windows show: people who are mostly in the image, or whose head or feet are outside it."""
 
     WHOLE = "whole"
     CUT = "cut"

@@ -88,7 +88,7 @@ def _span(frame: Ints, frames: Ints) -> tuple[Ints, Ints]:
     return first, np.searchsorted(frame, frames, side="right") - first
 
 
-# What to do about people whom nobody asked the tracker to find.
+# What to do about people that the tracker is not asked to find.
 #
 # A truth row is uncounted if the person is nearer than 3 m or farther than 10 m (`counted` is False), or
 # so hidden that the visible fraction is at most `min_visible` (by default: totally hidden). Uncounted
@@ -154,8 +154,8 @@ def ignore_uncounted(truth: TrueBoxes, tracks: TrackBoxes, gate: float = GATE) -
     """Take out the uncounted people, and the candidates on them.
 
     All people choose together, so that the sum of overlaps is largest: where a person uncounted and a target
-    stand at one place, a candidate is on the one whom it overlaps more. Each uncounted person takes out at
-    most one; two candidates on one uncounted person leave one false alarm.
+    stand at one place, a candidate belongs to the one that it overlaps more. Each uncounted person takes
+    out at most one; two candidates on one uncounted person leave one false alarm.
 
     Source: TrackEval 1.0, `MotChallenge2DBox.get_preprocessed_seq_data`, of distractors.
     """

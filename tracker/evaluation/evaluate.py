@@ -91,7 +91,7 @@ def evaluate(
         frames: length of the sequence, which the truth does not tell if nobody is there at its end; None
             takes the last frame that has a target or a candidate. It changes `counts.frames` only.
         uncounted: what to do about uncounted people: `ignore` candidates on them, or take them for `absent`.
-        min_visible: people of whom at most this fraction is visible are uncounted as well.
+        min_visible: people of whose body at most this fraction is visible are uncounted as well.
         is_single: whether the truth has one person alone, whoever else is there. Boxes elsewhere are then
             neither right nor wrong, and the figures that need to know are undefined (`table.FIGURES`).
         standing: where the people stand on the floor; None if nobody knows.

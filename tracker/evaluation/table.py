@@ -119,7 +119,7 @@ FIGURES: tuple[Figure, ...] = (
     Figure("misses", "", "counts.misses", "People to find without such a box."),
     Figure("false_alarms", "", "counts.false_alarms", "Boxes without such a person."),
     Figure("tracks", "", "counts.tracks", "Track ids."),
-    Figure("true_tracks", "", "counts.true_tracks", "Track ids that are on somebody at some time."),
+    Figure("true_tracks", "", "counts.true_tracks", "Track ids that match a person at some time."),
     Figure("false_tracks", "", "counts.false_tracks", "Track ids that never match anyone."),
 )
 

@@ -228,7 +228,7 @@ def _of_everybody(path: Path, frames: int | None, numbers: range | None) -> Give
     rows[:, 0] -= frames_before(rows[:, 0], numbers, path, notes)
     if len(rows) and not rows[:, 8].any() and not is_own:
         rows[:, 8] = 1.0
-        notes.append(f"{path}: the visible fraction is 0 in all lines; it is taken as not told")
+        notes.append(f"{path}: the visible fraction is 0 in all lines; it is taken as missing")
     truth = truth_of(path, rows)
     if frames is not None and truth.last_frame > frames:
         raise BadInput(f"{path}: must end with frame {frames}, the last picture, got {truth.last_frame}")

@@ -82,7 +82,7 @@ class FusedPerson:
     """A person that at least one of the trackers has reported.
 
     Attributes:
-        id: number of the fused track; negative of a guest, of whom it is not decided who it is.
+        id: number of the fused track; negative for a guest, whose identity is not decided yet.
         motion: place and velocity in the room.
         heat, depth: ids of the tracks in the thermal and in the depth image that are, or were last, its own.
         warm, deep: what these tell in this frame; None for nothing.

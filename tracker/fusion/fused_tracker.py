@@ -48,7 +48,7 @@ Take = Callable[[FusedPerson, SensorTrack], FusedPerson]
 
 
 class ThermalDepthTracker:
-    """People of whom a thermal tracker and one by depth tell, each with one number.
+    """People found by a thermal tracker and by a depth tracker, each with one id.
 
     Both go on by themselves. A person has at most one track of each, has one place in the room, by
     a Kalman filter over what both say, and is looked for in the depth image while it is hidden in part.
@@ -168,7 +168,7 @@ class ThermalDepthTracker:
         return any(abs(x - here[0]) < deep_m and abs(y - here[1]) < aside_m for x, y in others)
 
     def _single(self, people: Sequence[FusedPerson]) -> list[FusedPerson]:
-        """Make one of two at one place of whom one is seen by heat alone, and the other by depth alone.
+        """Merge two people at one place, of which one is seen in thermal alone and the other in depth alone.
 
         Two who are both known by their appearance stay two: heat has taken one for the other.
         """
@@ -187,7 +187,7 @@ class ThermalDepthTracker:
         return kept
 
     def _settled(self, one: FusedPerson, deep: FusedPerson, double: FusedPerson) -> tuple[FusedPerson, ...]:
-        """Give a thermal track to whom depth sees there; who else had it, and is known by looks, is away."""
+        """Give a thermal track to the person that depth sees there; its owner, known by appearance, is away."""
         if one is double:
             return () if double.appearance is None else (replace(double, warm=None, heat=None),)
         if one is not deep:

@@ -15,7 +15,7 @@ class FusionConfig:
         own_gate: the same as `gate` for the track that was the person's before.
         loyalty, loyalty_heat: by how much a person's track of before counts as nearer: one by depth, and a
             thermal one.
-        beside_m: [m] across the line of sight, by which a thermal track may be off a person whom depth sees
+        beside_m: [m] across the line of sight, by which a thermal track may be off a person that depth sees
             whole before neither its place nor its contour is taken.
         looks_weight: what entirely other appearance counts.
         height_sd_m: [m] by which a person's height may be measured wrongly.

@@ -19,7 +19,7 @@ _HALF: Final = 1.25  # widths to either side of the middle that are looked at
 _REACH_M: Final = 0.35
 _DECIDES: Final = 0.5  # share of a column's readings that tell whose it is
 _LEAST_WIDE: Final = 0.15  # widths that must be seen,
-_WHOLE: Final = 0.6  # and of a person whom nothing covers
+_WHOLE: Final = 0.6  # and of a person that nothing covers
 _WIDEST: Final = 1.5  # widths that one person has at most
 _FARTHEST: Final = 0.8  # widths that the person may be off
 
@@ -111,7 +111,7 @@ def _columns(
 
 
 def _middle(columns: _Columns, run: tuple[int, int], width: float) -> float | None:
-    """Return the column [px] of the middle of a person of a width [px] of whom a run of columns is seen."""
+    """Return the middle column [px] of a person of a width [px], of which a run of columns is visible."""
     u, (first, last) = columns.u, run
     step = (u[-1] - u[0]) / (len(u) - 1)
     starts, ends = float(u[first] - step / 2.0), float(u[last] + step / 2.0)

@@ -120,7 +120,7 @@ class LinkEvidence:
         return linked
 
 
-# Where people were whom a camera sees no more: who turns up near there is one of them.
+# Where people were last seen by a camera: a new track near there is one of them.
 
 FORGET_S: Final = 3.0
 REACH_M: Final = 1.2  # of errors of both places,

@@ -79,7 +79,7 @@ def thermal_view(track: Track, calibration: Calibration, width_px: int) -> Box |
 
 
 def _is_taken(box: Box, warm: Sequence[Track]) -> bool:
-    """Return whether a person whom the thermal tracker has is in the middle of a box."""
+    """Return whether a person of the thermal tracker is in the middle of a box."""
     middle = box[0] + box[2] / 2.0
     spans = (track.boxes[THERMAL] for track in warm)
     return any(left - 0.25 * wide <= middle <= left + 1.25 * wide for left, _, wide, _ in spans)
@@ -265,7 +265,7 @@ class HandoverTracker:
         self._identities.name(camera, tracks, known, guess)
 
     def _introduce(self, around: Sequence[Track], warm: Sequence[Track], frame: Frame) -> None:
-        """Point out to the thermal tracker whom it does not see, though that one is before its camera."""
+        """Hint to the thermal tracker at people in front of its camera that it has not found."""
         present = {track.id for track in warm}
         linked = {other for one, other in self._votes.linked.items() if one in present}
         box = self._introductions.next(around, warm, linked, frame)

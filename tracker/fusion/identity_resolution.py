@@ -117,7 +117,7 @@ class IdentityResolution:
         )
 
     def _distance(self, person: FusedPerson, guest: FusedPerson) -> float:
-        """Rate the way since somebody was last known by its looks, or seen if there are none: 1 at most."""
+        """Rate the distance since a person was last recognised by appearance, or else seen: 1 at most."""
         config = self.config
         late_s, last_m = self.time_s - person.seen_s, person.motion.place_m
         if guest.appearance is not None and person.appearance_m is not None:

@@ -28,7 +28,7 @@ _OWN_M: Final = 0.35  # from a person's place, within which a detection is its o
 
 
 class Heat:
-    """The thermal tracker, without those through whom the depth camera sees what is behind.
+    """The thermal tracker, without tracks through which the depth camera sees what is behind.
 
     Args:
         tracker: finds people in the thermal image.

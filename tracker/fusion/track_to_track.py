@@ -51,7 +51,7 @@ def cost(
 
 
 def is_contradicted(person: FusedPerson, reported: SensorTrack, config: FusionConfig) -> bool:
-    """Return whether a thermal track is in another bearing than a person whom depth sees whole."""
+    """Return whether a thermal track is at another bearing than a person that depth sees whole."""
     deep = person.deep
     if reported.box is None or deep is None or not deep.is_clear:
         return False

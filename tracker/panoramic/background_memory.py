@@ -130,8 +130,8 @@ def compare(image: NDArray[np.uint8], memory: Linear) -> tuple[Linear, Linear]:
 
     These are its colour, by how many standard deviations it differs from the memory (their logarithm), and
     the memory's age and doubt. To a pixel's own variance is added what its background's slope makes of a
-    third of a pixel. Its doubt does not widen that: floor lies right, and whether it is floor the network
-    tells.
+    third of a pixel. Its doubt does not widen that: floor lies right, and the network decides
+    whether it is floor.
 
     Returns:
         squares: (BLOCK * BLOCK * 6, H / BLOCK, W / BLOCK) these features by squares of pixels, a square's row

@@ -198,7 +198,7 @@ def occluder_of(person: Hypothesis, others: Sequence[Hypothesis], view: RgbdView
     return best
 
 
-# Which detection is whom.
+# Which detection belongs to which track.
 
 _NEVER = 1e6
 _BETWEEN_FRAMES_S = 0.1

@@ -1,1 +1,1 @@
-"""What stands, what was moved, and by whom: the articulated scene model of a place that one looks at."""
+"""The articulated scene model of an observed place: what stands there, what was moved, and who moved it."""

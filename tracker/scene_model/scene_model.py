@@ -69,7 +69,7 @@ class PastColours:
 
 
 class SceneModel:
-    """Learns what stands in a place, what was moved there, and by whom.
+    """Learns what stands in a place, what was moved there, and who moved it.
 
     Args:
         config: settings.

@@ -173,7 +173,7 @@ class People:
         return BodyPiece(pixels, geometry.points(pixels, smooth), is_warm)
 
     def _human(self, piece: BodyPiece) -> BodyPiece | None:
-        """Give what is below the head of a piece of a human's size: a thing that somebody touches is not."""
+        """Give what is below the head of a piece of a human's size: a thing that a person touches is not."""
         config, across = self._config, piece.points_m[:, :2]
         if piece.top_m < config.top_m or piece.width_m > config.wide_m:
             return None

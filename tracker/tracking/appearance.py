@@ -28,7 +28,7 @@ def transfer_boxes(
         there: that of the other camera.
 
     Returns:
-        (M, 4) [px], 0 of whom the other camera cannot see.
+        (M, 4) [px], 0 for people outside the other camera's view.
     """
     feet = view.feet(boxes)
     left, top, width, height = boxes.T

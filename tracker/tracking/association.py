@@ -1,4 +1,4 @@
-"""Who is whom: proposals are given to those who are expected there and look so, who was seen last first."""
+"""Association of detections with tracks by position and appearance; those seen last come first."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def associate(
     time_s: float,
     config: AssociationConfig,
 ) -> dict[int, int]:
-    """Return the number of the proposal that is each target's, by the target's number.
+    """Return the number of each target's detection, by the target's number.
 
     Args:
         targets: K of them.
@@ -49,8 +49,8 @@ def associate(
         overlap: (K, M) of boxes.
         likeness: (K, M) of pattern, -1 to 1.
         is_coloured: (K, M) whether that is by colours, which tell a person who was lost wherever he is.
-        score: (M,) of proposals.
-        known: whose proposals are known.
+        score: (M,) of detections.
+        known: targets whose detections are known.
         time_s: now.
         config: what things cost.
     """
@@ -84,7 +84,7 @@ def _rank(target: TrackState, time_s: float, config: AssociationConfig) -> int:
     return _SEEN if time_s - target.seen_s < config.lost_s else _LOST
 
 
-# Who overlaps whom in the image, and who is in front.
+# Which tracks overlap in the image, and which is in front.
 
 Flags = NDArray[np.bool_]
 
@@ -127,7 +127,7 @@ def shared_area(boxes: Floats, theirs: Sequence[int]) -> Floats:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DescribedDetections:
-    """M proposals.
+    """M detections.
 
     Attributes:
         boxes: (M, 4) [px].

@@ -26,7 +26,7 @@ class Schedule(NamedTuple):
         everywhere: whether the detector looks for anybody.
         expected: boxes (4,) [px] in which the detector's networks look at who is known, by their row; where
             it looks for anybody its trees pass them by.
-        followed: boxes of those whom their portraits show, at whom nobody pattern, likewise.
+        followed: boxes of tracks found by their templates, without other detections, likewise.
     """
 
     everywhere: bool
@@ -103,7 +103,7 @@ def _shown(
     expected: Floats,
     config: DetectionScheduleConfig,
 ) -> dict[int, Floats]:
-    """Return the boxes (4,) of some (K,) of those whom their portraits show, by their row."""
+    """Return the boxes (4,) of those of K tracks that their templates find, by row."""
     shown = {}
     for row in np.flatnonzero(these).tolist():
         template = targets[row].template

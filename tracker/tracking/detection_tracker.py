@@ -49,7 +49,7 @@ from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 FIRST_STEP_S: Final = 1 / 15
 _STANDING: Final = Odometry()
-_TAKEN: Final = 0.45  # overlap with a person from which a proposal is nobody new
+_TAKEN: Final = 0.45  # overlap with a track from which a detection is not a new person
 
 
 class _Instant(NamedTuple):
@@ -215,7 +215,7 @@ class DetectionTracker:
     def _update_templates(
         self, frame: Frame, looked: Set[tuple[int, int]], proposed: DescribedDetections, aim: Schedule
     ) -> None:
-        """Keep what those look like at whom the detector looked."""
+        """Keep the appearance of tracks that the detector updated."""
         for row, column in looked:
             target = self._targets[row]
             target.rescored_s, target.score = frame.time_s, float(proposed.scores[column])
@@ -263,7 +263,7 @@ class DetectionTracker:
         self._targets = [self._targets[row] for row in kept]
         met = DescribedDetections.of(frame, Detections.from_trees(box, np.zeros(1)), now.view)
         self._add(np.zeros(1, int), met, now)
-        self._confirm(self._targets[-1], -math.inf, now.existence)  # whoever points at a person knows whom
+        self._confirm(self._targets[-1], -math.inf, now.existence)  # a hint is certain
 
     def _add(self, free: NDArray[np.intp], proposed: DescribedDetections, now: _Instant) -> None:
         """Begin to follow some of those who are proposed."""

@@ -96,7 +96,7 @@ def move_points(points_m: Floats, moved: Odometry) -> Floats:
 def mahalanobis_distances(
     paths: StateEstimates, boxes: Floats, view: Viewpoint, config: KalmanConfig
 ) -> Floats:
-    """Return the Mahalanobis distances (K, M) of proposals (M, 4) from where people are expected."""
+    """Return the Mahalanobis distances (K, M) of detections (M, 4) from where people are expected."""
     expected, slope = _expected(paths, view)
     deviation = np.maximum(expected[:, 2:] - expected[:, 1:2], 1.0) * _deviations(config)
     result = np.empty((len(paths), len(boxes)))

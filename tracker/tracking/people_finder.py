@@ -25,11 +25,11 @@ class ColourFinder:
 
     What it knows is relative: neither what a grey means nor whether people are brighter than what is behind
     them. So it knows people by daylight, though fewer of them. It looks more often while it shows people
-    whom the thermal image does not.
+    that the thermal image does not.
     """
 
     def __init__(self, config: ColourDetectionConfig, weakest: float) -> None:
-        """Make one that keeps proposals from some log odds on."""
+        """Make one that keeps detections from some log odds on."""
         self._config = config
         self._detector = PeopleDetector(least_score=weakest)
         self._images = FreshImages(COLOUR)
@@ -77,8 +77,8 @@ class ColourFinder:
 def merge_cameras(thermal: Detections, colour: Detections, config: ColourDetectionConfig) -> Detections:
     """Take together what both cameras show, all in the thermal image, the surest first.
 
-    Of whom both show the box is the thermal one's, which is the more exact, and the score that of the surer
-    one. Colours alone show others only where the thermal image has nothing to say.
+    Of a person in both, the box is the thermal one's, which is the more exact, and the score that of the
+    surer one. Colours alone show others only where the thermal image has nothing to say.
     """
     if len(colour.score) == 0:
         return thermal

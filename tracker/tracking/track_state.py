@@ -23,7 +23,7 @@ class DetectionEvidence(NamedTuple):
     """A person was found.
 
     Attributes:
-        score: log odds of the proposal.
+        score: log odds of the detection.
         shared: how much of its box is of a person known, too, 0 to 1.
         speed_m_s: how fast this one goes.
     """
@@ -46,7 +46,7 @@ class TrackState:
         shown: (4,) its box in the image in which it was last seen [px].
         watched_s: for how long it was seen in all.
         trees: log odds by the detector's trees alone, when it was last found among all.
-        score: log odds of the proposal when the detector last found it.
+        score: log odds of the detection when the detector last found it.
         rescored_s: when that was.
         template: what it looked like then.
         searched_s: when trees last found it among all.

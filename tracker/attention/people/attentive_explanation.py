@@ -1,4 +1,4 @@
-"""The person on whom attention is, for those who want to look over the tracker's shoulder."""
+"""What the tracker knows of the attended person, for plots and recordings."""
 
 from __future__ import annotations
 

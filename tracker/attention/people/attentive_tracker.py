@@ -57,7 +57,7 @@ class GalleryEntry(Generic[Appearance]):
         return float(np.mean(scores)) if scores else None
 
     def needed(self, config: AttentiveConfig) -> float:
-        """Give the score from which on somebody new is this person: who always looks the same must do so."""
+        """Return the score from which a new person is this one: higher, the less the appearance varies."""
         return max(config.accept, self.usual - config.slack)
 
     def note(self, score: float) -> None:
@@ -236,13 +236,13 @@ class AttentiveTracker(Generic[Appearance, Seen]):
             self._attended = Attended.learned(own.number, views[next(iter(seen))])
 
     def _attend(self, frame: Frame) -> None:
-        """Have a new image ready in which the person can be looked for on whom attention is."""
+        """Prepare a new image in which to search for the attended person."""
         attended = self._attended
         if attended is not None and attended.camera in frame.images:
             self._attended = replace(attended, image=frame.rgb(attended.camera))
 
     def _recognise(self, wearer: Wearer, seen: Mapping[str, Seen]) -> None:
-        """Let a person new be the one of those who were lost before whom he looks like most, if he does."""
+        """Give a new person the id of the lost person that it resembles most, if it resembles one."""
         config, found = self._config, {}
         for number, person in self._people.items():
             if number != wearer.number and person.seen_s < wearer.since_s and person.is_known(config):

@@ -100,7 +100,7 @@ def _same_view(camera: str, track: Track, frame: Frame) -> Box | None:
 
 
 def _place_by_height(track: Track, thermal: Calibration | None) -> FloorPlace | None:
-    """Return where a person stands for whom a tracker has only a box in the thermal image."""
+    """Return where a person stands that a tracker has only as a box in the thermal image."""
     if thermal is None or THERMAL not in track.boxes:
         return None
     return places_on_floor([track.boxes[THERMAL]], [Status.TRACKED], thermal)[0]

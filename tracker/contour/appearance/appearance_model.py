@@ -164,7 +164,7 @@ def likelihood(
         features: of the people.
         model: of the person.
         config: how sharply they are compared.
-        unseen_spread: how far off in every feature people are taken to be of whom nothing is seen; NaN to
+        unseen_spread: how far off in every feature people without visible parts are taken to be; NaN to
             treat them as those who cannot be compared.
 
     Source: thesis, equation 6.4.

@@ -54,7 +54,7 @@ class Evidence:
 def evidence_of(
     thermal: NDArray[np.uint8], tracks: Sequence[Track], explanation: ContourExplanation
 ) -> Mapping[int, Evidence]:
-    """Measure the contours of tracks in their frame, by track id; whom a track names as occluder covers it.
+    """Measure the contours of tracks in their frame, by track id, each covered by its occluder.
 
     Args:
         thermal: (H, W) grey, as the tracker got it.

@@ -1,1 +1,1 @@
-"""Who is in front of whom: by feet, by looks, or as learned; and what becomes of those who are hidden."""
+"""Depth order of people, by feet, by appearance or as learned, and coasting of the occluded."""

@@ -181,7 +181,7 @@ class WalkOn:
     def recognised(
         self, found: TrackedPerson, lost: Sequence[TrackedPerson], view: FrameView
     ) -> TrackedPerson | None:
-        """Take the one against whom least speaks, if that is little enough."""
+        """Return the one of the lowest cost, if that is low enough."""
         return least_mismatch(found, lost, view, self._config)
 
     def is_shown(self, person: TrackedPerson, region: Regions, view: FrameView) -> bool:

@@ -1,4 +1,4 @@
-"""Who is in front of whom, as expected before the image is measured."""
+"""The depth order of people, as expected before the image is measured."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Order(Protocol):
     """Compares people with each other."""
 
     def __call__(self, figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:
-        """Return who of M people is in front of whom.
+        """Return which of M people is in front of which.
 
         Returns:
             (M, M) how clearly the row's person is in front of the column's: positive if it is, negative if
@@ -99,8 +99,8 @@ def _leads(values: Sequence[float]) -> Leads:
 def sorted_by_lead(lead: Leads) -> tuple[int, ...]:
     """Sort M people from front to back by their leads over each other.
 
-    Whoever nobody else is in front of comes first, and so on with the rest. Where leads go round in a circle,
-    whom the fewest are in front of comes first; then whose leads over the rest add up to more; then the
+    A person with nobody in front comes first, and so on with the rest. Where leads form a circle, the one
+    with the fewest in front comes first, then the one with the larger sum of leads over the rest, then the
     lower number. So the result never depends on the sequence of the comparisons.
 
     Args:
@@ -164,7 +164,7 @@ def surroundings_of(
     view: FrameView,
     config: TrackerConfig,
 ) -> OrderContext:
-    """Sort the others into those who hide this person and those whom it is to keep off.
+    """Sort the others into those that occlude this person and those that it must keep clear of.
 
     Args:
         figure: the person.

@@ -126,7 +126,7 @@ def _cover(covered: Map, foreground: Map, middle: float, rows: Floats, halves: F
                         break
 
 
-# Where in the panorama people may be whom nobody tracks yet.
+# Where in the panorama untracked people may be.
 
 NEAREST_M: Final = 1.1
 FARTHEST_M: Final = 7.5

@@ -72,7 +72,7 @@ class LifespanConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IdentityConfig:
-    """Who is taken for whom.
+    """When a detection is a person who was lost before.
 
     Attributes:
         alike: unlikeness of looks up to which who comes is one who went.

@@ -140,7 +140,7 @@ class Life:
         return person.is_seen and (has_stayed or person.sightings >= life.birth_sightings)
 
     def could_be(self, person: PanoramicPerson, place_m: Floats, clothing: BandColours) -> bool:
-        """Tell whether somebody who is out of sight may be who is seen here: by the way, and by the looks."""
+        """Return whether a person out of sight may be the one seen here, by distance and appearance."""
         identity = self.config.identity
         reach = identity.reach_m + identity.fastest_m_s * (self.time_s - person.seen_s)
         way = math.dist(person.motion.place_m, place_m)
