@@ -247,7 +247,7 @@ class InteractionConfig:
 class DepthOrderConfig:
     """Depth order of people, and its effect on the evidence."""
 
-    # By whose feet are lower ("foot"), by looks as well ("appearance"), by a boosted classifier ("learned");
+    # By lower feet ("foot"), by appearance as well ("appearance"), by a boosted classifier ("learned");
     # None: nobody is in front of anybody.
     order: str | None = None
     table: str = "contour"  # who the boosted classifier was taught for: its table of that name is taken

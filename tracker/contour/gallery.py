@@ -22,7 +22,7 @@ PLACE_WEIGHT = 0.56
 APPEARANCE_WEIGHT = 1.76
 WORST = 6.8
 GROWTH = 0.7  # largest change of the logarithm of the height
-COMPARED = 0.5  # share of a person's known looks that must be seen of who may be the same person
+COMPARED = 0.5  # share of a known appearance that must be visible to compare it
 
 
 def least_mismatch(
@@ -35,7 +35,7 @@ def least_mismatch(
 
 
 def is_comparable(found: TrackedPerson, lost: TrackedPerson) -> bool:
-    """Tell whether enough is seen of a newly found person's looks to compare them with those of one lost.
+    """Return whether enough of a newly found person is visible to compare it with a lost one.
 
     The colour camera sees less to the sides than the thermal one, and heat alone is much the same in all.
     """
@@ -67,7 +67,7 @@ def colour_distance(one: TrackedPerson, other: TrackedPerson) -> float:
 def mismatch(found: TrackedPerson, person: TrackedPerson, view: FrameView, config: TrackerConfig) -> float:
     """Add up what speaks against one being the other: their places, and their appearance.
 
-    The logarithm takes into account that looks in another pose, or half hidden, can be far off.
+    The logarithm takes into account that the appearance in another pose, or half occluded, can be far off.
     """
     if abs(np.log(max(found.shown[H], 1.0) / max(person.shown[H], 1.0))) > GROWTH:
         return math.inf
@@ -78,7 +78,7 @@ def mismatch(found: TrackedPerson, person: TrackedPerson, view: FrameView, confi
 
 
 def appearance_distance(found: TrackedPerson, person: TrackedPerson, config: TrackerConfig) -> float:
-    """Measure the squared distance of appearance; that of the same person where looks cannot tell."""
+    """Measure the squared distance of appearance; that of the same person where appearance is unknown."""
     if config.appearance is None or found.appearance is None or person.appearance is None:
         return LOOKS2
     distance = float(squared_distances(found.appearance.mean[None], person.appearance)[0])

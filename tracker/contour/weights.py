@@ -20,7 +20,7 @@ _FIRST_BITS, _NEXT_BITS = 11, 10  # of 31: the sign is none
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def sharp_weights(fit: Floats, likeness: Floats, sharpness: float, floor: float) -> Floats:
-    """Weigh (N,) by the exponential of contour and looks together; the best has 1.
+    """Weigh (N,) by the exponential of contour and appearance together; the best has 1.
 
     The floor stands for a person occluded by something unknown, who is visible in neither.
 

@@ -30,7 +30,7 @@ class SensorTrack:
         occluder: id of the same tracker's track that hides it; None for nobody.
         box: in the thermal image [px], as the thermal tracker sees it; None from the other.
         tall_m, span_m: [m] height, and width with the arms; None where the tracker does not measure them.
-        looks: (BINS,) histogram of what is seen just now; None where nothing is, or it is dark.
+        appearance: (BINS,) histogram of what is seen just now; None where nothing is, or it is dark.
     """
 
     id: int
@@ -88,7 +88,7 @@ class FusedPerson:
         warm, deep: what these tell in this frame; None for nothing.
         is_peeked: whether it was found where it was expected in the depth image of this frame.
         tall_m, wide_m, span_m: [m] height, and width of the torso and with the arms.
-        looks: (BINS,) histogram of colours; None before any were seen in the light.
+        appearance: (BINS,) histogram of colours; None before any were seen in the light.
         looked: how often these were seen.
         strange: frames in a row in which it looked otherwise.
         born_s, seen_s, looked_s: [s] when it was born, last seen, and last known by its appearance.
@@ -207,7 +207,7 @@ class FusedPerson:
         return replace(self, tall_m=tall, span_m=span)
 
     def _with_appearance(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> FusedPerson:
-        """Learn looks, but not those of another person."""
+        """Learn the appearance, but not that of another person."""
         if reported.appearance is None:
             return self
         if self.appearance is None or self.strange >= config.relearn_frames:

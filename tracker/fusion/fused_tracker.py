@@ -187,7 +187,7 @@ class ThermalDepthTracker:
         return kept
 
     def _settled(self, one: FusedPerson, deep: FusedPerson, double: FusedPerson) -> tuple[FusedPerson, ...]:
-        """Give a thermal track to the person that depth sees there; its owner, known by appearance, is away."""
+        """Give a thermal track to the person that depth sees there; its known owner is away."""
         if one is double:
             return () if double.appearance is None else (replace(double, warm=None, heat=None),)
         if one is not deep:

@@ -17,7 +17,7 @@ class FusionConfig:
             thermal one.
         beside_m: [m] across the line of sight, by which a thermal track may be off a person that depth sees
             whole before neither its place nor its contour is taken.
-        looks_weight: what entirely other appearance counts.
+        appearance_weight: cost of an entirely different appearance.
         height_sd_m: [m] by which a person's height may be measured wrongly.
         most_height: what another height counts at most.
         floor_m: [m] what places may be off beyond what the trackers believe.
@@ -42,7 +42,7 @@ class FusionConfig:
         lookless_s: [s] after which nobody is recognised by the place alone.
         least_alike: similarity of appearance of who turns up again.
         tallest_off_m: [m] by which the height of who turns up again may differ.
-        least_own: similarity to one's own looks, below which a person looks strange.
+        least_own: similarity to a person's own appearance, below which it counts as strange.
         strange_frames: in a row, after which a strange person may be another person.
         relearn_frames: in a row, after which the appearance must have been wrong.
         young_s: [s] for which a new person may turn out to be one who is away,

@@ -30,7 +30,7 @@ class IdentityResolution:
     Attributes:
         config: settings.
         time_s: [s] now.
-        is_lit: whether there are any looks.
+        is_lit: whether there is any appearance.
     """
 
     config: FusionConfig
@@ -130,7 +130,7 @@ class IdentityResolution:
         return found if found <= 1.0 else math.inf
 
     def _unlikeness(self, person: FusedPerson, guest: FusedPerson, *, is_own: bool) -> float:
-        """Rate how different looks and height are; height alone decides only where there are no looks."""
+        """Rate how different appearance and height are; height alone decides without appearance."""
         config = self.config
         off = 0.0
         if guest.depth is not None and person.depth is not None:

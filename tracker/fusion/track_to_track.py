@@ -1,4 +1,4 @@
-"""Whose a track is: by bearing and range, as sure as each sensor is of them, by looks, height and memory."""
+"""Which fused person a track belongs to: by bearing and range, appearance, height and memory."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def is_contradicted(person: FusedPerson, reported: SensorTrack, config: FusionCo
 
 
 def _unlikeness(person: FusedPerson, reported: SensorTrack, config: FusionConfig) -> float:
-    """Rate how different looks and height are; 0 as far as they are not known."""
+    """Rate how different appearance and height are; 0 as far as they are not known."""
     found = 0.0
     if reported.appearance is not None and person.appearance is not None:
         found += config.appearance_weight * (1.0 - similarity(person.appearance, reported.appearance))

@@ -97,7 +97,7 @@ class Body:
     Attributes:
         width_m: [m].
         head_m, low_m: [m] above the floor, of the top and of the lowest part seen.
-        looks: (BINS,) histogram.
+        appearance: (BINS,) histogram.
     """
 
     width_m: float

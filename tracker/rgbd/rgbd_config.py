@@ -55,7 +55,7 @@ class HypothesesConfig:
         outside_s: [s] the same for who is outside the image.
         hidden_s: [s] the same for who is hidden or outside the image; claimed for `unverified_s` only.
         has_see_through: whether a hypothesis is deleted when the camera sees through it.
-        looks_weight: how much unlike looks count in association, in gates.
+        appearance_weight: how much a different appearance counts in association, in gates.
         uses_odometry: whether hypotheses are moved by the robot's own motion.
         body_m: [m] from the surface that the camera sees to the middle of the body.
     """

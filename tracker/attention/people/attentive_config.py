@@ -10,7 +10,7 @@ from peopleboy.bad_input import BadInput
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AttentiveConfig:
-    """How looks are learned, and what they must be to be a person's.
+    """How appearance is learned, and how similar it must be to be a person's.
 
     Attributes:
         accept: mean score from which on a person new may be a person who was lost ...
@@ -23,7 +23,7 @@ class AttentiveConfig:
         rate: share of a new image that is learned then.
         doubt: score below which nothing is learned.
         doubtful_images: in which a person must have looked otherwise than that to be a stranger.
-        gap_s: [s] out of sight from which on looks are compared anew ...
+        gap_s: [s] out of sight from which on appearance is compared anew ...
         proof_s: [s] ... and from which on the number of the tracker below is no proof any more.
         remembered_s: [s] for which people are remembered.
 

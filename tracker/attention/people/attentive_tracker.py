@@ -31,7 +31,7 @@ class GalleryEntry(Generic[Appearance]):
 
     Attributes:
         number: of the person's tracks.
-        looks: by camera.
+        appearance: by camera.
         images: in which it was learned, by camera.
         usual: score that it has of late while it is there.
         seen_s: [s] when it was seen last.

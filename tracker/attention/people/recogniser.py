@@ -1,4 +1,4 @@
-"""How looks are learned and compared: by colours, or by where chapter 5 would look."""
+"""How appearance is learned and compared: by colours, or by where chapter 5 would look."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ class CoastingVisibility:
         body: share of the whole contour.
         confidence: probability by what is in view alone.
         is_free: whether nobody else is seen there.
-        is_alike: whether what is in view has the person's height, and its looks as far as they are known.
+        is_alike: whether what is in view has the person's height, and its appearance as far as it is known.
     """
 
     head: float

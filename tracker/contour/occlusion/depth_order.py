@@ -19,7 +19,7 @@ from peopleboy.tracker.contour.tracked_person import TrackedPerson, moved_on
 
 FOOT_PX = 4.0  # [px] of 240 rows: difference of foot rows that counts 1
 APPEARANCE = 12.0  # difference of squared distances of appearance that counts 1
-MOST = 4.0  # for which looks count at most
+MOST = 4.0  # for which appearance counts at most
 
 Leads = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ class ExpectedPerson:
         person: as the last frame left it.
         state: (9,) where it should be by now.
         region: (4,) left, top, width, height [px] of that.
-        unlikeness: squared distance of what is seen there from the person's looks; 0 where nothing is known.
+        unlikeness: squared distance of what is seen there from the person's own; 0 where nothing is known.
     """
 
     person: TrackedPerson

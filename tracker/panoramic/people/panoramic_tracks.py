@@ -27,7 +27,7 @@ class PanoramicPerson:
         sightings: in how many images.
         trust: log odds that a person is there, over the newest images.
         status: how well it is seen; a newcomer is tentative until it is believed.
-        looks: its colours, over time.
+        appearance: its colours, over time.
         newest: its colours in the last image in which it was seen whole.
         strange_s: for how long it has looked like another person [s].
         occluder: id of who hides it.
