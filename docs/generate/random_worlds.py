@@ -1,4 +1,4 @@
-"""From what random worlds are drawn, from the distribution itself."""
+"""Generate the tables of the distribution of random worlds."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from peopleboy.sim.people.body.outfit import CARRIED
 
 
 def distribution() -> str:
-    """List ranges, shares and odds."""
+    """List uniform ranges, categorical shares and event probabilities."""
     ranges = [(each.what, f"{each.low:g} to {each.high:g} {each.unit}".rstrip()) for each in RANGES.values()]
     shares = [
         (
@@ -21,15 +21,15 @@ def distribution() -> str:
     odds = [(what, f"{share:.0%}") for share, what in ODDS.values()]
     return "\n\n".join(
         (
-            table(("drawn evenly", "from where to where"), ranges),
-            table(("drawn from a few", "how often each"), shares),
-            table(("what may be so", "how often"), odds),
+            table(("uniform distribution", "range"), ranges),
+            table(("categorical distribution", "probabilities"), shares),
+            table(("event", "probability"), odds),
         )
     )
 
 
 def bearings() -> str:
-    """List how people walk and hold themselves, what their hands do, and what they carry."""
+    """List the distributions of gait, posture, hands and carried items."""
     spreads = [
         (each.what, f"{each.mean:g} {each.unit}".rstrip(), f"{each.deviation:g} {each.unit}".rstrip())
         for each in SPREADS.values()
@@ -40,7 +40,10 @@ def bearings() -> str:
     ]
     return "\n\n".join(
         (
-            table(("normal, no further than two deviations", "mean", "deviation"), spreads),
-            table(("drawn from a few", "how often each"), shares),
+            table(
+                ("normal distribution, truncated at two standard deviations", "mean", "standard deviation"),
+                spreads,
+            ),
+            table(("categorical distribution", "probabilities"), shares),
         )
     )

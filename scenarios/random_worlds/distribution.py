@@ -15,7 +15,7 @@ from peopleboy.wording import hint
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Range:
-    """An even distribution from `low` to `high`, both in `unit`; `what` says of what."""
+    """A uniform distribution from `low` to `high`, both in `unit`, of `what`."""
 
     low: float
     high: float
@@ -31,59 +31,76 @@ RANGES: Final[Mapping[str, Range]] = {
     "corridor_width": Range(low=1.8, high=4.0, unit="m", what="width of a corridor"),
     "street_length": Range(low=10.0, high=40.0, unit="m", what="length of a street"),
     "street_width": Range(low=6.0, high=16.0, unit="m", what="width of a street"),
-    "sky": Range(low=-35.0, high=5.0, unit="K", what="sky at the horizon less air"),
-    "sun_azimuth": Range(low=-180.0, high=180.0, unit="deg", what="where the sun stands, if it shines"),
-    "sun_elevation": Range(low=8.0, high=60.0, unit="deg", what="how high the sun stands"),
-    "sun_warms": Range(low=2.0, high=16.0, unit="K", what="how much the sun warms what it shines on"),
-    "ceiling": Range(low=2.4, high=5.0, unit="m", what="height of the place"),
-    "doors": Range(low=0, high=3, unit="", what="doors", is_whole=True),
-    "door_width": Range(low=0.8, high=1.8, unit="m", what="width of a door"),
-    "air": Range(low=8.0, high=31.0, unit="degC", what="air of the place, and what surfaces mirror"),
-    "floor_over_air": Range(low=-3.0, high=3.0, unit="K", what="floor less air"),
-    "walls_over_air": Range(low=-2.5, high=2.5, unit="K", what="walls less air"),
-    "ceiling_over_air": Range(low=-0.5, high=4.0, unit="K", what="ceiling less air"),
-    "wall_over_others": Range(low=-5.0, high=5.0, unit="K", what="a wall that differs, less the others"),
-    "things": Range(low=0, high=24, unit="", what="things that it is tried to place", is_whole=True),
-    "thing_over_air": Range(low=-1.5, high=1.5, unit="K", what="a thing that is not heated, less air"),
-    "thing_heat": Range(
-        low=0.6, high=1.3, unit="", what="heat of a thing that is heated, over its usual one"
+    "sky": Range(
+        low=-35.0, high=5.0, unit="K", what="temperature of the sky at the horizon, relative to the air"
     ),
-    "thing_size": Range(low=0.75, high=1.35, unit="", what="each side of a thing, over its usual one"),
-    "emissivity": Range(low=0.75, high=0.97, unit="", what="emissivity of things"),
-    "people": Range(low=0, high=10, unit="", what="people that it is tried to place", is_whole=True),
-    "points": Range(low=1, high=5, unit="", what="points of a path", is_whole=True),
+    "sun_azimuth": Range(low=-180.0, high=180.0, unit="deg", what="azimuth of the sun, if it shines"),
+    "sun_elevation": Range(low=8.0, high=60.0, unit="deg", what="elevation of the sun"),
+    "sun_warms": Range(low=2.0, high=16.0, unit="K", what="temperature rise of sunlit surfaces"),
+    "ceiling": Range(low=2.4, high=5.0, unit="m", what="height of the ceiling"),
+    "doors": Range(low=0, high=3, unit="", what="number of doors", is_whole=True),
+    "door_width": Range(low=0.8, high=1.8, unit="m", what="width of a door"),
+    "air": Range(
+        low=8.0, high=31.0, unit="degC", what="temperature of the air and of reflected surroundings"
+    ),
+    "floor_over_air": Range(
+        low=-3.0, high=3.0, unit="K", what="temperature of the floor, relative to the air"
+    ),
+    "walls_over_air": Range(
+        low=-2.5, high=2.5, unit="K", what="temperature of the walls, relative to the air"
+    ),
+    "ceiling_over_air": Range(
+        low=-0.5, high=4.0, unit="K", what="temperature of the ceiling, relative to the air"
+    ),
+    "wall_over_others": Range(
+        low=-5.0, high=5.0, unit="K", what="temperature of a deviating wall, relative to the others"
+    ),
+    "things": Range(low=0, high=24, unit="", what="number of objects, as far as they fit", is_whole=True),
+    "thing_over_air": Range(
+        low=-1.5, high=1.5, unit="K", what="temperature of an unheated object, relative to the air"
+    ),
+    "thing_heat": Range(low=0.6, high=1.3, unit="", what="factor on the heat of a heated object"),
+    "thing_size": Range(low=0.75, high=1.35, unit="", what="factor on each side of a resized object"),
+    "emissivity": Range(low=0.75, high=0.97, unit="", what="emissivity of objects"),
+    "people": Range(low=0, high=10, unit="", what="number of people, as far as they fit", is_whole=True),
+    "points": Range(low=1, high=5, unit="", what="waypoints of a path", is_whole=True),
     "speed": Range(low=0.4, high=1.8, unit="m/s", what="walking speed"),
-    "pause": Range(low=0.3, high=4.0, unit="s", what="pause at a point"),
+    "pause": Range(low=0.3, high=4.0, unit="s", what="pause at a waypoint"),
     "camera_height": Range(low=0.4, high=1.8, unit="m", what="height of the cameras above the floor"),
-    "pitch": Range(low=-15.0, high=15.0, unit="deg", what="tilt of the cameras; positive looks down"),
-    "vertical_fov": Range(low=20.0, high=60.0, unit="deg", what="height of the thermal camera's view"),
-    "blur": Range(low=0.4, high=1.4, unit="px", what="blur of the thermal camera's optics"),
-    "netd": Range(low=0.02, high=0.15, unit="K", what="noise that is new in every image"),
-    "fixed_pattern": Range(low=0.01, high=0.12, unit="K", what="noise that is the same in every image"),
+    "pitch": Range(low=-15.0, high=15.0, unit="deg", what="pitch of the cameras; positive is down"),
+    "vertical_fov": Range(
+        low=20.0, high=60.0, unit="deg", what="vertical field of view of the thermal camera"
+    ),
+    "blur": Range(low=0.4, high=1.4, unit="px", what="optical blur of the thermal camera"),
+    "netd": Range(low=0.02, high=0.15, unit="K", what="temporal noise (NETD)"),
+    "fixed_pattern": Range(low=0.01, high=0.12, unit="K", what="fixed-pattern noise"),
     "dead_pixels": Range(low=0.0, high=0.0005, unit="", what="share of dead pixels"),
-    "column_noise": Range(low=0.0, high=0.06, unit="K", what="noise of columns"),
-    "vignetting": Range(low=0.0, high=0.6, unit="K", what="how much warmer corners seem"),
+    "column_noise": Range(low=0.0, high=0.06, unit="K", what="column noise"),
+    "vignetting": Range(low=0.0, high=0.6, unit="K", what="vignetting"),
     "drift": Range(low=0.0, high=0.6, unit="K/min", what="drift of the thermal image"),
-    "gain_follows": Range(low=0.0, high=3.0, unit="s", what="how fast the gain follows the images"),
-    "tail": Range(low=0.05, high=0.4, unit="%", what="of the pixels, beyond the gain's span at either end"),
-    "least_span": Range(low=2.0, high=10.0, unit="K", what="the gain's least span"),
+    "gain_follows": Range(low=0.0, high=3.0, unit="s", what="time constant of the gain"),
+    "tail": Range(low=0.05, high=0.4, unit="%", what="pixels clipped by the gain at either end"),
+    "least_span": Range(low=2.0, high=10.0, unit="K", what="minimum span of the gain"),
     "plateau": Range(low=0.1, high=3.0, unit="%", what="plateau of a plateau gain"),
     "linear_share": Range(low=0.1, high=0.8, unit="", what="linear share of a plateau gain"),
     "sharpening": Range(low=0.0, high=1.8, unit="", what="sharpening"),
-    "coring": Range(low=0.0, high=0.2, unit="K", what="details that are taken for noise"),
-    "shutter_every": Range(low=5.0, high=60.0, unit="s", what="time between shutters, where there is one"),
+    "coring": Range(low=0.0, high=0.2, unit="K", what="coring threshold"),
+    "shutter_every": Range(low=5.0, high=60.0, unit="s", what="shutter interval, if there is a shutter"),
     "jpeg_quality": Range(
-        low=60, high=95, unit="", what="quality of JPEG, where images went through it", is_whole=True
+        low=60, high=95, unit="", what="JPEG quality, if images are compressed", is_whole=True
     ),
     "heading_off": Range(
-        low=-30.0, high=30.0, unit="deg", what="where the robot looks, beside a far point of the floor"
+        low=-30.0,
+        high=30.0,
+        unit="deg",
+        what="heading of the robot, relative to a distant point of the floor",
     ),
     "drive_speed": Range(low=-0.2, high=0.7, unit="m/s", what="speed of a command"),
     "drive_turn": Range(low=-40.0, high=40.0, unit="deg/s", what="turn rate of a command"),
-    "drive_lasts": Range(low=0.8, high=4.0, unit="s", what="how long a command holds"),
-    "light": Range(low=0.25, high=1.2, unit="", what="level of the light"),
+    "drive_lasts": Range(low=0.8, high=4.0, unit="s", what="duration of a command"),
+    "light": Range(low=0.25, high=1.2, unit="", what="light level"),
 }
-"""All that is drawn evenly."""
+"""Values with a uniform distribution."""
 
 SHARES: Final[Mapping[str, Mapping[str, float]]] = {
     "place": {"room": 0.32, "street": 0.5, "corridor": 0.06, "l_corridor": 0.06, "t_corridor": 0.06},
@@ -99,28 +116,28 @@ SHARES: Final[Mapping[str, Mapping[str, float]]] = {
     "light_changes": {"never": 0.8, "once": 0.2},
     "clothes": {"as people dress": 0.75, "all different": 0.25},
 }  # fmt: skip
-"""All that is drawn from a few, and how often each is."""
+"""Values with a categorical distribution, with their probabilities."""
 
 ODDS: Final[Mapping[str, tuple[float, str]]] = {
     "has_sun": (0.4, "the sun shines in, or on the street"),
-    "street_kind": (0.8, "a thing in a street is of a kind that belongs there"),
-    "wall_differs": (0.3, "a wall of the place has a temperature of its own"),
-    "coloured": (0.6, "a surface or thing has a colour that is drawn"),
-    "patterned": (0.3, "a thing has a pattern"),
-    "sized": (0.5, "a thing is of another size than usual"),
-    "hung": (0.35, "a thing is one that hangs on a wall, rather than one that stands"),
-    "on_top": (0.5, "a small thing stands on a piece of furniture, if there is one"),
-    "begins_in_view": (0.7, "somebody begins where the thermal camera looks at first"),
+    "street_kind": (0.8, "an object in a street is one that belongs there"),
+    "wall_differs": (0.3, "a wall has a temperature of its own"),
+    "coloured": (0.6, "a surface or object has a random colour"),
+    "patterned": (0.3, "an object has a pattern"),
+    "sized": (0.5, "an object is resized"),
+    "hung": (0.35, "an object hangs on a wall instead of standing"),
+    "on_top": (0.5, "a small object stands on a piece of furniture, if there is one"),
+    "begins_in_view": (0.7, "a person starts in the initial view of the thermal camera"),
     "has_shutter": (0.3, "the thermal camera has a shutter"),
-    "is_film": (0.4, "the thermal images went through JPEG"),
-    "pauses": (0.25, "somebody stays a while at a point"),
-    "looks_at_robot": (0.3, "somebody who stays looks at the robot"),
-    "enters_later": (0.25, "somebody comes later"),
-    "leaves": (0.15, "somebody goes before the end"),
-    "yields": (0.5, "somebody makes way"),
-    "carries": (0.2, "somebody carries a bag"),
+    "is_film": (0.4, "the thermal images are JPEG-compressed"),
+    "pauses": (0.25, "a person pauses at a waypoint"),
+    "looks_at_robot": (0.3, "a person who pauses looks at the robot"),
+    "enters_later": (0.25, "a person enters later"),
+    "leaves": (0.15, "a person leaves before the end"),
+    "yields": (0.5, "a person gives way"),
+    "carries": (0.2, "a person carries a bag"),
 }
-"""How often something is so."""
+"""Events with their probabilities."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -72,7 +72,7 @@ def all_round() -> Figure:
     figure = Figure((WIDTH_IN, 5.9), layout="constrained")
     left, right = figure.subfigures(1, 2, squeeze=False, width_ratios=(1.75, 1.0)).flat
     images = left.subplots(3, 1)
-    titles = ("the panorama, with tracks", "its background", "how surely a pixel is a person")
+    titles = ("panorama with tracks", "background model", "foreground probability")
     pictures: tuple[NDArray[Any], ...] = (
         moment.scene.image,
         moment.explanation.background,
@@ -132,14 +132,14 @@ def _boxed(axes: Axes, track: Track, width: int) -> None:
 
 def _floor(axes: Axes, moment: Moment) -> None:
     """Draw places with their 95 % ellipses, the robot in the middle, ahead up."""
-    axes.set_title("the floor, with 95 % ellipses", fontsize=11)
+    axes.set_title("floor, 95 % confidence ellipses", fontsize=11)
     axes.plot(0.0, 0.0, marker="^", color="0.4", markersize=9)
-    axes.plot(-moment.true_m[:, 1], moment.true_m[:, 0], "k+", markersize=5, label="true", zorder=3)
+    axes.plot(-moment.true_m[:, 1], moment.true_m[:, 0], "k+", markersize=5, label="ground truth", zorder=3)
     for track in moment.tracks:
         axes.add_patch(_ellipse(track))
     axes.set(xlim=(-REACH_M, REACH_M), ylim=(-REACH_M, REACH_M), aspect="equal")
-    axes.set_xlabel("to the robot's right [m]", fontsize=9)
-    axes.set_ylabel("ahead [m]", fontsize=9)
+    axes.set_xlabel("right [m]", fontsize=9)
+    axes.set_ylabel("forward [m]", fontsize=9)
     axes.legend(loc="lower left", fontsize=9)
 
 
@@ -162,14 +162,14 @@ def _patches(figure: Figure, moment: Moment) -> None:
     layers = moment.scene.figures.patches(*polar)[0].reshape(LAYERS, UP, ACROSS)
     span = (-HALF_WIDTH_M, HALF_WIDTH_M, BOTTOM_M, TOP_M)
     panels = figure.subplots(1, LAYERS, sharey=True)
-    for axes, layer, title in zip(panels, layers, ("person", "new", "not covered"), strict=True):
+    for axes, layer, title in zip(panels, layers, ("foreground", "differs", "not covered"), strict=True):
         axes.imshow(layer, cmap="gray", vmin=0.0, vmax=1.0, extent=span, interpolation="nearest")
         axes.axhline(0.0, color=_colour(nearest), linewidth=1.0)
         axes.set_title(title, fontsize=11)
         axes.set_xticks((-0.4, 0.0, 0.4))
         axes.tick_params(labelsize=8)
     panels[0].set_ylabel("height [m]", fontsize=9)
-    panels[1].set_xlabel("to the side [m]", fontsize=9)
+    panels[1].set_xlabel("lateral [m]", fontsize=9)
 
 
 def _distance_m(track: Track) -> float:
@@ -194,7 +194,7 @@ def _way_round(axes: Axes, name: str) -> None:
     axes.set_aspect("equal")
     axes.set_axis_off()
     axes.margins(0.02)
-    axes.set_title(f"--tracker {name}: numbers {', '.join(map(str, sorted(numbers)))}", fontsize=11)
+    axes.set_title(f"--tracker {name}: identities {', '.join(map(str, sorted(numbers)))}", fontsize=11)
 
 
 def _spots(scenario: Scenario, seed: int, name: str) -> Iterator[tuple[int, tuple[float, float], bool]]:

@@ -59,7 +59,7 @@ def absence() -> Figure:
         axes = figure.add_subplot(grid[1, column])
         axes.imshow(np.sqrt(moment.focus.scores), cmap="inferno", vmin=0.0, vmax=1.0)
         axes.set_axis_off()
-        axes.set_title(f"where she may be: at most {moment.focus.score:.2f}", fontsize=9)
+        axes.set_title(f"score map, maximum {moment.focus.score:.2f}", fontsize=9)
     _draw_likeness(figure.add_subplot(grid[2, :]), film)
     return figure
 
@@ -123,7 +123,7 @@ def _draw_likeness(axes: Axes, film: _Film) -> None:
         axes.plot(times, likeness, ".", markersize=3, color=_colour(number), label=f"track {number}")
     axes.axhline(AttentiveConfig().accept, color="#555555", lw=0.8, ls="--")
     axes.axvspan(film.away_s[0], film.away_s[-1], color="#000000", alpha=0.08, lw=0)
-    axes.set(ylim=(0.0, 1.03), xlabel="time (s); grey: she is away", ylabel="likeness to her")
+    axes.set(ylim=(0.0, 1.03), xlabel="time [s]; grey: person absent", ylabel="similarity")
     axes.tick_params(labelsize=8)
     axes.spines[["top", "right"]].set_visible(False)
     axes.legend(fontsize=7, frameon=False, ncols=4, loc="lower left")

@@ -24,10 +24,10 @@ ROWS = slice(120, 400)
 SCALES = {"plain": 0.0, "depth": 1.0, "rough": 3.0}
 MOVED, MOVED_AT_S = "bears_4", 13.4
 MOVED_TITLES = (
-    "colours beside the depth",
+    "registered colour",
     "depth",
-    "whose pixels: people and things",
-    "nobody, nothing movable",
+    "people and objects",
+    "background",
 )
 
 

@@ -63,4 +63,4 @@ class History:
         self.time_s.append(tick.truth.time_s)
         self.visible += [one.visible_fraction for one in tick.truth.people if one.name == person]
         found = [one.status.value for one in tick.tracks if one.id == track]
-        self.status.append(found[0] if found else "not there")
+        self.status.append(found[0] if found else "no track")

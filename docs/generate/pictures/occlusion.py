@@ -20,7 +20,7 @@ from peopleboy.tracker.track import Status, Track
 NEAR, FAR = 1, 2  # tracks of nina and olaf
 PARTLY = 51
 WALK = (48, 52, 55, 58)
-NOWHERE = "not there"
+NOWHERE = "no track"
 COLOURS = {
     Status.TRACKED.value: "#009e73",
     Status.PARTLY_OCCLUDED.value: "#f0e442",
@@ -38,7 +38,7 @@ def explained_away() -> Figure:
     image = model.prepare(tick.observation.images["thermal"])
     front = [state_of(tick, NEAR)]
     marked = covered_by(image, front, CONTOUR.depth.growth)
-    figure, axes = panels(("two people, two tracks", "what the filter of the one behind is shown"), 5.0)
+    figure, axes = panels(("two people, two tracks", "image for the filter behind"), 5.0)
     show(axes[0], image)
     for track in tracks.values():
         _outlined(axes[0], tick, track)
@@ -81,7 +81,7 @@ def timeline() -> Figure:
     axes.fill_between(time, 100.0 * np.array(history.visible), color="#56b4e9", step="post", linewidth=0)
     for k, status in enumerate(history.status):
         axes.axvspan(time[k], time[k] + 1 / 15, 0.0, 0.07, color=COLOURS[status], linewidth=0)
-    axes.set(xlim=(0, time[-1]), ylim=(-8, 102), xlabel="time [s]", ylabel="of olaf is seen [%]")
+    axes.set(xlim=(0, time[-1]), ylim=(-8, 102), xlabel="time [s]", ylabel="olaf visible [%]")
     found = [status for status in COLOURS if status in history.status]
     patches = [Patch(color=COLOURS[status], label=f"track {FAR}: {status}") for status in found]
     axes.legend(
@@ -96,7 +96,7 @@ def _moment(panel: Axes, tick: Tick) -> None:
         _outlined(panel, tick, track)
     olaf = next(person for person in tick.truth.people if person.name == "olaf")
     says = next((track.status.value for track in tick.tracks if track.id == FAR), NOWHERE)
-    seen = f"{tick.truth.time_s:.1f} s: {olaf.visible_fraction:.0%} of olaf is seen"
+    seen = f"{tick.truth.time_s:.1f} s: {olaf.visible_fraction:.0%} of olaf visible"
     panel.set_title(f"{seen}\ntrack {FAR}: {says}", fontsize=10)
     panel.set_xlim(70, 230)
     panel.set_ylim(235, 65)

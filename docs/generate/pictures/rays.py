@@ -15,7 +15,7 @@ SCENE = ("crossing_4", 0, 3.2)
 
 def layers() -> Figure:
     """Depth, part numbers and normals of one frame, beside the images that are made of them."""
-    titles = ("depth", "part", "normal", "thermal image", "colour image", "body parts and persons")
+    titles = ("depth", "part", "normal", "thermal image", "colour image", "people and body parts")
     figure, axes = panels(titles, 5.6, columns=3)
     with world_at(*SCENE) as world:
         view = world._see(world.config.robot.cameras["thermal"]).view
@@ -37,7 +37,7 @@ def silhouettes() -> Figure:
     rows, columns = np.nonzero(view.cover)
     everybody = (float(columns.min()), float(rows.min()), float(np.ptp(columns)), float(np.ptp(rows)))
     people = sorted(truth.people, key=lambda person: person.distance_m)
-    titles = [f"{one.name}: {one.visible_fraction:.0%} seen" for one in people]
+    titles = [f"{one.name}: {one.visible_fraction:.0%} visible" for one in people]
     figure, axes = panels(titles, 2.75)
     for panel, person in zip(axes, people, strict=True):
         whole = ((view.cover >> np.uint64(person.id - 1)) & np.uint64(1)).astype(bool)

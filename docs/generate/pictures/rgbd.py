@@ -36,7 +36,7 @@ def steps() -> Figure:
     for track in tracks:
         _draw(colour, track.boxes[DEPTH], tuple(c / 255 for c in track_colour(track.id)), str(track.id))
     show(depth, show_depth(frame.depth(DEPTH)))
-    depth.set_title("size of a human; solid: looks like one", fontsize=9)
+    depth.set_title("human size; solid: verified", fontsize=9)
     for one in told.detections:
         _draw(depth, one.found.box, FOUND, "", dashed=not one.is_verified)
     _draw_rows(rows, frame, view, told)
@@ -95,7 +95,7 @@ def _draw_above(axes: Axes, view: DepthView, told: RgbdExplanation) -> None:
         low = one.found.z_m - one.found.depth_m / 2.0
         _draw_flat(axes, (left, low, width, one.found.depth_m), dashed=not one.is_verified)
     axes.set(xlim=extent[:2], ylim=(NEAREST_M, 10.0), xlabel="column", ylabel="depth (m)")
-    axes.set_title("view from above: walls, and size of a human", fontsize=9)
+    axes.set_title("plan view: walls and clusters of human size", fontsize=9)
 
 
 def _draw_flat(axes: Axes, box: tuple[float, ...], *, dashed: bool) -> None:

@@ -55,7 +55,7 @@ Grey = NDArray[np.uint8]
 
 def steps() -> Figure:
     """One image on its way: surface temperature, radiance through the optics, noise, grey."""
-    titles = ("surface temperature", "through emissivity and optics", "with the detector's noise", "8 bit")
+    titles = ("surface temperature", "emissivity and optics", "detector noise", "8 bit")
     figure, axes = panels(titles, 2.35)
     with world_at("crossing_4", 0, 4.0) as world:
         # The surfaces alone: what every part would look like if it were black and the lens perfect.
@@ -90,7 +90,7 @@ def bars() -> Figure:
     axes.plot(np.minimum(true, 40.3), rows, "o", color="#d55e00", markersize=5, label="surface temperature")
     for row, value, c in zip(rows, grey, seen, strict=True):
         axes.text(40.8, row, f"grey {value}" + (f" ({c:.0f} °C)" if c > 40 else ""), va="center", fontsize=9)
-    axes.axvspan(24.0, 36.0, color="#0072b2", alpha=0.12, zorder=0, label="what 8 bits hold: 24 to 36 °C")
+    axes.axvspan(24.0, 36.0, color="#0072b2", alpha=0.12, zorder=0, label="8-bit span: 24 to 36 °C")
     axes.set(yticks=rows, yticklabels=names, xlim=(14.0, 45.0), xlabel="apparent temperature [°C]")
     axes.legend(loc="lower center", bbox_to_anchor=(0.45, 1.0), ncol=2, frameon=False, fontsize=9)
     return figure
@@ -105,7 +105,9 @@ def mirror() -> Figure:
         axes.plot(true, seen, color=colour, label=f"emissivity {emissivity:g}")
     axes.axhspan(24.0, 36.0, color="#0072b2", alpha=0.12, zorder=0)
     axes.text(10.5, 34.3, "24 to 36 °C", fontsize=9)
-    axes.set(xlabel="surface temperature [°C]", ylabel="seems to be [°C]", xlim=(10, 60), ylim=(10, 60))
+    axes.set(
+        xlabel="surface temperature [°C]", ylabel="apparent temperature [°C]", xlim=(10, 60), ylim=(10, 60)
+    )
     axes.legend(frameon=False, loc="upper left", bbox_to_anchor=(0.1, 1.0))
     return figure
 
@@ -171,7 +173,7 @@ def _surfaces() -> dict[str, tuple[float, float]]:
 
 def gains() -> Figure:
     """One scene by each gain, and as people are shown it."""
-    titles = ("gain: fixed, 24..36 °C", "gain: percentile", "gain: plateau", "thermal_scene, for people")
+    titles = ("gain: fixed, 24..36 °C", "gain: percentile", "gain: plateau", "thermal_scene, for display")
     figure, axes = panels(titles, 2.0)
     take = _camera()
     show(axes[0], take(_USUAL))
@@ -187,7 +189,7 @@ def faults() -> Figure:
         "none": {},
         "column_noise_k: 0.2": {"column_noise_k": 0.2},
         "vignetting_k: 1.5": {"vignetting_k": 1.5},
-        "drift by 2 K/min, after 1 min": {"offset_drift_k_per_min": 2.0},
+        "drift of 2 K/min, after 1 min": {"offset_drift_k_per_min": 2.0},
         "sharpening: 1.5": {"sharpening": 1.5},
         "jpeg_quality: 15": {"jpeg_quality": 15},
     }

@@ -41,16 +41,14 @@ def contour() -> Figure:
     track = min(tick.tracks, key=lambda one: one.id)
     good = state_of(tick, track.id)
     shifted = good + np.array([-1.2 * good[2], *np.zeros(8)])
-    figure, axes = panels(("a sample on the person", "one beside the person"), 5.0)
+    figure, axes = panels(("a sample on the person", "a sample next to the person"), 5.0)
     model = ContourModel.build(tick.observation.images["thermal"].shape, CONTOUR.contour)
     image = model.prepare(tick.observation.images["thermal"])
     for panel, state in zip(axes, (good, shifted), strict=True):
         show(panel, image)
         points = _judged(panel, model, image, state)
         zoom(panel, track.boxes["thermal"], 24.0, 0.98)
-    figure.colorbar(
-        points, ax=axes, label="what the section says: -1 against a person, 1 for one", shrink=0.8
-    )
+    figure.colorbar(points, ax=axes, label="vote of the section", shrink=0.8)
     return figure
 
 

@@ -71,22 +71,34 @@ class Spread:
 # 6 to 7 degrees out (Murray, Drought and Kory 1964, Walking patterns of normal men; Murray, Kory and Sepic
 # 1970, Walking patterns of normal women). Deviations and all else are our choice, feet 2 cm wider among them.
 SPREADS: Final[Mapping[str, Spread]] = {
-    "stride": Spread(mean=1.04, deviation=0.05, unit="", what="length of the stride, over the clip's"),
-    "arm_swing": Spread(
-        mean=1.0, deviation=0.3, unit="", what="swing of the arms, over the clip's", least=0.2
+    "stride": Spread(
+        mean=1.04, deviation=0.05, unit="", what="stride length, relative to the motion capture clip"
     ),
-    "arms_off": Spread(mean=6.0, deviation=4.0, unit="deg", what="arms off the trunk", least=0.0),
-    "elbow": Spread(mean=10.0, deviation=9.0, unit="deg", what="elbows bent further", least=0.0),
+    "arm_swing": Spread(mean=1.0, deviation=0.3, unit="", what="arm swing, relative to the clip", least=0.2),
+    "arms_off": Spread(
+        mean=6.0, deviation=4.0, unit="deg", what="angle of the arms off the trunk", least=0.0
+    ),
+    "elbow": Spread(mean=10.0, deviation=9.0, unit="deg", what="additional elbow flexion", least=0.0),
     "stoop": Spread(mean=3.0, deviation=3.5, unit="deg", what="stoop"),
-    "bow": Spread(mean=5.0, deviation=8.0, unit="deg", what="head bowed"),
-    "aside": Spread(mean=0.0, deviation=14.0, unit="deg", what="head turned aside"),
-    "looks_about": Spread(mean=0.0, deviation=14.0, unit="deg", what="head turning to and fro, either way"),
+    "bow": Spread(mean=5.0, deviation=8.0, unit="deg", what="head pitch"),
+    "aside": Spread(mean=0.0, deviation=14.0, unit="deg", what="head yaw"),
+    "looks_about": Spread(mean=0.0, deviation=14.0, unit="deg", what="amplitude of head turning"),
     "stance": Spread(
-        mean=1.45, deviation=0.4, unit="", what="feet apart while standing, over the hips' joints", least=0.8
+        mean=1.45,
+        deviation=0.4,
+        unit="",
+        what="foot distance while standing, relative to the hip joints",
+        least=0.8,
     ),
-    "step_width": Spread(mean=0.66, deviation=0.2, unit="", what="the same while walking", least=0.25),
+    "step_width": Spread(
+        mean=0.66,
+        deviation=0.2,
+        unit="",
+        what="foot distance while walking, relative to the hip joints",
+        least=0.25,
+    ),
     "ahead": Spread(mean=0.0, deviation=0.025, unit="statures", what="left foot ahead while standing"),
-    "toe_out": Spread(mean=8.0, deviation=5.0, unit="deg", what="toes out", least=-2.0),
+    "toe_out": Spread(mean=8.0, deviation=5.0, unit="deg", what="toe-out angle", least=-2.0),
 }
 HOLDS: Final[Mapping[Hold, float]] = {
     "free": 0.68, "pocket": 0.13, "strap": 0.05, "telephone": 0.05, "in_front": 0.09,

@@ -101,8 +101,8 @@ def _gaze(joints: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _signs() -> list[Line2D]:
     return [
-        Line2D([], [], color=_ROBOT, lw=2.0, marker="s", ms=3, label="robot, a mark each second"),
-        Line2D([], [], color=_FOLLOWED, lw=1.4, marker="o", label="whom it follows, from the disc on"),
-        Line2D([], [], color=_COLOURS[0], lw=1.4, marker="o", label="who reacts, or deals with it"),
-        Line2D([], [], color=_COLOURS[0], lw=1.0, label="tick: where the nose points"),
+        Line2D([], [], color=_ROBOT, lw=2.0, marker="s", ms=3, label="robot, one mark a second"),
+        Line2D([], [], color=_FOLLOWED, lw=1.4, marker="o", label="followed person, from the disc on"),
+        Line2D([], [], color=_COLOURS[0], lw=1.4, marker="o", label="reacting person"),
+        Line2D([], [], color=_COLOURS[0], lw=1.0, label="tick: gaze direction"),
     ]
