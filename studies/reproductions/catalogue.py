@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import inspect
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
-from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any, Final
 
@@ -15,17 +15,18 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.validation import Strict
 from peopleboy.scenarios.running.engine.store import Result
-from peopleboy.studies.reproductions import pictures
 from peopleboy.studies.reproductions.experiment import Experiment, Texts
 from peopleboy.studies.reproductions.experiments import (
+    attention,
     computing_time,
     drives,
     learning,
     panoramic_room,
-    situation,
+    scenes,
     tracking,
-    window_experiments,
+    windows,
 )
+from peopleboy.studies.reproductions.pictures import panoramic_figures, situation_figures, tracking_figures
 from peopleboy.studies.reproductions.pictures.canvas import png_address
 from peopleboy.studies.reproductions.units import Measurement, Unit
 
@@ -39,6 +40,12 @@ SOURCES: Final[Mapping[str, str]] = {
 FOLDER: Final = Path(__file__).with_name("sources")
 
 
+_MODULES: Final = (
+    *(tracking, computing_time, learning, panoramic_room, drives, windows, scenes, attention),
+    *(tracking_figures, panoramic_figures, situation_figures),
+)
+
+
 def picture(using: Measurement, *, name: str) -> str:
     """Draw a picture that needs runs of its own, such as "panoramic_figures.draw_set_up"."""
     (found,) = using.results([Unit(f"picture {name}", draw_picture, (name,))])
@@ -49,35 +56,19 @@ def picture(using: Measurement, *, name: str) -> str:
 def draw_picture(name: str) -> Result:
     """Draw a figure of the folder `pictures`, and return it as an address."""
     module, _, function = name.partition(".")
-    return {"picture": png_address(getattr(import_module(f"{pictures.__name__}.{module}"), function)())}
+    (found,) = (one for one in _MODULES if one.__name__.endswith(module))
+    return {"picture": png_address(getattr(found, function)())}
 
 
 KINDS: Final[Mapping[str, Callable[..., Any]]] = {
-    kind.__name__: kind
-    for kind in (
-        picture,
-        *(tracking.contents, tracking.tracking, tracking.delay, tracking.causes),
-        computing_time.timing,
-        *(learning.learning, learning.best_classifiers),
-        *(
-            panoramic_room.distances,
-            panoramic_room.correlations,
-            panoramic_room.webcams,
-            panoramic_room.angles,
-        ),
-        *(panoramic_room.draw_ranges, panoramic_room.draw_correlations, panoramic_room.draw_path),
-        *(drives.drives, drives.goals, drives.legs, drives.draw_drives, drives.draw_legs),
-        *(
-            window_experiments.loop_times,
-            window_experiments.sliding_windows,
-            window_experiments.windows_by_size,
-        ),
-        *(window_experiments.parameters, window_experiments.window_models),
-        *(situation.static_scenes, situation.scene_models, situation.scene_maps),
-        *(situation.focus, situation.focus_variants, situation.absences, situation.followers),
-    )
+    name: function
+    for module in (*_MODULES, sys.modules[__name__])
+    for name, function in inspect.getmembers(module, inspect.isfunction)
+    if not name.startswith("_")
+    and inspect.signature(function).return_annotation in ("Samples", "Figure", "Figure | None", "str")
+    and "using" in inspect.signature(function).parameters
 }
-"""What measures or draws an experiment, by the name that files have for it."""
+"""What measures or draws an experiment, by name: all functions that are called with a `Measurement`."""
 
 
 class Item(Strict):

@@ -213,6 +213,6 @@ def _effect_to_source(ours: ImageErrors, mean: float, deviation: float | None) -
     """Write Cohen's d to the source, and its 95 % interval for a split's images."""
     if deviation is None:
         return ""
-    count = ours.splits[0].count
-    d, (low, high) = cohens_d(ours.all, ErrorSummary(count=count, mean=mean, deviation=deviation), count)
+    count = ours.splits[0].images
+    d, (low, high) = cohens_d(ours.all, ErrorSummary(images=count, mean=mean, deviation=deviation), count)
     return f"{d:+.2f} ({low:+.2f} to {high:+.2f})"

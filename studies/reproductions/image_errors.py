@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import astuple, dataclass
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +16,10 @@ BLOCKS = 20
 """Into how many stretches of time a film is cut where neighbouring images must not count as independent."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ErrorSummary:
+class ErrorSummary(NamedTuple):
     """Absolute errors: number, mean and standard deviation in their unit; all 0 where there are none."""
 
-    count: int
+    images: int
     mean: float
     deviation: float
 
@@ -28,19 +27,19 @@ class ErrorSummary:
     def of(cls, errors: Floats) -> ErrorSummary:
         """Summarise errors (N,)."""
         if not len(errors):
-            return cls(count=0, mean=0.0, deviation=0.0)
-        return cls(count=len(errors), mean=float(errors.mean()), deviation=float(errors.std()))
+            return cls(images=0, mean=0.0, deviation=0.0)
+        return cls(images=len(errors), mean=float(errors.mean()), deviation=float(errors.std()))
 
 
 def pooled(parts: Sequence[ErrorSummary]) -> ErrorSummary:
     """Summarise the errors of all parts as if they lay in one heap."""
-    counts = np.array([one.count for one in parts], np.float64)
+    counts = np.array([one.images for one in parts], np.float64)
     if not counts.sum():
         return ErrorSummary.of(np.empty(0))
     mean = float(np.average([one.mean for one in parts], weights=counts))
     square = float(np.average([one.deviation**2 + one.mean**2 for one in parts], weights=counts))
     deviation = float(np.sqrt(max(square - mean**2, 0.0)))
-    return ErrorSummary(count=int(counts.sum()), mean=mean, deviation=deviation)
+    return ErrorSummary(images=int(counts.sum()), mean=mean, deviation=deviation)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,15 +65,11 @@ class ImageErrors:
     @property
     def block_means(self) -> Floats:
         """Mean error (B,) of each stretch; NaN where no image was tested."""
-        return np.array([one.mean if one.count else np.nan for one in self.blocks])
+        return np.array([one.mean if one.images else np.nan for one in self.blocks])
 
-    def best(self) -> ImageErrors:
-        """Keep the split with the least mean error."""
-        return ImageErrors(splits=(min(self.splits, key=lambda one: one.mean),))
-
-    def worst(self) -> ImageErrors:
-        """Keep the split with the greatest mean error."""
-        return ImageErrors(splits=(max(self.splits, key=lambda one: one.mean),))
+    def only(self, choose: Callable[..., ErrorSummary]) -> ImageErrors:
+        """Keep the split with the least or greatest mean error, by `min` or `max`."""
+        return ImageErrors(splits=(choose(self.splits, key=lambda one: one.mean),))
 
     @classmethod
     def of(cls, tested: Sequence[tuple[Rows, Floats]], count: int) -> ImageErrors:
@@ -111,17 +106,10 @@ class ImageErrors:
 
     def plain(self) -> dict[str, Any]:
         """Return them as plain data."""
-        return {
-            "splits": [list(astuple(one)) for one in self.splits],
-            "blocks": [list(astuple(one)) for one in self.blocks],
-        }
+        return {"splits": self.splits, "blocks": self.blocks}
 
     @classmethod
-    def of_plain(cls, plain: dict[str, Any]) -> ImageErrors:
+    def of_plain(cls, plain: Mapping[str, Any]) -> ImageErrors:
         """Make a film's errors out of plain data, equal to the last digit."""
-        splits, blocks = (tuple(_summary(*row) for row in plain[key]) for key in ("splits", "blocks"))
+        splits, blocks = (tuple(ErrorSummary(*row) for row in plain[key]) for key in ("splits", "blocks"))
         return cls(splits=splits, blocks=blocks)
-
-
-def _summary(count: int, mean: float, deviation: float) -> ErrorSummary:
-    return ErrorSummary(count=count, mean=mean, deviation=deviation)

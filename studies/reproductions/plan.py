@@ -5,16 +5,27 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Final
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.suite import SuiteRun, load_suite, runs_of
-from peopleboy.studies.reproductions.evaluations.scene_scores import PRESETS, SEQUENCES
 
 DATASETS = ("dataset1", "dataset2", "dataset3", "dataset4")
 TRAINING = "training films"
 """Of the scenario of dataset1, with other seeds: by these the literal tracker's readings were chosen."""
 _TRAINING_SEEDS = (100, 101)
+SEQUENCES: Final[Mapping[str, str]] = {
+    **{f"s1r{k}": f"bears_{k}" for k in range(1, 7)},
+    **{f"s2r{k}": f"chairs_{k}" for k in (1, 2)},
+    **{f"s3r{k}": f"tidying_{k}" for k in (1, 2)},
+    **{f"s4r{k}": f"doors_{k}" for k in range(1, 5)},
+    **{f"s5r{k}": f"cans_{k}" for k in (1, 2)},
+    "s6r1": "plants_1",
+}
+"""Scenarios that stand for the sequences of the thesis on situation awareness, chapter 3, by its names."""
+PRESETS: Final = ("tof", "kinect", "kinect_rough")
+"""Depth cameras that record them."""
 REPEATS = 10
 """How often the sources repeat everything."""
 QUICK_S = 20.0

@@ -14,7 +14,6 @@ from scipy.stats import t as student
 from peopleboy.sim.random_streams import stream
 from peopleboy.studies.reproductions.experiment import Floats, Jackknife, Values
 from peopleboy.studies.reproductions.image_errors import ErrorSummary, ImageErrors
-from peopleboy.studies.reproductions.occlusion_splits import TRAINING_SHARE
 
 T = TypeVar("T")
 Interval = tuple[float, float]
@@ -28,6 +27,8 @@ POINTS: Final = 2.0  # by which two rates may differ that are called alike
 PART: Final = 0.1  # of the second value, by which all others may
 SOURCE_REPEATS: Final = 10  # over which the sources' deviations are (thesis, sections 4.4 and 7.4)
 
+TRAINING_SHARE: Final = 0.6
+"""Share of the examples of people who overlap that are learned from (thesis, section 7.4)."""
 _DRAWS: Final = 2000
 _RETESTED: Final[Mapping[str, float]] = {SHARE: (1.0 - TRAINING_SHARE) / TRAINING_SHARE}
 """Of columns whose repeats are splits of the same examples: those tested with, per one learned from."""
@@ -256,7 +257,7 @@ def unpaired(one: ImageErrors, other: ImageErrors) -> TTest:
     Source: OMNIVIS 2003, section 6, which names Student's test for unpaired samples.
     """
     first, second = one.all, other.all
-    counts = [max(round(part.all.count / part.films), 2) for part in (one, other)]
+    counts = [max(round(part.all.images / part.films), 2) for part in (one, other)]
     found = ttest_ind_from_stats(
         first.mean, first.deviation, counts[0], second.mean, second.deviation, counts[1]
     )

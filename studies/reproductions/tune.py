@@ -23,6 +23,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.suite import SuiteRun
 from peopleboy.scenarios.running.engine.store import Store
 from peopleboy.scenarios.running.engine.task import Workers
+from peopleboy.studies.reproductions.experiments.sequence_scores import USUAL
 from peopleboy.studies.reproductions.experiments.tracking import add_sums, count_unit, metric, sequence_unit
 from peopleboy.studies.reproductions.source_page import span
 from peopleboy.studies.reproductions.statistics import ResultDifference, margin, paired
@@ -158,7 +159,7 @@ def tune(
 
 def _tuned(parameter: Parameter, films: TrainingFilms, store: Store) -> Tuned:
     def accuracy(value: str) -> NDArray[np.float64]:
-        results = [store[unit.key]["ignore"] for unit in films.units(parameter, value)]
+        results = [store[unit.key][USUAL] for unit in films.units(parameter, value)]
         return np.array([metric(add_sums([one]), CRITERION) for one in results])
 
     return Tuned(parameter, {value: accuracy(value) for value in parameter.values})

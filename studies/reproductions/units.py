@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from peopleboy.scenarios.running.engine.store import Result, Store, code_digest
 from peopleboy.scenarios.running.engine.task import Failure, Task, TasksFailed, Tell, Workers
@@ -21,9 +21,7 @@ _ROOT = _HERE.parents[1]
 
 MEASURES = (
     _HERE / "tracker_settings.py",
-    *sorted(
-        path for name in ("experiments", "evaluations", "pictures") for path in _HERE.glob(f"{name}/*.py")
-    ),
+    *sorted(path for name in ("experiments", "pictures") for path in _HERE.glob(f"{name}/*.py")),
     *sorted((_HERE.parent / "training").rglob("*.py")),
     *sorted((_ROOT / "scenarios" / "library").glob("*.yaml")),
 )
@@ -32,7 +30,7 @@ MEASURES = (
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Unit:
-    """A call that any process can make, and whose result is plain data.
+    """A call that any process can make, and whose result is plain data: the task that the engine runs.
 
     Attributes:
         key: what it is, in one line; no two units have the same.
@@ -41,20 +39,23 @@ class Unit:
         is_timing: whether it measures time, and has to run alone.
     """
 
+    size: ClassVar[int] = 1
+
     key: str
     function: Callable[..., Result]
     arguments: tuple[Any, ...] = ()
     is_timing: bool = False
 
-    @property
-    def name(self) -> str:
-        """Return the key, by which the engine calls it."""
-        return self.key
+    @classmethod
+    def of(cls, function: Callable[..., Result], *arguments: Any, is_timing: bool = False) -> Unit:
+        """Name a call by its function and arguments, folders left out: these change no result."""
+        words = (str(getattr(one, "key", one)) for one in arguments if not isinstance(one, Path))
+        return cls(f"{function.__name__} {' | '.join(words)}", function, arguments, is_timing)
 
     @property
-    def size(self) -> int:
-        """Return how far it moves a progress bar."""
-        return 1
+    def name(self) -> str:
+        """The key."""
+        return self.key
 
     def run(self) -> Result:
         """Make the call."""
@@ -116,6 +117,24 @@ class Measurement:
         """
         self.results(unit for several in units.values() for unit in several)
         return {key: self.results(several) for key, several in units.items()}
+
+    def played(
+        self, work: Callable[..., Result], scenarios: Iterable[str], seeds: int, *more: Any
+    ) -> dict[str, list[Result]]:
+        """Return the results of a call by scenario, seed by seed.
+
+        Args:
+            work: takes the scenario's name, a seed, and what follows.
+            scenarios: names.
+            seeds: how many, from 0.
+            more: further arguments.
+
+        Raises:
+            Unfinished: some units have no result yet.
+        """
+        return self.grouped(
+            {name: [Unit.of(work, name, seed, *more) for seed in range(seeds)] for name in scenarios}
+        )
 
 
 def open_store(path: Path) -> Store:

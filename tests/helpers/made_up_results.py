@@ -11,20 +11,20 @@ import cv2
 import numpy as np
 
 from peopleboy.scenarios.running.engine.store import Result
-from peopleboy.studies.reproductions.evaluations.attention_focus import CHOICES as WAYS
-from peopleboy.studies.reproductions.evaluations.drive_tracking import CHOICES
-from peopleboy.studies.reproductions.evaluations.scene_scores import CLEAN, OURS, PRINTED
-from peopleboy.studies.reproductions.evaluations.sliding_windows import (
+from peopleboy.studies.reproductions.experiment import Experiment, Line, Samples
+from peopleboy.studies.reproductions.experiments.attention import CHOICES as WAYS
+from peopleboy.studies.reproductions.experiments.attention import TRACKERS
+from peopleboy.studies.reproductions.experiments.drive_tracking import CHOICES
+from peopleboy.studies.reproductions.experiments.panoramic_room import CUES
+from peopleboy.studies.reproductions.experiments.scenes import CLEAN, OURS, PRINTED
+from peopleboy.studies.reproductions.experiments.tracking import METRICS, TrackerTrial, trials
+from peopleboy.studies.reproductions.experiments.windows import (
     BY_SIZE,
     FAR_SLIDES,
+    MODELS,
     NEAR_SLIDES,
     PARTS,
 )
-from peopleboy.studies.reproductions.experiment import Experiment, Line, Samples
-from peopleboy.studies.reproductions.experiments.panoramic_room import CUES
-from peopleboy.studies.reproductions.experiments.situation import TRACKERS
-from peopleboy.studies.reproductions.experiments.tracking import METRICS, RULES, TrackerTrial, trials
-from peopleboy.studies.reproductions.experiments.window_experiments import MODELS
 from peopleboy.studies.reproductions.image_errors import ImageErrors
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.units import Measurement
@@ -59,21 +59,21 @@ class MadeUp(dict[str, Result]):
         return 0.0
 
     def __missing__(self, key: str) -> Result:
-        if key.startswith("windows "):
+        if key.startswith("score_windows "):
             return {f"{kind} {who}": {"people": [1.0, 2.0], "others": [-1.0]} for kind, who in MODELS}
-        if key.startswith("scene "):
+        if key.startswith("watch_scene "):
             models = (*PRINTED, *OURS)
             return dict.fromkeys(models, SCENE) | {"maps": dict.fromkeys((*models, CLEAN), MAP)}
-        if key.startswith("slide "):
+        if key.startswith("compare_windows "):
             tally = {"ms": 10.0, "images": 3, "people": 4, "found": 3, "false": 5}
             kinds = (f"{one} {BY_SIZE}" for one in ("near+far", "far", "near"))
             slides = (how.key for how in (*FAR_SLIDES, *NEAR_SLIDES))
             return dict.fromkeys((*slides, *kinds), tally) | {"parts": dict.fromkeys(PARTS, 3.0)}
-        if key.startswith("focus "):
+        if key.startswith("watch_focus "):
             return {name: {"1": [6, 2, 2], "2": [9, 0, 1]} for name in WAYS}
-        if key.startswith("absence "):
+        if key.startswith("watch_absence "):
             return {name: {"away": 50, "accepted": 1, "late_s": 0.5, "found_s": 0.4} for name in TRACKERS}
-        if key.startswith("follow "):
+        if key.startswith("watch_follower "):
             return {"images": 90, "right": 30, "wrong": 1, "absences": 2, "resumed": 2}
         if key.startswith("time "):
             return {"maps": 6.0, "maps, patterns and their sums": 12.0}
@@ -125,9 +125,8 @@ def declaration(experiment: Experiment) -> dict[str, Any]:
 def trials_of(experiment: Experiment) -> list[TrackerTrial]:
     """List all lines of an experiment in which trackers see data sets."""
     declared = declaration(experiment)
-    rules = RULES if declared.pop("rules", "") == "all" else None
     own = {name: one for name, one in declared.items() if name not in ("kind", "metrics")}
-    return list(trials(is_quick=False, rules=rules, **own))
+    return list(trials(is_quick=False, **own))
 
 
 def errors(rng: np.random.Generator) -> ImageErrors:

@@ -13,7 +13,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.scenarios.loop.loop import make_frame
 from peopleboy.scenarios.running.blind_drive import blind_drive
-from peopleboy.studies.reproductions.evaluations.scene_scores import with_preset
+from peopleboy.studies.reproductions.experiments.scenes import with_preset
 from peopleboy.tracker.frame import DEPTH_COLOUR, Frame
 from peopleboy.tracker.scene_model.scene import Metres, VistaScene
 from peopleboy.tracker.scene_model.scene_config import SceneConfig

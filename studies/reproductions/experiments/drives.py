@@ -7,16 +7,15 @@ from functools import partial
 from typing import Any, Final
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from peopleboy.scenarios.running.engine.store import Result
-from peopleboy.studies.reproductions.evaluations.drive_scores import RADIUS_M, DriveRecord
-from peopleboy.studies.reproductions.evaluations.drive_tracking import (
+from peopleboy.studies.reproductions.experiment import Floats, Line, Row, Samples, as_columns
+from peopleboy.studies.reproductions.experiments.drive_scores import RADIUS_M, DriveRecord
+from peopleboy.studies.reproductions.experiments.drive_tracking import (
     CHOICES,
     DEFAULT,
     LITERAL,
     NO_CONNECTOR,
-    NO_DEPTH,
     NO_ODOMETRY,
     SETS,
     TURNS,
@@ -24,12 +23,9 @@ from peopleboy.studies.reproductions.evaluations.drive_tracking import (
     watch_drive,
     watch_legs,
 )
-from peopleboy.studies.reproductions.experiment import Floats, Line, Row, Samples, as_columns
-from peopleboy.studies.reproductions.pictures import situation_figures as figures
-from peopleboy.studies.reproductions.plan import WHOLE_S, Plan, shortened
+from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.statistics import bootstrap_interval
 from peopleboy.studies.reproductions.units import Measurement, Unit
-from peopleboy.tracker.frame import DEPTH
 
 ALL, MEASURED = "all", "measured"
 MAIN: Final = (DEFAULT, LITERAL)
@@ -40,6 +36,8 @@ _FOLLOWED: Final = 2  # number of the set in which the robot follows a person
 _RANGES_M: Final = {"up to 3 m": (0.0, 3.0), "3 to 5 m": (3.0, 5.0), "5 to 10 m": (5.0, 10.0)}
 
 Value = Callable[[DriveRecord], float]
+Drives = Mapping[str, Sequence[Result]]
+"""What trackers did, by scenario, seed by seed."""
 
 
 def tracked(record: DriveRecord) -> Row:
@@ -118,20 +116,18 @@ def drives(
         drives: "sets", or those that are "ablated", or those with many "turns".
         by_set: whether there is a group for each set, and one for all of them.
     """
-    plan = using.plan
     declared = {name: {"columns": columns, **own} for name, own in (groups or {}).items()}
     if by_set:
-        sets = {set_name(number): (number,) for number in plan.sets} | {ALL: plan.sets}
+        sets = {set_name(number): (number,) for number in using.plan.sets} | {ALL: using.plan.sets}
         declared = {name: {"columns": columns, "numbers": numbers} for name, numbers in sets.items()}
-    units = {name: drive_units(plan, drives, own.get("scale", 1.0)) for name, own in declared.items()}
-    using.results(unit for several in units.values() for unit in several)
+    played = play_drives(using, {name: (drives, own.get("scale", 1.0)) for name, own in declared.items()})
     found = {}
     for name, own in declared.items():
         rest = {key: one for key, one in own.items() if key not in ("columns", "tracker", "scale", "numbers")}
         measure = partial(COLUMNS[own["columns"]], **rest)
-        scenarios = [SETS[number - 1] for number in own.get("numbers", ())] or None
+        scenarios = [SETS[number - 1] for number in own.get("numbers", ())] or played[name]
         for tracker in (own["tracker"],) if "tracker" in own else MAIN:
-            records = by_seed(using, units[name], tracker, scenarios)
+            records = by_seed({one: played[name][one] for one in scenarios}, tracker)
             found[Line(name, MEASURED if "tracker" in own else tracker)] = as_columns(map(measure, records))
     return found
 
@@ -148,18 +144,14 @@ _WANTED: Final[Mapping[str, Value]] = {
 
 def goals(using: Measurement) -> Samples:
     """Estimate what this project wants of its tracker: values with 95 % intervals over seeds."""
-    plan = using.plan
-    sets, noisy, turns = (
-        drive_units(plan, kind, scale)
-        for kind, scale in (("sets", 1.0), ("ablated", NOISIEST), ("turns", 1.0))
-    )
-    using.results([*sets, *noisy, *turns])
-    everything = by_seed(using, sets, DEFAULT)
+    kinds = {"sets": ("sets", 1.0), "noisy": ("ablated", NOISIEST), "turns": ("turns", 1.0)}
+    played = play_drives(using, kinds)
+    everything = by_seed(played["sets"], DEFAULT)
     rows = {name: _with_interval(everything, _joined(value)) for name, value in _WANTED.items()}
-    by_set = [by_seed(using, sets, DEFAULT, [SETS[number - 1]]) for number in plan.sets]
+    by_set = [by_seed({one: runs}, DEFAULT) for one, runs in played["sets"].items()]
     rows["rate of the worst set"] = _with_interval(list(zip(*by_set, strict=True)), _worst_rate)
-    rows["rate, noise x 3"] = _with_interval(by_seed(using, noisy, DEFAULT), _joined(DriveRecord.rate))
-    pairs = zip(*(by_seed(using, turns, name) for name in (NO_ODOMETRY, DEFAULT)), strict=True)
+    rows["rate, noise x 3"] = _with_interval(by_seed(played["noisy"], DEFAULT), _joined(DriveRecord.rate))
+    pairs = zip(*(by_seed(played["turns"], name) for name in (NO_ODOMETRY, DEFAULT)), strict=True)
     rows["switches a run in turns, saved by odometry"] = _with_interval(list(pairs), _saved_switches)
     return {Line(name, DEFAULT): row for name, row in rows.items()}
 
@@ -181,33 +173,9 @@ def _with_interval(parts: Sequence[Any], value: Callable[[Sequence[Any]], float]
     return {name: np.array([number]) for name, number in zip(("figure", "from", "to"), numbers, strict=True)}
 
 
-def draw_drives(using: Measurement, *, figure: str, sets: Sequence[int]) -> Figure | None:
-    """Draw some sets, each played with seed 0; None where a plan leaves out all of them."""
-    names = tuple(CHOICES) if figure == "crossing" else MAIN
-    units = {set_name(n): drive_unit(using.plan, SETS[n - 1], 0, names) for n in sets if n in using.plan.sets}
-    runs = dict(zip(units, using.results(units.values()), strict=True))
-    return _FIGURES[figure](runs) if runs else None
-
-
-def _only(runs: Mapping[str, Result]) -> Result:
-    (run,) = runs.values()
-    return run
-
-
-_FIGURES: Final[Mapping[str, Callable[[Mapping[str, Result]], Figure]]] = {
-    "paths": lambda runs: figures.draw_ways(runs, DEFAULT),
-    "world": lambda runs: figures.draw_world(_only(runs), DEFAULT),
-    "people": lambda runs: figures.draw_people(runs, DEFAULT),
-    "errors": lambda runs: figures.draw_errors(_only(runs), DEFAULT),
-    "crossing": lambda runs: figures.draw_crossing(
-        _only(runs), {NO_DEPTH: "filters without depth", DEFAULT: "filters with depth"}
-    ),
-}
-
-
 def legs(using: Measurement) -> Samples:
     """Find by range in which share of the images the person is found, by depth and by legs."""
-    (run,) = using.results([_legs_unit(using.plan)])
+    run = legs_run(using)
     return {
         Line(group, name): as_columns([{"rate": _found(run["truth"], run[key], *limits)}])
         for group, limits in _RANGES_M.items()
@@ -215,9 +183,10 @@ def legs(using: Measurement) -> Samples:
     }
 
 
-def draw_legs(using: Measurement) -> Figure:
-    """Draw the true path, and those by depth and by legs."""
-    return figures.draw_legs(*using.results([_legs_unit(using.plan)]))
+def legs_run(using: Measurement) -> Result:
+    """Return the drive on which a person is followed by legs, too."""
+    (run,) = using.results([Unit.of(watch_legs, SETS[_FOLLOWED - 1], using.plan.drive_s)])
+    return run
 
 
 def _found(
@@ -235,52 +204,35 @@ def _found(
     return float(np.mean(hits)) if hits else float("nan")
 
 
-def drive_units(plan: Plan, drives: str, scale: float = 1.0) -> list[Unit]:
-    """List drives of a kind, seed by seed; with the usual noise all trackers see those that are ablated."""
-    if drives == "sets":
-        return [drive_unit(plan, SETS[n - 1], seed, MAIN) for seed in range(plan.drives) for n in plan.sets]
-    if drives == "turns":
-        return [drive_unit(plan, TURNS, seed, (DEFAULT, NO_ODOMETRY)) for seed in range(2 * plan.drives)]
-    names = tuple(CHOICES) if scale == 1.0 else (DEFAULT, NO_CONNECTOR)
-    scenarios = [SETS[n - 1] for n in plan.sets if n in ABLATED]
-    return [drive_unit(plan, one, seed, names, scale) for one in scenarios for seed in range(plan.ablated)]
+def play_drives(using: Measurement, wanted: Mapping[str, tuple[str, float]]) -> dict[str, Drives]:
+    """Return drives of several kinds, each with the depth's noise scaled; all are asked for at once."""
+    units = {name: drive_units(using.plan, *kind) for name, kind in wanted.items()}
+    using.results(unit for one in units.values() for several in one.values() for unit in several)
+    return {name: using.grouped(one) for name, one in units.items()}
 
 
-def drive_unit(plan: Plan, scenario: str, seed: int, names: tuple[str, ...], scale: float = 1.0) -> Unit:
-    """Play a drive once for some trackers, cut where time is short, with the depth's noise scaled."""
-    cut = f" {plan.drive_s:g}s" if plan.drive_s < WHOLE_S else ""
-    key = f"drive {scenario}-{seed}{cut} noise {scale:g} | {', '.join(names)}"
-    return Unit(key, score_drive, (scenario, seed, names, scale, plan.drive_s))
+def drive_units(plan: Plan, kind: str, scale: float) -> dict[str, list[Unit]]:
+    """List drives of a kind; with the usual noise all trackers see those that are ablated."""
+    names: tuple[str, ...]
+    if kind == "turns":
+        scenarios, seeds, names = [TURNS], 2 * plan.drives, (DEFAULT, NO_ODOMETRY)
+    elif kind == "sets":
+        scenarios, seeds, names = [SETS[n - 1] for n in plan.sets], plan.drives, MAIN
+    else:
+        scenarios, seeds = [SETS[n - 1] for n in plan.sets if n in ABLATED], plan.ablated
+        names = tuple(CHOICES) if scale == 1.0 else (DEFAULT, NO_CONNECTOR)
+    return {
+        one: [Unit.of(watch_drive, one, seed, names, scale, plan.drive_s) for seed in range(seeds)]
+        for one in scenarios
+    }
 
 
-def _legs_unit(plan: Plan) -> Unit:
-    scenario = SETS[_FOLLOWED - 1]
-    return Unit(f"legs {scenario} {plan.drive_s:g}s", score_legs, (scenario, plan.drive_s))
-
-
-def score_drive(scenario: str, seed: int, names: tuple[str, ...], scale: float, most_s: float) -> Result:
-    """Play and score a drive."""
-    played = shortened(scenario, most_s)
-    if scale != 1.0:
-        played = played.with_cameras({DEPTH: {"kind": DEPTH, "scale": scale}})
-    return watch_drive(played, seed, names)
-
-
-def score_legs(scenario: str, most_s: float) -> Result:
-    """Follow a person by legs and by depth and colour at the same time."""
-    return watch_legs(shortened(scenario, most_s), 0)
-
-
-def by_seed(
-    using: Measurement, units: Sequence[Unit], tracker: str, scenarios: Sequence[str] | None = None
-) -> list[DriveRecord]:
-    """Return what a tracker did in some scenarios, or all, taken together by seed."""
-    seeds: dict[int, list[DriveRecord]] = {}
-    for unit, result in zip(units, using.results(units), strict=True):
-        scenario, seed, *_ = unit.arguments
-        if scenarios is None or scenario in scenarios:
-            seeds.setdefault(seed, []).append(DriveRecord.of_plain(result[tracker]))
-    return [DriveRecord.joined(records) for _, records in sorted(seeds.items())]
+def by_seed(played: Drives, tracker: str) -> list[DriveRecord]:
+    """Return what a tracker did on drives, taken together by seed."""
+    return [
+        DriveRecord.joined(DriveRecord.of_plain(run[tracker]) for run in runs)
+        for runs in zip(*played.values(), strict=True)
+    ]
 
 
 def _mean(errors: Floats) -> float:

@@ -12,16 +12,25 @@ import numpy as np
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.sim.random_streams import stream
 from peopleboy.studies.reproductions.experiment import Line, Samples
-from peopleboy.studies.reproductions.occlusion_splits import learn_split
 from peopleboy.studies.reproductions.plan import Plan
-from peopleboy.studies.reproductions.statistics import SHARE
+from peopleboy.studies.reproductions.statistics import SHARE, TRAINING_SHARE
 from peopleboy.studies.reproductions.tracker_settings import TrackerSetting
 from peopleboy.studies.reproductions.units import Measurement, Unit
-from peopleboy.studies.training.occlusion_pairs import LEAST, SCENARIOS, PairSamples, collect_pairs
+from peopleboy.studies.training.occlusion_pairs import (
+    LEAST,
+    SCENARIOS,
+    PairSamples,
+    accuracy,
+    collect_pairs,
+)
+from peopleboy.studies.training.samples import Split
+from peopleboy.tracker.contour.occlusion.learned_table import LearnedTable
 from peopleboy.tracker.contour.occlusion.pair_features import FEATURES
 from peopleboy.tracker.contour.occlusion.weak_classifiers import weighted_sums
 
 CLASSIFIERS, PAIRS = "weak classifiers", "pairs"
+THESIS_PAIRS: Final = 121
+"""How many pairs the thesis has; with their mirror images, 242 examples."""
 SCENES: Final = (
     *SCENARIOS,
     "dark_crossing",
@@ -86,10 +95,19 @@ def _learned(
 ) -> tuple[dict[str, int], dict[tuple[str, str], list[Result]]]:
     """Collect the examples, then learn from them: their number by tracker, and each way's splits."""
     plan = using.plan
-    collected = {name: _pair_units(plan, setting) for name, setting in TRACKERS.items()}
+    collected = using.grouped(
+        {
+            tracker: [
+                Unit.of(measure_pairs, scenario, seed, setting)
+                for seed in range(plan.pair_seeds)
+                for scenario in SCENES
+            ]
+            for tracker, setting in TRACKERS.items()
+        }
+    )
     examples = {
-        name: PairSamples.join([PairSamples.from_plain(result) for result in results])
-        for name, results in using.grouped(collected).items()
+        tracker: PairSamples.join([PairSamples.from_plain(result) for result in results])
+        for tracker, results in collected.items()
     }
     units = {
         (name, tracker): [
@@ -99,15 +117,6 @@ def _learned(
         for tracker in TRACKERS
     }
     return {tracker: len(found) for tracker, found in examples.items()}, using.grouped(units)
-
-
-def _pair_units(plan: Plan, setting: TrackerSetting) -> list[Unit]:
-    """List the runs in which a tracker measures people who overlap."""
-    return [
-        Unit(f"pairs {name}-{seed} | {setting.key}", measure_pairs, (name, seed, setting))
-        for seed in range(plan.pair_seeds)
-        for name in SCENES
-    ]
 
 
 def learn_unit(way: Classifiers, plan: Plan, examples: PairSamples, tracker: str, split: int) -> Unit:
@@ -129,20 +138,61 @@ def learn_pairs(
 ) -> Result:
     """Learn from examples that are split at random, and scenario by scenario, and test on the rest.
 
+    Features that are 0 in all examples to learn from tell nothing: half of all answers are right then.
+
     Source: thesis, section 7.4.
 
     Args:
         features: names of those that are used.
         most: how many of them a weak classifier may add up.
-        rounds: of boosting.
+        rounds: of boosting; a single feature is one weak classifier, and boosting has nothing to add to it.
         split: number of the splits, from 0.
         examples: to split.
+
+    Returns:
+        The share of right answers [%] by the names of `TESTS`, and the weights of the "best" classifiers,
+        which are learned from the random split.
     """
+    from peopleboy.studies.training.occlusion import boost  # only learning needs scikit-learn
+
     if len(examples) < LEAST:
-        return {"held out": math.nan, "unseen scenarios": math.nan, "best": []}
-    found = learn_split(examples, features, most, rounds, stream(split, "occlusion.split"))
-    return {
-        "held out": found.held_out,
-        "unseen scenarios": found.unseen,
-        "best": [weak.weights for weak in found.table.classifiers[:10]],
-    }
+        return dict.fromkeys(TESTS, math.nan) | {"best": []}
+    rng = stream(split, "occlusion.split")
+    result: Result = {}
+    splits = random_split(examples, rng), split_by_scenario(examples, rng)
+    for test, parts in zip(TESTS, splits, strict=True):
+        table = LearnedTable(scale=dict.fromkeys(FEATURES, 1.0), classifiers=())
+        measured, is_front = parts.training.mirror()
+        is_informative = measured[:, [FEATURES.index(name) for name in features]].any()
+        if is_informative:
+            rounds_of = 1 if len(features) == 1 else rounds
+            table = boost(measured, is_front, most=most, uses=features, rounds=rounds_of)
+        result[test] = accuracy(table, parts.validation) if is_informative else 50.0
+        result.setdefault("best", [weak.weights for weak in table.classifiers[:10]])
+    return result
+
+
+def random_split(examples: PairSamples, rng: np.random.Generator) -> Split[PairSamples]:
+    """Draw as many pairs as the thesis has, and learn from 60 % of them.
+
+    The same occlusion may be on both sides.
+
+    Source: thesis, section 7.4.
+    """
+    rows = rng.permutation(len(examples))[:THESIS_PAIRS]
+    cut = round(TRAINING_SHARE * len(rows))
+    return Split(examples.take(rows[:cut]), examples.take(rows[cut:]))
+
+
+def split_by_scenario(examples: PairSamples, rng: np.random.Generator) -> Split[PairSamples]:
+    """Draw scenarios until they have 60 % of the pairs, learn from these, and test with the others.
+
+    One is left to test with, unless there is but one, even if the others have less.
+    """
+    names = np.unique(examples.scenario)
+    is_learned = np.zeros(len(examples), np.bool_)
+    for row in rng.permutation(len(names))[: max(1, len(names) - 1)]:
+        if is_learned.sum() >= TRAINING_SHARE * len(examples):
+            break
+        is_learned |= examples.scenario == names[row]
+    return Split(examples.take(is_learned), examples.take(~is_learned))

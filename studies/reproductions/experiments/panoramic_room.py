@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from peopleboy.scenarios.running.engine.store import Result
-from peopleboy.studies.reproductions import distance_trials as trials
-from peopleboy.studies.reproductions.evaluations.webcam_positions import measure_webcams
 from peopleboy.studies.reproductions.experiment import Line, Samples
+from peopleboy.studies.reproductions.experiments import distance_trials as trials
+from peopleboy.studies.reproductions.experiments.webcam_positions import measure_webcams
 from peopleboy.studies.reproductions.image_errors import ErrorSummary, ImageErrors
-from peopleboy.studies.reproductions.pictures import panoramic_figures
-from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.units import Measurement, Unit
-from peopleboy.studies.training.distance import DistanceSamples, collect_distances
+from peopleboy.studies.training.distance import Backpropagation, DistanceSamples, collect_distances
 
 M, R, CM, DEGREES = "m", "|r|", "cm", "deg"
 ROOMS: Final = ("room_long", "room_short", "room_narrow")
@@ -53,65 +50,45 @@ def distances(
         groups: whose `errors` are meant, such as "general", and of which `split`: "best", "worst" or all.
         has_new_people: whether networks are tested on people who are new to them, in the first group.
     """
-    walks = {room: examples_of(using, room) for room in ROOMS}
+    walks = walks_of(using)
     units = {
-        (room, split): _split_units(using.plan, room, split, walks[room])
+        (room, SPLITS[split]): _split_units(using, room, split, walks[room])
         for room in ROOMS
         for split in SPLITS
     }
-    folds = {
-        (room, "new people"): _new_people_units(using.plan, room, walks[room])
-        for room in ROOMS
-        if has_new_people
-    }
-    tested = using.grouped({**units, **folds})
+    folds = {(room, "new people"): _new_people_units(room, walks[room]) for room in ROOMS if has_new_people}
+    tested = using.grouped(units | folds)
     found = {
-        Line(group, f"{room}, {SPLITS[split]}"): {
+        Line(group, f"{room}, {split}"): {
             M: ImageErrors.joined(_errors(result["errors"], **declared) for result in tested[room, split])
         }
         for group, declared in groups.items()
         for room, split in units
     }
-    for room, new_people in folds:
-        runs = [run for result in tested[room, new_people] for run in result["runs"]]
-        line = Line(next(iter(groups)), f"{room}, {new_people}")
-        found[line] = {M: ImageErrors.joined(map(ImageErrors.of_plain, runs))}
+    for room, split in folds:
+        runs = [ImageErrors.of_plain(run) for result in tested[room, split] for run in result["runs"]]
+        found[Line(next(iter(groups)), f"{room}, {split}")] = {M: ImageErrors.joined(runs)}
     return found
 
 
 def _errors(plain: Mapping[str, Any], errors: Sequence[str], split: str = "all") -> ImageErrors:
     parts = [ImageErrors.of_plain(plain[name]) for name in errors]
     found = parts[0] if len(parts) == 1 else ImageErrors.merged(parts)
-    return found.best() if split == "best" else found.worst() if split == "worst" else found
-
-
-def draw_ranges(using: Measurement) -> Figure:
-    """Draw the error over the distance."""
-    return panoramic_figures.draw_ranges({room: examples_of(using, room) for room in ROOMS})
+    choose = {"best": min, "worst": max}
+    return found.only(choose[split]) if split in choose else found
 
 
 def correlations(using: Measurement) -> Samples:
     """Correlate features and the network's answer with the distance, one value a run (figure 5)."""
-    walks = {room: examples_of(using, room) for room in ROOMS}
-    tested = using.grouped({room: _split_units(using.plan, room, "random", walks[room]) for room in ROOMS})
+    walks = walks_of(using)
+    tested = using.grouped({room: _split_units(using, room, "random", walks[room]) for room in ROOMS})
     r = {room: np.abs([result["r"] for result in results]) for room, results in tested.items()}
     return {Line(cue, room): {R: r[room][:, column]} for column, cue in enumerate(CUES) for room in ROOMS}
 
 
-def draw_correlations(using: Measurement) -> Figure:
-    """Draw the correlations of the first run, as the paper does."""
-    return panoramic_figures.draw_correlations(examples_of(using, ROOMS[0])[0], CUES)
-
-
-def draw_path(using: Measurement) -> Figure:
-    """Draw a piece of a path on the floor, true and estimated (figure 6)."""
-    (first,) = using.results(walk_units(using.plan, ROOMS[0])[:1])
-    return panoramic_figures.draw_path(DistanceSamples.from_plain(first))
-
-
 def webcams(using: Measurement) -> Samples:
     """Measure errors of places [cm] by webcams, and of the bearing from the robot [deg], one value a seed."""
-    found = using.results(_webcam_units(using.plan))
+    found = _webcam_runs(using)
     return {
         Line(group, "default"): {
             CM: np.array([100.0 * one[place] for one in found]),
@@ -123,25 +100,26 @@ def webcams(using: Measurement) -> Samples:
 
 def angles(using: Measurement) -> Samples:
     """Measure errors of the panorama's angle [deg], in the rooms and against webcams."""
-    plan = using.plan
-    using.results([*(unit for room in ROOMS for unit in walk_units(plan, room)), *_webcam_units(plan)])
-    found = {}
-    for room in ROOMS:
-        degrees = (np.degrees(run.angle_error_rad) for run in examples_of(using, room))
-        found[f"{room}, against the truth"] = _runs(map(ErrorSummary.of, degrees))
+    found = {
+        f"{room}, against the truth": [ErrorSummary.of(np.degrees(run.angle_error_rad)) for run in runs]
+        for room, runs in walks_of(using).items()
+    }
     for name, key in _ANGLES.items():
-        kept = (ErrorSummary(**one[key]) for one in using.results(_webcam_units(plan)))
-        found[f"corner_webcams, {name}"] = _runs(kept)
-    return {Line(ANGLE, name): {DEGREES: errors} for name, errors in found.items()}
+        found[f"corner_webcams, {name}"] = [ErrorSummary(*one[key]) for one in _webcam_runs(using)]
+    return {
+        Line(ANGLE, name): {DEGREES: ImageErrors.joined(ImageErrors(splits=(run,)) for run in runs)}
+        for name, runs in found.items()
+    }
 
 
-def _runs(runs: Iterable[ErrorSummary]) -> ImageErrors:
-    return ImageErrors.joined(ImageErrors(splits=(run,)) for run in runs)
+def _webcam_runs(using: Measurement) -> list[Result]:
+    return using.results(Unit.of(measure_webcams, seed) for seed in range(using.plan.repeats))
 
 
-def walk_units(plan: Plan, room: str) -> list[Unit]:
-    """List the runs in which people walk in a room before the panoramic camera."""
-    return [Unit(f"walk {room}-{seed}", measure_walk, (room, seed)) for seed in range(plan.walks)]
+def walks_of(using: Measurement) -> dict[str, list[DistanceSamples]]:
+    """Return by room what the panoramic camera measured of people who walk there, run by run."""
+    found = using.played(measure_walk, ROOMS, using.plan.walks)
+    return {room: list(map(DistanceSamples.from_plain, runs)) for room, runs in found.items()}
 
 
 def measure_walk(room: str, seed: int) -> Result:
@@ -149,38 +127,28 @@ def measure_walk(room: str, seed: int) -> Result:
     return collect_distances(room, seed).to_plain()
 
 
-def examples_of(using: Measurement, room: str) -> list[DistanceSamples]:
-    """Return what was measured in each run; all rooms' runs are asked for at once."""
-    using.results(unit for one in ROOMS for unit in walk_units(using.plan, one))
-    return [DistanceSamples.from_plain(result) for result in using.results(walk_units(using.plan, room))]
-
-
-def _split_units(plan: Plan, room: str, split: str, walks: Sequence[DistanceSamples]) -> list[Unit]:
+def _split_units(using: Measurement, room: str, split: str, walks: Sequence[DistanceSamples]) -> list[Unit]:
     """Train the paper's networks on each run, with all splits of one kind."""
-    trial = trials.SplitTrial(split=split, repeats=plan.splits)
+    trial = trials.SplitTrial(split=split, repeats=using.plan.splits)
     more = f"{split}, {trial.repeats} splits, {trial.settings.epochs} epochs"
     return [
-        Unit(f"distances {walk.key} | {more}", score_splits, (examples, trial))
-        for walk, examples in zip(walk_units(plan, room), walks, strict=True)
+        Unit(f"distances {room}-{seed} | {more}", score_splits, (examples, trial))
+        for seed, examples in enumerate(walks)
     ]
 
 
-def _new_people_units(plan: Plan, room: str, walks: Sequence[DistanceSamples]) -> list[Unit]:
+def _new_people_units(room: str, walks: Sequence[DistanceSamples]) -> list[Unit]:
     """Train on the even seeds and test on the odd ones, and the other way round."""
-    trial = trials.SplitTrial(split="random", repeats=1)
-    folds = [tuple(range(first, plan.walks, 2)) for first in range(2)]
+    settings = Backpropagation()
+    folds = [tuple(range(first, len(walks), 2)) for first in range(2)]
     return [
         Unit(
-            f"new people {room} {','.join(map(str, seeds))} of {len(walks)} | {trial.settings.epochs} epochs",
+            f"new people {room} {','.join(map(str, seeds))} of {len(walks)} | {settings.epochs} epochs",
             score_new_people,
-            (seeds, trial, tuple(walks)),
+            (seeds, settings, tuple(walks)),
         )
         for seeds in folds
     ]
-
-
-def _webcam_units(plan: Plan) -> list[Unit]:
-    return [Unit(f"webcams | {seed}", score_webcams, (seed,)) for seed in range(plan.repeats)]
 
 
 def score_splits(run: DistanceSamples, trial: trials.SplitTrial) -> Result:
@@ -197,15 +165,10 @@ def score_splits(run: DistanceSamples, trial: trials.SplitTrial) -> Result:
 
 
 def score_new_people(
-    seeds: Sequence[int], trial: trials.SplitTrial, runs: Sequence[DistanceSamples]
+    seeds: Sequence[int], settings: Backpropagation, runs: Sequence[DistanceSamples]
 ) -> Result:
     """Train one network on the runs with some seeds, and test it on the others."""
     trained = [run for seed, run in enumerate(runs) if seed in seeds]
     others = [run for seed, run in enumerate(runs) if seed not in seeds]
-    tested = trials.new_people_trials(trained, others, trial.settings)
+    tested = trials.new_people_trials(trained, others, settings)
     return {"runs": [errors.plain() for errors in tested]}
-
-
-def score_webcams(seed: int) -> Result:
-    """Play the scene with webcams, and measure their errors."""
-    return measure_webcams(seed)

@@ -12,8 +12,8 @@ import numpy as np
 from peopleboy.scenarios.files.suite import SuiteRun
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.scores.suite_table import Content, add_up
-from peopleboy.studies.reproductions.evaluations import sequence_scores as scores
 from peopleboy.studies.reproductions.experiment import Jackknife, Line, Samples, Values
+from peopleboy.studies.reproductions.experiments import sequence_scores as scores
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.statistics import PAPER, THESIS
 from peopleboy.studies.reproductions.tracker_settings import Changes, TrackerSetting, Value
@@ -22,19 +22,18 @@ from peopleboy.tracker.evaluation.mot_metrics import Sums
 
 METRICS: Final = {"thesis": THESIS, "paper": PAPER}
 RULES: Final = {
-    "": "ignore",
-    ", strict": "absent",
-    ", strict, own range": "own range",
-    ", half in view": "half in view",
+    "usual": (scores.USUAL,),
+    "all": (scores.USUAL, scores.STRICT, scores.OWN_RANGE, scores.HALF),
+    "causes": (
+        *(scores.USUAL, scores.STRICT, scores.NEAR, scores.FAR, scores.RANGE),
+        *(scores.HALF, scores.FOUND),
+    ),
 }
-"""Ways to deal with uncounted people, by what they add to a tracker's name."""
+"""Ways to count, by the name that declarations have for several of them."""
+BOXES, PEOPLE = "boxes aside [%]", "people aside [%]"
+_ASIDE: Final = {BOXES: "candidates", PEOPLE: "targets"}
+"""Columns that say how much a way to count sets aside, as a share of what strictly counts."""
 RATE_HZ: Final = 15
-WORK: Final[Mapping[str, Callable[..., Result]]] = {
-    "track": scores.score_sequence,
-    "delay": scores.measure_delay,
-    "causes": scores.score_causes,
-}
-"""What a tracker does on a sequence, by the word in the unit's key."""
 
 CONTENTS: Final = {
     "frames_with_persons": "frames with persons",
@@ -46,6 +45,8 @@ CONTENTS: Final = {
 }
 """Columns of the thesis's table 3.1."""
 
+Work = Callable[[SuiteRun, Path, TrackerSetting, int], Result]
+"""What a tracker does on a sequence, with a repeat's random stream."""
 Row = Callable[[Sequence[Result], str], Sequence[float]]
 """Gives the columns of some sequences' results, counted by a rule."""
 Record = TypeVar("Record", bound=Sums)
@@ -75,7 +76,7 @@ def trials(
     trackers: Mapping[str, Any] | None = None,
     suites: Sequence[str] = (),
     sweep: Sequence[str] | Mapping[str, float] = (),
-    rules: Mapping[str, str] | None = None,
+    rules: str = "usual",
     quick: Sequence[str] | None = None,
     quick_changes: Mapping[str, Any] | None = None,
 ) -> Iterator[TrackerTrial]:
@@ -87,7 +88,7 @@ def trials(
         trackers: base by name, or `base` and `suites`.
         suites: names of the data sets, unless a group or tracker has its own.
         sweep: settings that have a group's value, or how far each is from it.
-        rules: which part of the results counts, by what is added to a tracker's name.
+        rules: one of `RULES`; a tracker's name is followed by all but the usual way to count.
         quick: groups that are tried when time is short; all if left out.
         quick_changes: further changes of the trackers then.
     """
@@ -103,10 +104,9 @@ def trials(
         for name, base in (own.get("trackers") or trackers or {}).items():
             tracker = base if isinstance(base, Mapping) else {"base": base}
             seen = tuple(tracker.get("suites") or own.get("suites") or suites)
-            for more, rule in (rules or {"": "ignore"}).items():
-                yield TrackerTrial(
-                    Line(group, name + more), TrackerSetting(tracker["base"], changes), seen, rule
-                )
+            for rule in RULES[rules]:
+                line = Line(group, name if rule == scores.USUAL else f"{name}, {rule}")
+                yield TrackerTrial(line, TrackerSetting(tracker["base"], changes), seen, rule)
 
 
 def _changes(values: Mapping[str, Any]) -> Changes:
@@ -117,35 +117,39 @@ def _changes(values: Mapping[str, Any]) -> Changes:
 
 def contents(using: Measurement) -> Samples:
     """Count frames, tracks, detections and occlusions, data set by data set (thesis, table 3.1)."""
-    using.results(count_unit(run, using.plan.cache) for run in using.plan.runs(using.plan.suites))
-    result = {}
-    for name in using.plan.suites:
-        counted = using.results(count_unit(run, using.plan.cache) for run in using.plan.runs([name]))
-        total = asdict(add_up(Content(**one) for one in counted))
-        result[Line(name, "simulated")] = {
-            shown: np.array([float(total[key])]) for key, shown in CONTENTS.items()
-        }
-    return result
+    plan = using.plan
+    units = {name: [count_unit(run, plan.cache) for run in plan.runs([name])] for name in plan.suites}
+    counted = using.grouped(units)
+    totals = {name: asdict(add_up(Content(**one) for one in runs)) for name, runs in counted.items()}
+    return {
+        Line(name, "simulated"): {shown: np.array([float(total[key])]) for key, shown in CONTENTS.items()}
+        for name, total in totals.items()
+    }
 
 
-def tracking(
-    using: Measurement, *, metrics: str | Sequence[str], rules: str = "usual", **declared: Any
-) -> Samples:
+def tracking(using: Measurement, *, metrics: str | Sequence[str], **declared: Any) -> Samples:
     """Score trackers by the thesis's or the paper's metrics [%].
 
     Args:
         using: how much is measured, and what is there.
-        metrics: "thesis", "paper", or names.
-        rules: "usual", or "all" ways to deal with uncounted people.
+        metrics: "thesis", "paper", or names; also those of shares that a way to count sets aside.
         declared: as `trials` takes it.
     """
     names = METRICS[metrics] if isinstance(metrics, str) else tuple(metrics)
 
     def row(results: Sequence[Result], rule: str) -> list[float]:
         sums = add_sums([one[rule] for one in results])
-        return [metric(sums, name) for name in names]
+        return [
+            _aside(results, rule, _ASIDE[name]) if name in _ASIDE else metric(sums, name) for name in names
+        ]
 
-    return _measured(using, declared, "track", names, row, RULES if rules == "all" else None)
+    return _measured(using, declared, scores.score_sequence, names, row)
+
+
+def _aside(results: Sequence[Result], rule: str, kind: str) -> float:
+    """Return which share of the boxes or people that strictly count is set aside [%]."""
+    counted, every = (sum(one[way]["counts"][kind] for one in results) for way in (rule, scores.STRICT))
+    return float(100 * (1 - counted / max(every, 1)))
 
 
 def delay(using: Measurement, **declared: Any) -> Samples:
@@ -157,52 +161,21 @@ def delay(using: Measurement, **declared: Any) -> Samples:
         frames = float(np.mean(needed)) if needed else float("nan")
         return [frames, frames / RATE_HZ, 100 * len(needed) / max(starts, 1)]
 
-    return _measured(using, declared, "delay", ("frames", "s", "found in 2 s [%]"), row)
-
-
-BOXES, PEOPLE = "boxes aside [%]", "people aside [%]"
-_OF_CAUSES: Final = ("DC", "OCR", "OCP", "OCA", "BAP", "CP")
-
-
-def causes(using: Measurement, **declared: Any) -> Samples:
-    """Score trackers with one cause of their errors after the other set aside.
-
-    The first columns say how much that is, as a share of what strictly counts.
-    """
-
-    def row(results: Sequence[Result], way: str) -> list[float]:
-        strict, counted = ([result[name] for result in results] for name in (scores.STRICT, way))
-        sums = add_sums(counted)
-        aside = (
-            100 * (1 - sum(one[kind] for one in counted) / max(sum(one[kind] for one in strict), 1))
-            for kind in ("boxes", "people")
-        )
-        return [*aside, *(metric(sums, name) for name in _OF_CAUSES)]
-
-    rules = {f", {way}" if way else "": way for way in scores.CAUSES}
-    return _measured(using, declared, "causes", (BOXES, PEOPLE, *_OF_CAUSES), row, rules)
+    return _measured(using, declared, scores.measure_delay, ("frames", "s", "found in 2 s [%]"), row)
 
 
 def _measured(
-    using: Measurement,
-    declared: Mapping[str, Any],
-    work: str,
-    names: Sequence[str],
-    row: Row,
-    rules: Mapping[str, str] | None = None,
+    using: Measurement, declared: Mapping[str, Any], work: Work, names: Sequence[str], row: Row
 ) -> Samples:
     """Render the sequences, then run all trackers on them, and take each repeat's sequences together."""
     plan = using.plan
-    lines = list(trials(is_quick=plan.is_quick, rules=rules, **declared))
+    lines = list(trials(is_quick=plan.is_quick, **declared))
     using.results(count_unit(run, plan.cache) for trial in lines for run in plan.runs(trial.suites))
     repeats = range(plan.repeats)
     found = using.grouped(
         {(k, trial): sequence_units(trial, plan, k, work) for k in repeats for trial in lines}
     )
-    return {
-        trial.line: _values([found[k, trial] for k in range(plan.repeats)], trial, names, row)
-        for trial in lines
-    }
+    return {trial.line: _values([found[k, trial] for k in repeats], trial, names, row) for trial in lines}
 
 
 def _values(
@@ -224,17 +197,19 @@ def count_unit(run: SuiteRun, cache: Path) -> Unit:
     return Unit(f"film {_run_key(run)}", scores.count_sequence, (run, cache))
 
 
-def sequence_units(trial: TrackerTrial, plan: Plan, repeat: int, work: str = "track") -> list[Unit]:
+def sequence_units(
+    trial: TrackerTrial, plan: Plan, repeat: int, work: Work = scores.score_sequence
+) -> list[Unit]:
     """List a repeat's work of a trial: a tracker on each sequence, with one random stream."""
     return [sequence_unit(run, plan.cache, trial.setting, repeat, work) for run in plan.runs(trial.suites)]
 
 
 def sequence_unit(
-    run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: int, work: str = "track"
+    run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: int, work: Work = scores.score_sequence
 ) -> Unit:
-    """Run a tracker on one sequence, for one kind of `WORK`."""
-    key = f"{work} {_run_key(run)} | {setting.key} | {repeat}"
-    return Unit(key, WORK[work], (run, cache, setting, repeat))
+    """Run a tracker on one sequence."""
+    key = f"{work.__name__} {_run_key(run)} | {setting.key} | {repeat}"
+    return Unit(key, work, (run, cache, setting, repeat))
 
 
 def _run_key(run: SuiteRun) -> str:

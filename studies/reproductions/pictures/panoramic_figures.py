@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, Final
 
@@ -18,8 +18,13 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.geometry.panorama import Mirror
 from peopleboy.sim.world_config import WorldConfig
-from peopleboy.studies.reproductions.distance_trials import SplitTrial, filtered, predicted_in_turn
-from peopleboy.studies.reproductions.evaluations.webcam_positions import (
+from peopleboy.studies.reproductions.experiments.distance_trials import (
+    SplitTrial,
+    filtered,
+    predicted_in_turn,
+)
+from peopleboy.studies.reproductions.experiments.panoramic_room import CUES, walks_of
+from peopleboy.studies.reproductions.experiments.webcam_positions import (
     HEADING,
     RANGE,
     SCENE,
@@ -38,7 +43,8 @@ from peopleboy.studies.reproductions.pictures.canvas import (
     show_image,
     single,
 )
-from peopleboy.studies.training.distance import DistanceSamples, panoramas
+from peopleboy.studies.reproductions.units import Measurement
+from peopleboy.studies.training.distance import panoramas
 from peopleboy.tracker.panoramic.paper.depth_cues import (
     EMPTY_IMAGES,
     Background,
@@ -220,11 +226,12 @@ def draw_fields_of_view() -> Figure:
     return figure
 
 
-def draw_correlations(run: DistanceSamples, names: Sequence[str]) -> Figure:
-    """Draw each cue of a film, and the network's estimate, over the true distance."""
+def draw_correlations(using: Measurement) -> Figure:
+    """Draw each cue of the first run, and the network's estimate, over the true distance: figure 5."""
+    run = walks_of(using)[ROOM][0]
     predicted = predicted_in_turn(run, SplitTrial(split="random"))
     figure = canvas(5.6)
-    for axes, name, values in zip(figure.subplots(2, 2).flat, names, (*run.cues.T, predicted), strict=True):
+    for axes, name, values in zip(figure.subplots(2, 2).flat, CUES, (*run.cues.T, predicted), strict=True):
         for person, colour in zip(np.unique(run.person).tolist(), _PEOPLE, strict=False):
             one = run.person == person
             style: dict[str, Any] = {"markersize": 2.5, "color": colour, "label": f"person {person}"}
@@ -235,8 +242,9 @@ def draw_correlations(run: DistanceSamples, names: Sequence[str]) -> Figure:
     return figure
 
 
-def draw_path(run: DistanceSamples) -> Figure:
-    """Draw a piece of a path on the floor: true, by the model alone, and with the filter."""
+def draw_path(using: Measurement) -> Figure:
+    """Draw a piece of a path on the floor: true, by the model alone, and with the filter (figure 6)."""
+    run = walks_of(using)[ROOM][0]
     measured = run.positions_at(predicted_in_turn(run, SplitTrial(split="blocks")))
     smooth = filtered(run, measured, PositionFilter(PRINTED, uses_velocity=True))
     figure, axes = single(4.6)
@@ -253,10 +261,10 @@ def draw_path(run: DistanceSamples) -> Figure:
     return figure
 
 
-def draw_ranges(films: Mapping[str, Sequence[DistanceSamples]]) -> Figure:
+def draw_ranges(using: Measurement) -> Figure:
     """Draw the mean error of the distance over the distance, by room; nobody is tested on whom it learned."""
     figure, axes = single(3.4)
-    for (room, runs), colour in zip(films.items(), _ROOMS, strict=False):
+    for (room, runs), colour in zip(walks_of(using).items(), _ROOMS, strict=False):
         distance = np.concatenate([run.distance_m for run in runs])
         errors = np.concatenate(
             [np.abs(predicted_in_turn(run, SplitTrial(split="blocks")) - run.distance_m) for run in runs]

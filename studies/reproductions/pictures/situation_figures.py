@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -15,20 +15,28 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.studies.reproductions.evaluations.attention_focus import (
-    can_be_learned,
-    play_focus,
-    wanted,
+from peopleboy.studies.reproductions.experiments.attention import can_be_learned, play_focus, wanted
+from peopleboy.studies.reproductions.experiments.drive_scores import hit_rows
+from peopleboy.studies.reproductions.experiments.drive_tracking import (
+    CHOICES,
+    DEFAULT,
+    NO_DEPTH,
+    SETS,
+    set_name,
+    watch_drive,
 )
-from peopleboy.studies.reproductions.evaluations.drive_scores import hit_rows
-from peopleboy.studies.reproductions.evaluations.playback import Moment
-from peopleboy.studies.reproductions.evaluations.scene_scores import (
+from peopleboy.studies.reproductions.experiments.drives import MAIN, legs_run
+from peopleboy.studies.reproductions.experiments.playback import Moment
+from peopleboy.studies.reproductions.experiments.scenes import (
     ADAPT,
     CLEAN,
     MEAN,
     ROBUST,
+    SHOWN,
+    TOF,
     TRACK,
     read_map,
+    watch_scene,
 )
 from peopleboy.studies.reproductions.pictures.canvas import (
     BLUE,
@@ -42,6 +50,7 @@ from peopleboy.studies.reproductions.pictures.canvas import (
     show_image,
     single,
 )
+from peopleboy.studies.reproductions.units import Measurement, Unit
 from peopleboy.tracker.attention.attend import PersonModel, attention_map, learn, search
 from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
 from peopleboy.tracker.attention.image_sums import ImageSums
@@ -65,27 +74,37 @@ _MEANS: Final = replace(PRINTED, share="means")
 _ALONE: Final = replace(AttentionConfig(), scales=(1.0,))
 
 
-def draw_ways(films: Mapping[str, Film], who: str) -> Figure:
-    """Draw films' ways relative to the robot: who counts in red, tracks in a colour each."""
+def draw_drives(using: Measurement, *, figure: str, sets: Sequence[int]) -> Figure | None:
+    """Draw some sets, each played with seed 0; None where a plan leaves out all of them."""
+    names = tuple(CHOICES) if figure == "crossing" else MAIN
+    shown = [number for number in sets if number in using.plan.sets]
+    most_s = using.plan.drive_s
+    runs = using.results(Unit.of(watch_drive, SETS[n - 1], 0, names, 1.0, most_s) for n in shown)
+    return _FIGURES[figure](dict(zip(map(set_name, shown), runs, strict=True))) if runs else None
+
+
+def draw_paths(films: Mapping[str, Film]) -> Figure:
+    """Draw films' paths relative to the robot: who counts in red, tracks in a colour each."""
     columns = 3
     rows = math.ceil(len(films) / columns)
     figure = canvas(3.0 * rows)
     for number, (title, film) in enumerate(films.items(), 1):
         axes = figure.add_subplot(rows, columns, number)
         _lines(axes, _counted(film), colour=RED, width=2.0)
-        _lines(axes, _rows(film[who]["tracks"]))
+        _lines(axes, _rows(film[DEFAULT]["tracks"]))
         label(axes, title, "to the left [m]", "ahead [m]")
     return figure
 
 
-def draw_world(film: Film, who: str) -> Figure:
-    """Draw tracks in the world, and the way of the robot with where it looks."""
+def draw_world(films: Mapping[str, Film]) -> Figure:
+    """Draw tracks in the world, and the path of the robot with where it looks."""
+    (film,) = films.values()
     figure, axes = single(3.4)
     robot = np.array(film["robot"])
     axes.plot(robot[:, 0], robot[:, 1], "--", color=RED, linewidth=1.2, label="robot")
     x, y, heading = robot[:: max(len(robot) // 20, 1)].T
     axes.quiver(x, y, np.cos(heading), np.sin(heading), color=BLUE, width=0.003, scale=40.0)
-    frame, track, ahead, left = _rows(film[who]["tracks"]).T
+    frame, track, ahead, left = _rows(film[DEFAULT]["tracks"]).T
     x, y, heading = robot[frame.astype(int) - 1].T
     cosine, sine = np.cos(heading), np.sin(heading)
     places = (x + cosine * ahead - sine * left, y + sine * ahead + cosine * left)
@@ -94,11 +113,11 @@ def draw_world(film: Film, who: str) -> Figure:
     return figure
 
 
-def draw_people(films: Mapping[str, Film], who: str) -> Figure:
+def draw_people(films: Mapping[str, Film]) -> Figure:
     """Draw mean and deviation of each person's errors, sideways and ahead."""
     names, means, spreads = [], [], []
     for title, film in films.items():
-        hits = hit_rows(film[who])
+        hits = hit_rows(film[DEFAULT])
         off = np.abs(hits[:, [6, 5]])
         for person in np.unique(hits[:, 1]):
             own = off[(hits[:, 1] == person) & np.isfinite(off).all(axis=1)]
@@ -120,9 +139,10 @@ def draw_people(films: Mapping[str, Film], who: str) -> Figure:
     return figure
 
 
-def draw_errors(film: Film, who: str) -> Figure:
+def draw_errors(films: Mapping[str, Film]) -> Figure:
     """Draw the distance of a film's first person over time, and the errors sideways and ahead."""
-    hits = hit_rows(film[who])
+    (film,) = films.values()
+    hits = hit_rows(film[DEFAULT])
     hits = hits[hits[:, 1] == hits[:, 1].min()]
     truth = np.array(film["truth"]).reshape(-1, 7)
     truth = truth[truth[:, 1] == hits[0, 1]]
@@ -138,21 +158,36 @@ def draw_errors(film: Film, who: str) -> Figure:
     return figure
 
 
-def draw_crossing(film: Film, names: Mapping[str, str]) -> Figure:
-    """Draw the true ways of a film beside those of several trackers, which `names` gives titles."""
+def draw_crossing(films: Mapping[str, Film]) -> Figure:
+    """Draw the true paths of a film beside those of the tracker without and with depth in its filters."""
+    (film,) = films.values()
+    paths = {
+        "true": _counted(film),
+        "filters without depth": _rows(film[NO_DEPTH]["tracks"]),
+        "filters with depth": _rows(film[DEFAULT]["tracks"]),
+    }
     figure = canvas(3.2)
-    first, *others = figure.subplots(1, 1 + len(names), sharex=True, sharey=True)
-    _lines(first, _counted(film))
-    label(first, "true", "to the left [m]", "ahead [m]")
-    for axes, (who, title) in zip(others, names.items(), strict=True):
-        _lines(axes, _rows(film[who]["tracks"]))
-        label(axes, title, "to the left [m]")
+    for axes, (title, rows) in zip(
+        figure.subplots(1, 3, sharex=True, sharey=True), paths.items(), strict=True
+    ):
+        _lines(axes, rows)
+        label(axes, title, "to the left [m]", "ahead [m]" if title == "true" else "")
     return figure
 
 
-def draw_legs(film: Film) -> Figure:
-    """Draw a person's way relative to the robot, and the distance over time: true, by depth, by legs."""
-    figure = canvas(3.6)
+_FIGURES: Final[Mapping[str, Callable[[Mapping[str, Film]], Figure]]] = {
+    "paths": draw_paths,
+    "world": draw_world,
+    "people": draw_people,
+    "errors": draw_errors,
+    "crossing": draw_crossing,
+}
+"""Figures of drives, by the name that declarations have for them."""
+
+
+def draw_legs(using: Measurement) -> Figure:
+    """Draw a person's path relative to the robot, and the distance over time: true, by depth, by legs."""
+    film, figure = legs_run(using), canvas(3.6)
     left, right = figure.subplots(1, 2)
     for name, rows, colour, size in (
         ("true", _counted(film), BLUE, 2.4),
@@ -312,14 +347,21 @@ def _show_maps(row: Sequence[Axes], maps: Sequence[NDArray[np.number] | None], n
         show_image(axes, scores, name, cmap="inferno", interpolation="nearest", vmin=lowest)
 
 
-def draw_maps(films: Mapping[str, Mapping[str, str]]) -> Figure:
-    """Draw a row for each film: the truth, and the depth that each model takes for background."""
-    figure = canvas(1.45 * len(films))
+def scene_maps(using: Measurement) -> Figure | None:
+    """Draw the truth of a sequence of each kind, and what models take for background (figures 3.8 to 3.13).
+
+    None where a plan leaves out all of them.
+    """
+    names = [name for name in using.plan.scenes if name in SHOWN]
+    runs = using.results(Unit.of(watch_scene, name, 0, TOF) for name in names)
+    if not runs:
+        return None
+    figure = canvas(1.45 * len(runs))
     colours = colormaps["viridis_r"].with_extremes(bad="#000000")
-    grid = figure.subplots(len(films), len(_SHOWN), squeeze=False)
-    for row, (title, maps) in zip(grid, films.items(), strict=True):
+    grid = figure.subplots(len(runs), len(_SHOWN), squeeze=False)
+    for row, title, run in zip(grid, names, runs, strict=True):
         for axes, name in zip(row, _SHOWN, strict=True):
-            depth = read_map(maps[name])
+            depth = read_map(run["maps"][name])
             shown = np.ma.masked_equal(depth, 0.0)
             axes.imshow(shown, cmap=colours, vmin=_NEAREST_M, vmax=_FARTHEST_M, interpolation="nearest")
             axes.set_xticks([])

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.studies.reproductions.evaluations.playback import Moment, play
+from peopleboy.studies.reproductions.experiments.playback import Moment, play
 from peopleboy.studies.reproductions.pictures.canvas import (
     BLACK,
     BLUE,

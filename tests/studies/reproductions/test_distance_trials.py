@@ -4,7 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from peopleboy.studies.reproductions.distance_trials import (
+from peopleboy.studies.reproductions.experiments.distance_trials import (
     FILTERS,
     KALMAN,
     MODEL_ALONE,
@@ -19,12 +19,7 @@ from peopleboy.studies.reproductions.distance_trials import (
     predicted_in_turn,
     random_split,
 )
-from peopleboy.studies.reproductions.image_errors import (
-    BLOCKS,
-    ErrorSummary,
-    ImageErrors,
-    pooled,
-)
+from peopleboy.studies.reproductions.image_errors import BLOCKS, ErrorSummary, ImageErrors, pooled
 from peopleboy.studies.training.distance import Backpropagation, DistanceSamples, block_split, walks
 
 QUICK = Backpropagation(epochs=60)
@@ -78,7 +73,7 @@ def test_pooled_errors_are_those_of_all_splits_in_one_heap():
     heaps = [rng.exponential(size=n) for n in (10, 33, 0, 7)]
     every = np.concatenate(heaps)
     together = pooled([ErrorSummary.of(heap) for heap in heaps])
-    assert (together.count, together.mean, together.deviation) == pytest.approx(
+    assert (together.images, together.mean, together.deviation) == pytest.approx(
         (50, every.mean(), every.std())
     )
 
@@ -90,12 +85,12 @@ def test_blocks_and_splits_hold_the_same_errors_and_come_back_from_plain_data():
     ]
     errors = ImageErrors.of(tested, 200)
     by_block, by_split = pooled(errors.blocks), errors.all
-    assert (by_block.count, by_block.mean) == pytest.approx((by_split.count, by_split.mean))
+    assert (by_block.images, by_block.mean) == pytest.approx((by_split.images, by_split.mean))
     in_third = np.concatenate([part[(rows >= 20) & (rows < 30)] for rows, part in tested])
     assert errors.block_means[2] == pytest.approx(in_third.mean())
     assert ImageErrors.of_plain(errors.plain()) == errors
-    assert errors.best().all.mean == min(part.mean() for _, part in tested)
-    assert errors.worst().all.mean == max(part.mean() for _, part in tested)
+    assert errors.only(min).all.mean == min(part.mean() for _, part in tested)
+    assert errors.only(max).all.mean == max(part.mean() for _, part in tested)
 
 
 def test_films_are_put_one_after_the_other_and_people_of_one_film_together():
@@ -103,15 +98,15 @@ def test_films_are_put_one_after_the_other_and_people_of_one_film_together():
     assert ImageErrors.joined([one, other]).films == 2
     assert len(ImageErrors.joined([one, other]).blocks) == 2 * BLOCKS
     both = ImageErrors.merged([one, other])
-    assert [block.count for block in both.blocks[::5]] == [1] * 4
-    assert (both.all.count, both.all.mean) == pytest.approx((4, 0.15))
+    assert [block.images for block in both.blocks[::5]] == [1] * 4
+    assert (both.all.images, both.all.mean) == pytest.approx((4, 0.15))
 
 
 def test_the_general_model_is_tested_in_every_split_and_always_the_same():
     trial = SplitTrial(split="random", repeats=10, settings=QUICK)
     found, again = (general_trials(film(), general_networks(film(), trial)) for _ in range(2))
     assert found == again
-    assert [one.count for one in found.splits] == [280] * 10
+    assert [one.images for one in found.splits] == [280] * 10
 
 
 def test_ones_own_model_is_better_where_people_differ():
@@ -126,7 +121,7 @@ def test_ones_own_model_is_better_where_people_differ():
 
 def test_new_people_are_told_by_a_network_that_saw_others():
     found = new_people_trials([film(seed=1), film(seed=2)], [film(seed=3)], Backpropagation(epochs=400))
-    assert [errors.all.count for errors in found] == [400]
+    assert [errors.all.images for errors in found] == [400]
     assert found[0].all.mean < 0.2
 
 

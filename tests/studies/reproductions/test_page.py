@@ -12,8 +12,8 @@ import pytest
 from docs.generate.sources.source_run import SourceRun
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.studies.reproductions.catalogue import EXPERIMENTS, choose
-from peopleboy.studies.reproductions.evaluations.sequence_scores import RECORDS
 from peopleboy.studies.reproductions.experiment import ExperimentOutcome, Jackknife, Line
+from peopleboy.studies.reproductions.experiments.sequence_scores import RECORDS
 from peopleboy.studies.reproductions.experiments.tracking import count_unit, sequence_units
 from peopleboy.studies.reproductions.plan import full_plan
 from peopleboy.studies.reproductions.runner import print_sections

@@ -168,7 +168,7 @@ def test_the_papers_test_takes_all_images_for_independent(pair: tuple[np.ndarray
 
 def test_the_papers_own_figures_are_significant_only_with_ten_splits_in_one_heap() -> None:
     alone, filtered = (
-        ImageErrors(splits=(ErrorSummary(count=479, mean=mean, deviation=deviation),))
+        ImageErrors(splits=(ErrorSummary(images=479, mean=mean, deviation=deviation),))
         for mean, deviation in ((0.154, 0.094), (0.145, 0.092))
     )
     assert unpaired(alone, filtered).p > 0.1
@@ -187,7 +187,7 @@ def test_an_effect_s_interval_holds_the_true_effect_95_times_in_100() -> None:
 
 
 def test_d_is_in_pooled_deviations_and_its_interval_narrows_with_more_images() -> None:
-    one, other = (ErrorSummary(count=9, mean=mean, deviation=2.0) for mean in (3.0, 2.0))
+    one, other = (ErrorSummary(images=9, mean=mean, deviation=2.0) for mean in (3.0, 2.0))
     d, (low, high) = cohens_d(one, other, 100)
     assert d == pytest.approx(0.5)
     assert (low + high) / 2 == pytest.approx(0.5)

@@ -1,9 +1,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,9 +13,10 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.suite import SuiteRun
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.running.frame_cache import Film, film
-from peopleboy.studies.reproductions.evaluations import sequence_scores
-from peopleboy.studies.reproductions.evaluations.sequence_scores import (
-    CAUSES,
+from peopleboy.sim.random_streams import stream
+from peopleboy.studies.reproductions.experiment import Line, Samples
+from peopleboy.studies.reproductions.experiments import sequence_scores
+from peopleboy.studies.reproductions.experiments.sequence_scores import (
     EVERY,
     FAR,
     FOUND,
@@ -25,22 +27,22 @@ from peopleboy.studies.reproductions.evaluations.sequence_scores import (
     RECORDS,
     STRETCH,
     STRICT,
+    USUAL,
     measure_delay,
     not_yet_found,
     plain_starts,
-    score_sequence,
     track_sequence,
-    truth_by_cause,
+    truth_by_way,
 )
-from peopleboy.studies.reproductions.experiment import Line, Samples
 from peopleboy.studies.reproductions.experiments.tracking import (
     BOXES,
     PEOPLE,
-    causes,
+    RULES,
     count_unit,
     delay,
     restored,
     sequence_unit,
+    tracking,
 )
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.tracker_settings import TrackerSetting
@@ -68,9 +70,9 @@ def test_a_unit_gives_the_same_result_again_and_its_sums_come_back(tmp_path: Pat
     unit = sequence_unit(play, tmp_path, TrackerSetting("contour"), 1)
     one = unit.run()
     assert one == unit.run()
-    restored_paper = restored(PaperMetrics, one["ignore"]["paper"])
-    assert restored_paper.areas.targets == one["ignore"]["counts"]["targets"] > 0
-    assert set(RECORDS) == set(one["absent"])
+    restored_paper = restored(PaperMetrics, one[USUAL]["paper"])
+    assert restored_paper.areas.targets == one[USUAL]["counts"]["targets"] > 0
+    assert set(RECORDS) == set(one[STRICT])
 
 
 CAMERA_X_M = 0.5
@@ -212,7 +214,7 @@ def test_means_are_over_all_starts() -> None:
     done = {count_unit(STANDING, plan.cache).key: Result()}
     for base, needed in (("contour", [3, 3, 3]), ("contour-thermal", [])):
         for repeat in range(2):
-            unit = sequence_unit(STANDING, plan.cache, TrackerSetting(base), repeat, "delay")
+            unit = sequence_unit(STANDING, plan.cache, TrackerSetting(base), repeat, measure_delay)
             done[unit.key] = {"starts": 3, "needed": needed}
     samples = delay(Measurement(plan, done), groups={"dataset1": {"suites": ["dataset1"]}}, trackers=trackers)
     values = samples[Line("dataset1", "late")]
@@ -247,14 +249,19 @@ def found_at(truth: TrueBoxes) -> TrackBoxes:
 def test_each_way_sets_aside_what_its_name_says() -> None:
     truth = truth_of([1, 2])
     distance_m, found = np.tile(DISTANCE_M, 2), found_at(truth)
-    ways = truth_by_cause(truth, distance_m, found)
-    assert tuple(ways) == CAUSES
+    ways = truth_by_way(truth, distance_m, found)
     precisions = {way: evaluate(one, found, frames=2).paper.ocp for way, one in ways.items()}
     assert precisions[STRICT] == pytest.approx(100 * 2 / 5)
     assert precisions[NEAR] == pytest.approx(100 * 2 / 4)
     assert precisions[FAR] == pytest.approx(100 * 2 / 3)
-    assert precisions[RANGE] == precisions[""] == precisions[HALF] == 100.0
-    assert {way: int(one.counted.sum()) for way, one in ways.items()} == dict.fromkeys(CAUSES, 4) | {HALF: 2}
+    assert precisions[RANGE] == precisions[USUAL] == precisions[HALF] == 100.0
+    assert {way: int(one.counted.sum()) for way, one in ways.items()} == dict.fromkeys(ways, 4) | {HALF: 2}
+
+
+def test_every_way_to_count_that_is_declared_is_scored() -> None:
+    truth = truth_of([1])
+    ways = truth_by_way(truth, np.array(DISTANCE_M), found_at(truth))
+    assert {way for rules in RULES.values() for way in rules} == set(ways)
 
 
 def test_who_comes_anew_has_yet_to_be_found() -> None:
@@ -268,22 +275,25 @@ def test_who_comes_anew_has_yet_to_be_found() -> None:
     later = replace(truth, frame=np.where(truth.frame > 4, truth.frame + 1, truth.frame))
     assert later.frame[not_yet_found(later, found) & is_second].tolist() == [1, 2, 5 + STRETCH, 6 + STRETCH]
     assert not not_yet_found(truth, found)[~truth.counted].any()
-    assert truth_by_cause(truth, np.tile(DISTANCE_M, 6), found)[FOUND].counted.sum() == 4
+    assert truth_by_way(truth, np.tile(DISTANCE_M, 6), found)[FOUND].counted.sum() == 4
 
 
 @pytest.mark.slow
-def test_usual_and_strict_figures_are_those_of_the_other_parts(tmp_path: Path) -> None:
+def test_usual_and_strict_figures_are_those_of_the_evaluation(tmp_path: Path) -> None:
     setting, plan = (
         TrackerSetting("contour"),
         Plan(cache=tmp_path, suites={"dataset1": (PASSING,)}, repeats=1),
     )
     declared = {"trackers": {"default": "contour"}, "groups": {"one person": {"suites": ["dataset1"]}}}
-    samples, done = measured(partial(causes, **declared), plan)
-    found = done[sequence_unit(PASSING, tmp_path, setting, 0, "causes").key]
-    usual = score_sequence(PASSING, tmp_path, setting, 0)
-    for way, rule in (("", "ignore"), (STRICT, "absent"), (HALF, "half in view")):
-        assert {name: found[way][name] for name in ("paper", "thesis")} == {
-            name: usual[rule][name] for name in ("paper", "thesis")
-        }
+    measure = partial(tracking, metrics=[BOXES, PEOPLE], rules="causes", **declared)
+    samples, done = measured(measure, plan)
+    found = done[sequence_unit(PASSING, tmp_path, setting, 0).key]
+    shot = film(PASSING.scenario, PASSING.seed, tmp_path)
+    tracks, _ = track_sequence(shot, setting.make(stream(0, "reproduce.tracker")))
+    for way, rule, visible in ((USUAL, "ignore", 0.0), (STRICT, "absent", 0.0), (HALF, "ignore", 0.5)):
+        rules: dict[str, Any] = {"uncounted": rule, "min_visible": visible}
+        scores = evaluate(shot.truth(), tracks, frames=shot.frames, **rules)
+        assert found[way]["paper"] == asdict(scores.paper)
+        assert found[way]["thesis"] == asdict(scores.thesis)
     assert np.asarray(samples[Line("one person", f"default, {STRICT}")][BOXES]).tolist() == [0.0]
     assert 0.0 < np.asarray(samples[Line("one person", f"default, {FOUND}")][PEOPLE])[0] < 100.0

@@ -6,9 +6,8 @@ import pytest
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.running.engine.task import Workers
-from peopleboy.studies.reproductions.experiments.learning import learn_pairs
-from peopleboy.studies.reproductions.occlusion_splits import (
-    learn_split,
+from peopleboy.studies.reproductions.experiments.learning import (
+    learn_pairs,
     random_split,
     split_by_scenario,
 )
@@ -83,8 +82,8 @@ def test_however_uneven_scenarios_are_one_is_left_to_test_with():
 def test_a_feature_that_tells_nothing_is_right_in_half_of_all_answers():
     given = examples(60, 0)
     given = replace(given, features=given.features * [1, 1, 1, 1, 0, 1])
-    found = learn_split(given, ("colour_o",), 1, 4, np.random.default_rng(0))
-    assert (found.held_out, found.unseen, found.table.classifiers) == (50.0, 50.0, ())
+    found = learn_pairs(("colour_o",), 1, 4, 0, given)
+    assert found == {"held out": 50.0, "unseen scenarios": 50.0, "best": []}
 
 
 def test_as_many_examples_are_positive_as_negative():

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from peopleboy.studies.reproductions.evaluations.leg_tracker import LegTracker, find_people
+from peopleboy.studies.reproductions.experiments.leg_tracker import LegTracker, find_people
 from peopleboy.tracker.frame import Floats, Odometry
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from itertools import combinations
 from typing import Any, Final
 
@@ -274,7 +274,7 @@ def _between(one_rad: Floats, other_rad: Floats) -> Floats:
     return np.asarray(np.degrees(np.abs(np.angle(np.exp(1j * (one_rad - other_rad))))), np.float64)
 
 
-def _summary(seen_rad: Floats, places_m: Floats, robot_m: Floats) -> dict[str, float]:
+def _summary(seen_rad: Floats, places_m: Floats, robot_m: Floats) -> ErrorSummary:
     """Sum up [deg] where both the panorama and the other measurement tell a bearing."""
     off = _between(seen_rad, _bearing(places_m, robot_m))
-    return asdict(ErrorSummary.of(off[np.isfinite(off)]))
+    return ErrorSummary.of(off[np.isfinite(off)])

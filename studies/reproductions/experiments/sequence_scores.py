@@ -1,7 +1,4 @@
-"""What a tracker does on one sequence of a data set: its metrics, its delay, and the causes of its errors.
-
-Each function is the work of a unit: it gives plain data.
-"""
+"""What a tracker does on one sequence of a data set, as plain data: its metrics and its delay."""
 
 from __future__ import annotations
 
@@ -10,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import asdict, replace
 from itertools import islice
 from pathlib import Path
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,20 +20,8 @@ from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import COUNTED_FARTHEST_M, COUNTED_NEAREST_M
 from peopleboy.studies.reproductions.tracker_settings import TrackerSetting
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.evaluation.area_metrics import (
-    PaperMetrics,
-    ThesisMetrics,
-    measure_paper,
-    measure_thesis,
-)
-from peopleboy.tracker.evaluation.box_matching import (
-    GATE,
-    Rule,
-    associate,
-    counts,
-    ignore_uncounted,
-    pair_up,
-)
+from peopleboy.tracker.evaluation.area_metrics import PaperMetrics, ThesisMetrics
+from peopleboy.tracker.evaluation.box_matching import GATE, associate, counts, pair_up
 from peopleboy.tracker.evaluation.evaluate import Counts, evaluate
 from peopleboy.tracker.evaluation.mot_metrics import Sums
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
@@ -46,26 +31,22 @@ from peopleboy.tracker.trackers import Tracker
 
 Flags = NDArray[np.bool_]
 
-Count = Literal["ignore", "absent", "own range", "half in view"]
-"""Ways to deal with people whom the sources do not count.
-
-The first two are rules of the evaluation. "own range": they are absent, and so are tracks that the tracker
-itself places where they are. "half in view": people less than half in view are ignored, too.
-"""
 RECORDS: dict[str, type[Sums]] = {"counts": Counts, "thesis": ThesisMetrics, "paper": PaperMetrics}
 
 PATIENCE: Final = 30  # frames after which a tracker has not found the person
 EVERY: Final = 15  # frames between two starts
 PLAIN: Final = 0.9  # visible fraction from which a person is in plain view
 
-STRICT, NEAR, FAR, RANGE = "strict", "strict, near aside", "strict, far aside", "strict, near and far aside"
-HALF, FOUND = "half in view", "once found"
-CAUSES: Final = ("", STRICT, NEAR, FAR, RANGE, HALF, FOUND)
-"""Ways to count with one cause of errors set aside; "" is the usual one.
+USUAL, STRICT, OWN_RANGE, HALF = "usual", "strict", "strict, own range", "half in view"
+NEAR, FAR, RANGE = "strict, near aside", "strict, far aside", "strict, near and far aside"
+FOUND: Final = "once found"
+"""Ways to deal with people whom the sources do not count, and with causes of errors.
 
-Strictly, people who are not counted or wholly hidden are not there. "near aside" sets aside boxes on people
-nearer than the sources count, "far aside" on those farther, by the truth's distance. "half in view" sets
-aside people less than half in view, and boxes on them; "once found" people until they are first found.
+Usually a box on somebody who is not counted is neither right nor wrong. Strictly, people who are not counted
+or wholly hidden are not there. "own range": nor are tracks that the tracker itself places where they are.
+"near aside" sets aside boxes on people nearer than the sources count, "far aside" on those farther, by the
+truth's distance. "half in view" sets aside people less than half in view, and boxes on them; "once found"
+people until they are first found.
 """
 STRETCH: Final = 15  # frames without a person after which it is a new one, who has yet to be found
 
@@ -79,20 +60,44 @@ def count_sequence(run: SuiteRun, cache: Path) -> Result:
 
 
 def score_sequence(run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: int) -> Result:
-    """Track a sequence with the repeat's random stream, and score all ways to deal with uncounted people."""
+    """Track a sequence with the repeat's random stream, and score it by each way to count."""
     shot = film(run.scenario, run.seed, cache)
     found, is_in_range = track_sequence(shot, setting.make(stream(repeat, "reproduce.tracker")))
-    ways: dict[Count, tuple[TrackBoxes, Rule, float]] = {
-        "ignore": (found, "ignore", 0.0),
-        "absent": (found, "absent", 0.0),
-        "own range": (found.take(is_in_range), "absent", 0.0),
-        "half in view": (found, "ignore", 0.5),
-    }
+    people, truth = shot.people(), shot.truth()
+    rows = zip(*(people[name].to_pylist() for name in ("frame", "id", "distance_m")), strict=True)
+    known = {(frame, person): distance for frame, person, distance in rows}
+    keys = zip(truth.frame.tolist(), truth.id.tolist(), strict=True)
     result: Result = {"frames": shot.frames}
-    for name, (tracks, rule, visible) in ways.items():
-        scores = evaluate(shot.truth(), tracks, frames=shot.frames, uncounted=rule, min_visible=visible)
-        result[name] = {record: asdict(getattr(scores, record)) for record in RECORDS}
+    for way, people_there in truth_by_way(truth, np.array([known[key] for key in keys]), found).items():
+        tracks = found.take(is_in_range) if way == OWN_RANGE else found
+        scores = evaluate(people_there, tracks, frames=shot.frames)
+        result[way] = {record: asdict(getattr(scores, record)) for record in RECORDS}
     return result
+
+
+def truth_by_way(
+    truth: TrueBoxes, distance_m: NDArray[np.float64], found: TrackBoxes
+) -> dict[str, TrueBoxes]:
+    """Return the truth for each way to count: rows left out are not there, uncounted rows are set aside.
+
+    Args:
+        truth: of a sequence.
+        distance_m: (N,) of each of its rows from the camera on the floor.
+        found: what a tracker found there.
+    """
+    is_target = counts(truth.counted, truth.visible)
+    usual = replace(truth, counted=is_target)
+    is_near, is_far = distance_m < COUNTED_NEAREST_M, distance_m > COUNTED_FARTHEST_M
+    return {
+        USUAL: usual,
+        STRICT: usual.take(is_target),
+        OWN_RANGE: usual.take(is_target),
+        NEAR: usual.take(is_target | is_near),
+        FAR: usual.take(is_target | is_far),
+        RANGE: usual.take(is_target | is_near | is_far),
+        HALF: replace(truth, counted=counts(truth.counted, truth.visible, 0.5)),
+        FOUND: replace(truth, counted=is_target & ~not_yet_found(usual, found)),
+    }
 
 
 def track_sequence(shot: Film, tracker: Tracker) -> tuple[TrackBoxes, Flags]:
@@ -156,43 +161,6 @@ def plain_starts(truth: TrueBoxes) -> Iterator[int]:
             following = start + EVERY
 
 
-def score_causes(run: SuiteRun, cache: Path, setting: TrackerSetting, repeat: int) -> Result:
-    """Track a sequence as `score_sequence` does, and score it with each cause of errors set aside."""
-    shot = film(run.scenario, run.seed, cache)
-    found, _ = track_sequence(shot, setting.make(stream(repeat, "reproduce.tracker")))
-    people, truth = shot.people(), shot.truth()
-    rows = zip(*(people[name].to_pylist() for name in ("frame", "id", "distance_m")), strict=True)
-    known = {(frame, person): distance for frame, person, distance in rows}
-    keys = zip(truth.frame.tolist(), truth.id.tolist(), strict=True)
-    ways = truth_by_cause(truth, np.array([known[key] for key in keys]), found)
-    return {way: _scored(one, found) for way, one in ways.items()}
-
-
-def truth_by_cause(
-    truth: TrueBoxes, distance_m: NDArray[np.float64], found: TrackBoxes
-) -> dict[str, TrueBoxes]:
-    """Return the truth for each of `CAUSES`: rows left out are not there, uncounted rows are set aside.
-
-    Args:
-        truth: of a sequence.
-        distance_m: (N,) of each of its rows from the camera on the floor.
-        found: what a tracker found there.
-    """
-    is_target = counts(truth.counted, truth.visible)
-    usual = replace(truth, counted=is_target)
-    is_near = distance_m < COUNTED_NEAREST_M
-    is_far = distance_m > COUNTED_FARTHEST_M
-    return {
-        "": usual,
-        STRICT: usual.take(is_target),
-        NEAR: usual.take(is_target | is_near),
-        FAR: usual.take(is_target | is_far),
-        RANGE: usual.take(is_target | is_near | is_far),
-        HALF: replace(truth, counted=counts(truth.counted, truth.visible, 0.5)),
-        FOUND: replace(truth, counted=is_target & ~not_yet_found(usual, found)),
-    }
-
-
 def not_yet_found(truth: TrueBoxes, found: TrackBoxes) -> Flags:
     """Return which rows (N,) are of counted people who have come into view and have not been found since."""
     targets = truth.take(truth.counted)
@@ -209,14 +177,3 @@ def not_yet_found(truth: TrueBoxes, found: TrackBoxes) -> Flags:
     early = np.zeros(len(truth), dtype=np.bool_)
     early[np.flatnonzero(truth.counted)] = is_early
     return early
-
-
-def _scored(truth: TrueBoxes, found: TrackBoxes) -> Result:
-    judged = ignore_uncounted(truth, found)
-    pairs = pair_up(judged.truth, judged.tracks)
-    return {
-        "paper": asdict(measure_paper(judged.truth, judged.tracks, pairs)),
-        "thesis": asdict(measure_thesis(judged.truth, judged.tracks, pairs, associate(pairs))),
-        "boxes": len(judged.tracks),
-        "people": len(judged.truth),
-    }

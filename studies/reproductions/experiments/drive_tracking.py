@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any, Final
@@ -11,16 +11,18 @@ import numpy as np
 
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.sim.random_streams import stream
-from peopleboy.studies.reproductions.evaluations.drive_scores import (
+from peopleboy.studies.reproductions.experiments.drive_scores import (
     RADIUS_M,
     DriveScore,
     FloorPerson,
     associate,
     people_on_floor,
 )
-from peopleboy.studies.reproductions.evaluations.leg_tracker import CAMERAS, LegTracker, scan
-from peopleboy.studies.reproductions.evaluations.playback import Moment, Stopwatch, play
+from peopleboy.studies.reproductions.experiments.leg_tracker import CAMERAS, LegTracker, scan
+from peopleboy.studies.reproductions.experiments.playback import Moment, Stopwatch, play
+from peopleboy.studies.reproductions.plan import shortened
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Floats
 from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.rgbd.pre_detection import PRINTED_SIZE
@@ -165,17 +167,27 @@ class DriveTracking:
         self._false += sum(_is_false(place, people) for place in places)
 
 
-def watch_drive(scenario: Scenario, seed: int, names: Iterable[str]) -> dict[str, Any]:
+def watch_drive(scenario: str, seed: int, names: Sequence[str], scale: float, most_s: float) -> Result:
     """Play a drive once, and let trackers see it.
+
+    Args:
+        scenario: its name.
+        seed: of the run.
+        names: of `CHOICES`.
+        scale: of the depth's noise.
+        most_s: length [s] at which it is cut.
 
     Returns:
         Plain data: what each tracker did, by its name; "truth", rows of frame, person, place forward and left
         of the robot [m], distance [m], hidden share, whether it counts, and "robot", its pose by frame.
     """
+    played = shortened(scenario, most_s)
+    if scale != 1.0:
+        played = played.with_cameras({DEPTH: {"kind": DEPTH, "scale": scale}})
     trackings = {name: DriveTracking(name) for name in names}
     truth: list[tuple[float, ...]] = []
     robot: list[tuple[float, ...]] = []
-    for moment, people in play_drive(scenario, seed):
+    for moment, people in play_drive(played, seed):
         for tracking in trackings.values():
             tracking.update(moment, people)
         truth += [_truth_row(moment.number, person) for person in people]
@@ -184,8 +196,8 @@ def watch_drive(scenario: Scenario, seed: int, names: Iterable[str]) -> dict[str
     return {name: one.plain() for name, one in trackings.items()} | {"truth": truth, "robot": robot}
 
 
-def watch_legs(scenario: Scenario, seed: int) -> dict[str, Any]:
-    """Follow one person by legs and by depth and colour at the same time (SA 4.7.7).
+def watch_legs(scenario: str, most_s: float) -> Result:
+    """Follow the person of a drive, cut where it is longer [s], by legs and by depth and colour (SA 4.7.7).
 
     Returns:
         Plain data: "truth" as of `watch_drive`, and "depth" and "legs", rows of frame, track, place forward
@@ -194,7 +206,7 @@ def watch_legs(scenario: Scenario, seed: int) -> dict[str, Any]:
     tracking, legs = DriveTracking(DEFAULT), LegTracker()
     truth: list[tuple[float, ...]] = []
     rows: list[tuple[float, ...]] = []
-    for moment, people in play_drive(scenario.with_cameras(CAMERAS), seed):
+    for moment, people in play_drive(shortened(scenario, most_s).with_cameras(CAMERAS), 0):
         tracking.update(moment, people)
         found = legs.update(scan(moment.observation), moment.frame.odometry)
         rows += [_row(moment.number, one.id, one.place_m) for one in found]

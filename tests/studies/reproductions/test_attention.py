@@ -2,8 +2,7 @@
 
 import pytest
 
-from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.studies.reproductions.evaluations.attention_focus import (
+from peopleboy.studies.reproductions.experiments.attention import (
     CHOICES,
     DEFAULT,
     PRINTED_NAME,
@@ -47,7 +46,7 @@ def test_ways_to_look_begin_as_printed_and_end_with_the_default():
 
 @pytest.mark.slow
 def test_people_of_a_short_film_are_looked_for_and_the_default_finds_most():
-    found = watch_focus(load_scenario("crossing_3").lasting(4.0), 100, [PRINTED_NAME, DEFAULT])
+    found = watch_focus("crossing_3", 100, [PRINTED_NAME, DEFAULT], 4.0)
     rows = found[DEFAULT]
     assert set(rows) == {"1", "2", "3"}
     right, *others = (sum(row[k] for row in rows.values()) for k in range(3))
@@ -57,7 +56,7 @@ def test_people_of_a_short_film_are_looked_for_and_the_default_finds_most():
 @pytest.mark.heavy
 @pytest.mark.parametrize("name", ["attentive"])
 def test_a_tracker_that_knows_people_again_takes_nobody_else_for_them(name):
-    found = watch_absence(load_scenario("absence_10s"), 100, [name])[name]
+    found = watch_absence("absence_10s", 100, [name])[name]
     assert found["accepted"] == 0
     assert found["late_s"] is not None
     assert found["late_s"] < 1.5

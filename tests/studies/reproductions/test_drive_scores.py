@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from peopleboy.studies.reproductions.evaluations.drive_scores import (
+from peopleboy.studies.reproductions.experiments.drive_scores import (
     DriveRecord,
     DriveScore,
     FloorPerson,

@@ -1,22 +1,30 @@
-"""Attention: whether its focus is on the person that it learned, and whether that person is known again."""
+"""Attention: whether its focus is on the person that it learned, and whether that person is recognised again.
+
+Source: thesis on situation awareness, chapters 5 and 6.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop, make_frame
 from peopleboy.scenarios.loop.tracker_by_name import OracleTracker, make_named_tracker
+from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth, Truth
-from peopleboy.studies.reproductions.evaluations.playback import Moment, play
+from peopleboy.studies.reproductions.experiment import Floats, Line, Samples, as_columns, ratio
+from peopleboy.studies.reproductions.experiments.playback import Moment, play
+from peopleboy.studies.reproductions.plan import shortened
+from peopleboy.studies.reproductions.units import Measurement, Unit
 from peopleboy.tracker.attention.attend import Focus, PersonModel, learn, middle_of, search
 from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfig
 from peopleboy.tracker.attention.image_sums import ImageSums
@@ -75,10 +83,111 @@ GONE: Final = 0.3  # and below which away
 OVERLAP: Final = 0.3  # IoU from which on a track is on a person
 LEAST_VISIBLE: Final = 0.1  # share of a person on whom a track can be
 
+FOCUS_SCENARIOS: Final = ("crossing_3", "same_uniform", "crowd_8", "follow_passers_by")
+FOCUS_SETS: Final = {"A": ("follow_passers_by",), "B": ("same_uniform", "crowd_8")}
+"""Scenarios for the thesis's sets: a person who leads the robot past others; people dressed alike."""
+TRACKERS: Final = ("contour", "attentive-printed", "attentive")
+FOLLOWERS: Final = ("attentive", "contour")
+ABSENCES: Final = ("absence_10s", "absence_60s")
+FOLLOWED: Final = "follow_absence"
+IN_TIME_S: Final = 1.0
+
 AWAY_S: Final = 8.0
 """A person is away who is not followed for longer than this."""
 LEFT_S: Final = 30.0
 """An absence that the run's end cuts off sooner is not counted: how it would have ended is unknown."""
+
+
+def focus(using: Measurement) -> Samples:
+    """Measure how often the focus is on the learned person, a video being one person of one run (5.1)."""
+    found = _focused(using)
+    return {
+        Line(group, name): as_columns(
+            [_focus_shares(_counts([run for scenario in scenarios for run in found[scenario]], name))]
+        )
+        for group, scenarios in FOCUS_SETS.items()
+        for name in (PRINTED_NAME, MATCHING, DEFAULT)
+    }
+
+
+def _focus_shares(videos: Floats) -> dict[str, float]:
+    """Return shares of all images together, and means of videos (V, 3), also with the second best place."""
+    right, second, whole = videos[:, RIGHT], videos[:, : SECOND + 1].sum(axis=1), videos.sum(axis=1)
+    return {
+        "pooled": right.sum() / whole.sum(),
+        "per video": float(np.mean(right / whole)),
+        "pooled, first two": second.sum() / whole.sum(),
+        "per video, first two": float(np.mean(second / whole)),
+        "images": whole.sum(),
+    }
+
+
+def focus_variants(using: Measurement) -> Samples:
+    """Measure the share of right focus with each reading of chapter 5, by scenario, one value a seed."""
+    return {
+        Line(name, "measured"): {
+            scenario: np.array([_share_right(_counts([run], name)) for run in runs])
+            for scenario, runs in _focused(using).items()
+        }
+        for name in CHOICES
+    }
+
+
+def _share_right(people: Floats) -> float:
+    return ratio(people[:, RIGHT].sum(), people.sum())
+
+
+def _focused(using: Measurement) -> dict[str, list[Result]]:
+    """Return the runs of each scenario, in which all variants of attention look for its people."""
+    plan = using.plan
+    return using.played(watch_focus, FOCUS_SCENARIOS, plan.drives, tuple(CHOICES), plan.drive_s)
+
+
+def _counts(runs: Iterable[Result], name: str) -> Floats:
+    """Return what a variant's focus was on, (V, 3), for each person of each run."""
+    return np.array([row for run in runs for row in run[name].values()], dtype=np.float64).reshape(-1, 3)
+
+
+def absences(using: Measurement) -> Samples:
+    """Measure who is recognised after an absence, and who is taken for that person meanwhile, by seed."""
+    scenarios = ABSENCES[:1] if using.plan.is_quick else ABSENCES
+    found = using.played(watch_absence, scenarios, using.plan.absences, TRACKERS)
+    return {
+        Line(scenario, name): _recognised([run[name] for run in runs])
+        for scenario, runs in found.items()
+        for name in TRACKERS
+    }
+
+
+def _recognised(runs: Sequence[Mapping[str, float | None]]) -> dict[str, Floats]:
+    columns = {key: np.array([one[key] for one in runs], np.float64) for key in runs[0]}  # None becomes NaN
+    late, away = columns["late_s"], columns["away"]
+    return {
+        "right in time": (late <= IN_TIME_S).astype(np.float64),
+        "right at all": np.isfinite(late).astype(np.float64),
+        "found in time": (columns["found_s"] <= IN_TIME_S).astype(np.float64),
+        "late [s]": late,
+        "accepted while away": np.array(list(map(ratio, columns["accepted"], away))),
+    }
+
+
+def followers(using: Measurement) -> Samples:
+    """Measure whether a robot goes on with the person who was away, by seed."""
+    seeds = range(using.plan.follows)
+    found = using.grouped(
+        {name: [Unit.of(watch_follower, FOLLOWED, seed, name) for seed in seeds] for name in FOLLOWERS}
+    )
+    return {
+        Line(FOLLOWED, name): as_columns(
+            {
+                "resumed": ratio(one["resumed"], one["absences"]),
+                "right": one["right"] / one["images"],
+                "wrong": one["wrong"] / one["images"],
+            }
+            for one in runs
+        )
+        for name, runs in found.items()
+    }
 
 
 def play_focus(scenario: Scenario, seed: int, every: int = EVERY) -> Iterator[Moment]:
@@ -104,8 +213,8 @@ def wanted(scenario: Scenario, truth: Truth) -> list[PersonTruth]:
     return [person for person in truth.people if not is_led or person.id == 1]
 
 
-def watch_focus(scenario: Scenario, seed: int, names: Sequence[str]) -> dict[str, Any]:
-    """Play a clip once, and search for everybody in it by several kinds of attention.
+def watch_focus(scenario: str, seed: int, names: Sequence[str], most_s: float) -> Result:
+    """Play a clip, cut where it is longer [s], once, and search for everybody in it by kinds of attention.
 
     A person is learned from the box in the first image that shows most of it, and not again.
 
@@ -115,8 +224,9 @@ def watch_focus(scenario: Scenario, seed: int, names: Sequence[str]) -> dict[str
     """
     counts: dict[str, dict[str, list[int]]] = {name: {} for name in names}
     learned: dict[str, dict[int, PersonModel]] = {name: {} for name in names}
-    for moment in play_focus(scenario, seed):
-        people = wanted(scenario, moment.truth)
+    played = shortened(scenario, most_s)
+    for moment in play_focus(played, seed):
+        people = wanted(played, moment.truth)
         for name in names:
             _search(moment, people, CHOICES[name], learned[name], counts[name])
     return counts
@@ -166,7 +276,7 @@ def _is_on(box: Box, person: PersonTruth, truth: Truth) -> bool:
     return 0 <= v < height and 0 <= u < width and int(truth.instance[v, u]) == person.id
 
 
-def watch_absence(scenario: Scenario, seed: int, names: Sequence[str]) -> dict[str, Any]:
+def watch_absence(scenario: str, seed: int, names: Sequence[str]) -> Result:
     """Play a clip in which the first person goes away and comes back, and let trackers see it.
 
     Returns:
@@ -177,14 +287,14 @@ def watch_absence(scenario: Scenario, seed: int, names: Sequence[str]) -> dict[s
     trackers = {name: make_tracker(name, stream(seed, "tracker")) for name in names}
     tracked: dict[str, list[dict[int, str]]] = {name: [] for name in names}
     visible: list[float] = []
-    leader = ""
-    for one in play(scenario, seed, THERMAL, images=(THERMAL, COLOUR)):
+    leader, played = "", load_scenario(scenario)
+    for one in play(played, seed, THERMAL, images=(THERMAL, COLOUR)):
         people = one.truth.people
         leader = leader or people[0].name
         visible.append(max((each.visible_fraction for each in people if each.name == leader), default=0.0))
         for name, tracker in trackers.items():
             tracked[name].append(people_of_tracks(tracker.update(one.frame), one.truth))
-    rate_hz = len(visible) / scenario.duration_s
+    rate_hz = len(visible) / played.duration_s
     return {name: score_absence(rows, visible, leader, rate_hz) for name, rows in tracked.items()}
 
 
@@ -232,7 +342,7 @@ def longest_gap(visible: Sequence[float]) -> tuple[int, int]:
     return gone + 1, back
 
 
-def watch_follower(scenario: Scenario, seed: int, name: str) -> dict[str, Any]:
+def watch_follower(scenario: str, seed: int, name: str) -> Result:
     """Let a robot follow the first person of a scenario, who goes away and comes back, with a tracker.
 
     Returns:
@@ -244,14 +354,14 @@ def watch_follower(scenario: Scenario, seed: int, name: str) -> dict[str, Any]:
 
     world: World  # the tracker looks at it only once it is built
     tracker = make_named_tracker(name, seed, lambda: world.truth())
-    scenario = scenario.mounting(tracker.cameras)
-    config = scenario.world(seed)
+    played = load_scenario(scenario).mounting(tracker.cameras)
+    config = played.world(seed)
     leader = config.people[0].name
     with World(config) as world:
-        frames = round(scenario.duration_s * config.control_hz)
+        frames = round(played.duration_s * config.control_hz)
         followed = [
             None if tick.following is None else people_of_tracks(tick.tracks, tick.truth).get(tick.following)
-            for tick in closed_loop(world, tracker, scenario.make_behaviour(), frames)
+            for tick in closed_loop(world, tracker, played.make_behaviour(), frames)
         ]
     after = resumptions(followed, leader, *(round(s * config.control_hz) for s in (AWAY_S, LEFT_S)))
     return {

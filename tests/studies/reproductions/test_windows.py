@@ -3,8 +3,7 @@ from __future__ import annotations
 import cv2
 import pytest
 
-from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.studies.reproductions.evaluations.sliding_windows import (
+from peopleboy.studies.reproductions.experiments.windows import (
     BY_SIZE,
     FAR_SLIDES,
     NEAR_SLIDES,
@@ -15,7 +14,7 @@ from peopleboy.studies.reproductions.evaluations.sliding_windows import (
 @pytest.mark.thorough
 def test_windows_on_what_has_a_humans_size_are_quicker_and_err_less() -> None:
     threads = cv2.getNumThreads()
-    found = compare_windows([(load_scenario("crossing_2_moving").lasting(1.0), 0)], every=7)
+    found = compare_windows(["crossing_2_moving"], 1.0, every=7)
     assert cv2.getNumThreads() == threads
     assert set(found) == {
         *(how.key for how in (*FAR_SLIDES, *NEAR_SLIDES)),

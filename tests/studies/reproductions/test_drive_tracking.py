@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.studies.reproductions.evaluations.drive_scores import DriveRecord
-from peopleboy.studies.reproductions.evaluations.drive_tracking import (
+from peopleboy.studies.reproductions.experiments.drive_scores import DriveRecord
+from peopleboy.studies.reproductions.experiments.drive_tracking import (
     CHOICES,
     DEFAULT,
     LITERAL,
@@ -22,8 +22,7 @@ from peopleboy.tracker.frame import DEPTH
 
 @pytest.fixture(scope="module")
 def film() -> dict[str, Any]:
-    scenario = load_scenario("follow_at_distance").lasting(1.4)
-    return watch_drive(scenario, 0, (DEFAULT, LITERAL))
+    return watch_drive("follow_at_distance", 0, (DEFAULT, LITERAL), 1.0, 1.4)
 
 
 def test_a_person_in_plain_view_is_found_and_placed(film: dict[str, Any]) -> None:
@@ -68,7 +67,7 @@ def test_noise_can_be_left_out_of_the_depth_and_the_truth_stays() -> None:
 
 
 def test_legs_are_followed_where_the_person_walks() -> None:
-    film = watch_legs(load_scenario("follow_at_distance").lasting(1.4), 0)
+    film = watch_legs("follow_at_distance", 1.4)
     places = {row[0]: np.array(row[2:4]) for row in film["truth"]}
     off = [np.hypot(*(np.array(place) - places[int(frame)])) for frame, _, *place in film["legs"]]
     assert len(off) > 10

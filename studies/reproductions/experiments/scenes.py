@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, Final
 
@@ -13,13 +13,18 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
+from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.finished_runs.run_frames import IMAGES
 from peopleboy.scenarios.finished_runs.true_events import PersonNames, TrueEvent, matching
+from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.events import ThingLog
 from peopleboy.sim.truth.truth import Backgrounds, Truth
-from peopleboy.studies.reproductions.evaluations.playback import Stopwatch, play
+from peopleboy.studies.reproductions.experiment import Line, Row, Samples, as_columns, ratio
+from peopleboy.studies.reproductions.experiments.playback import Stopwatch, play
+from peopleboy.studies.reproductions.plan import PRESETS, SEQUENCES
+from peopleboy.studies.reproductions.units import Measurement, Unit
 from peopleboy.tracker.frame import DEPTH, Frame
 from peopleboy.tracker.scene_model.geometry import Geometry
 from peopleboy.tracker.scene_model.printed.printed_config import VARIANTS
@@ -31,21 +36,13 @@ from peopleboy.tracker.scene_model.scene_model import SceneModel
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float32]
 
-SEQUENCES: Final[Mapping[str, str]] = {
-    **{f"s1r{k}": f"bears_{k}" for k in range(1, 7)},
-    **{f"s2r{k}": f"chairs_{k}" for k in (1, 2)},
-    **{f"s3r{k}": f"tidying_{k}" for k in (1, 2)},
-    **{f"s4r{k}": f"doors_{k}" for k in range(1, 5)},
-    **{f"s5r{k}": f"cans_{k}" for k in (1, 2)},
-    "s6r1": "plants_1",
-}
-"""Scenarios that stand for the sequences of the thesis's chapter 3, by the name of the sequence."""
-
+TOF: Final = PRESETS[0]
+"""The depth camera that all models watch; what others record is watched by those that are worth it."""
 CHAIRS: Final = ("s2r1", "s2r2")
 """Sequences whose thin legs no sensor of these sees well."""
-
-PRESETS: Final = ("tof", "kinect", "kinect_rough")
-"""Depth cameras that record them."""
+SHOWN: Final = ("s1r1", "s2r1", "s3r1", "s4r1", "s5r1", "s6r1")
+"""Sequences of which the backgrounds of seed 0 are kept."""
+ALL: Final = "all"
 
 MEAN, MPIX, TRACK, ADAPT = "MEAN", "MPIX", "TRACK", "ADAPT"
 """As printed."""
@@ -60,6 +57,68 @@ LEAST_M: Final = 0.12
 """[m] before the background from which on an object is to be found."""
 EVER, CLEAN = "ever", "clean"
 _FARTHEST_M: Final = 65.0  # of a map; 16 bits hold 65.5 m in millimetres
+
+
+def static_scenes(using: Measurement) -> Samples:
+    """Measure how far each model's static scene is from the truth, sequence by sequence (table 3.1)."""
+    scenes = using.plan.scenes
+    found = using.played(watch_scene, scenes, using.plan.scene_seeds, TOF)
+    return {
+        Line(group, model): as_columns(
+            {
+                f"{kind} [mm]": _mean([run[model][CLEAN][kind] for run in runs])
+                for kind in ("mean", "deviation")
+            }
+            for runs in zip(*(found[name] for name in names), strict=True)
+        )
+        for group, names in ({name: (name,) for name in scenes} | {ALL: scenes}).items()
+        for model in (*PRINTED, ROBUST)
+    }
+
+
+def scene_models(using: Measurement) -> Samples:
+    """Score background, objects, people and events by depth camera, chairs by themselves."""
+    plan, result = using.plan, {}
+    using.results(
+        Unit.of(watch_scene, name, seed, preset)
+        for preset in plan.presets
+        for name in plan.scenes
+        for seed in range(plan.scene_seeds)
+    )
+    for preset in plan.presets:
+        for is_chair, group in ((False, preset), (True, f"{preset}, chairs")):
+            names = [name for name in plan.scenes if (name in CHAIRS) == is_chair]
+            found = using.played(watch_scene, names, plan.scene_seeds, preset)
+            for model in (ADAPT, *OURS) if names else ():
+                rows = (_scene_scores(runs, model) for runs in zip(*found.values(), strict=True))
+                result[Line(group, model)] = as_columns(rows)
+    return result
+
+
+def _scene_scores(runs: Sequence[Result], model: str) -> Row:
+    """Return a model's scores; what is counted is counted in all runs together."""
+    own = [run[model] for run in runs]
+    events = {name: sum(run["events"][name] for run in own) for name in own[0]["events"]}
+    people, things = (np.sum([run[kind] for run in own], axis=0) for kind in ("people", "things"))
+    precision = ratio(events["right"], events["right"] + events["false"])
+    recall = ratio(events["told"], events["events"])
+    return {
+        "mean [mm]": _mean([run[EVER]["mean"] for run in own]),
+        "median pixel [mm]": _mean([run[EVER]["median"] for run in own]),
+        "known": _mean([run[EVER]["known"] for run in own]),
+        "better than MEAN": _mean([run[model][CLEAN]["mean"] < run[MEAN][CLEAN]["mean"] for run in runs]),
+        "events F1": ratio(2.0 * precision * recall, precision + recall),
+        "moved by": ratio(events["named"], events["asked"]),
+        "things P": ratio(things[0], things[0] + things[1]),
+        "things R": ratio(things[0], things[0] + things[2]),
+        "people P": ratio(people[0], people[0] + people[1]),
+        "people R": ratio(people[0], people[0] + people[2]),
+        "ms": _mean([run["ms"] for run in own]),
+    }
+
+
+def _mean(values: Sequence[float]) -> float:
+    return float(np.mean(values))
 
 
 def make_model(name: str) -> SceneModel | PrintedSceneModel:
@@ -108,24 +167,19 @@ class _Watcher:
         }
 
 
-def watch_scene(
-    scenario: Scenario, seed: int, names: Iterable[str], *, keeps_maps: bool = False
-) -> dict[str, Any]:
-    """Play a scenario once, and let models see it.
-
-    Args:
-        scenario: its robot stands and has a depth camera.
-        seed: of the run.
-        names: of the models.
-        keeps_maps: whether to give the backgrounds, too.
+def watch_scene(sequence: str, seed: int, preset: str) -> Result:
+    """Play one of `SEQUENCES` before a depth camera once, and let models see it.
 
     Returns:
         Plain data by the model's name: errors of its background, against what was ever shown, and against the
-        place without people and objects; pixels, events, and milliseconds.
+        place without people and objects; pixels, events, and milliseconds. With seed 0 of `SHOWN` sequences
+        also "maps", the backgrounds.
 
     Raises:
         BadInput: the scenario has no frames.
     """
+    scenario = with_preset(load_scenario(SEQUENCES[sequence]), preset)
+    names = (*PRINTED, *OURS) if preset == TOF else (MEAN, ADAPT, *OURS)
     watchers = {name: _Watcher(name) for name in names}
     backgrounds, log, events = Backgrounds(), ThingLog(), list[TrueEvent]()
     last = None
@@ -141,6 +195,7 @@ def watch_scene(
     lengths = np.linalg.norm(Geometry.of(last.frame).rays, axis=2)
     true = {EVER: backgrounds.ever, CLEAN: backgrounds.clean}
     found = {name: one.plain(true, lengths, events, last.truth.robot) for name, one in watchers.items()}
+    keeps_maps = preset == TOF and seed == 0 and sequence in SHOWN
     return found | ({"maps": _maps(watchers, true)} if keeps_maps else {})
 
 

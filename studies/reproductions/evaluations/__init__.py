@@ -1,1 +1,0 @@
-"""Recordings and runs played through trackers and models, and scored against the truth."""
