@@ -92,9 +92,8 @@ def tune(
     As in its sections 4.4 to 7.5, each with the tracker of its chapter. Films have seeds from 100 on, which
     no figure is reported on. Leaves a curve of each parameter and a page. A killed call goes on where it was.
     """
-    from peopleboy.studies.reproductions.tune import print_tuned
+    from peopleboy.studies.reproductions.tune import chosen_parameters, print_tuned
     from peopleboy.studies.reproductions.tune import tune as tune_all
-    from peopleboy.studies.reproductions.tuned_parameters import chosen_parameters
 
     shown = given.make(cache=films.resolve())
     page, tuned = tune_all(chosen_parameters(names), shown, out, workers)

@@ -15,6 +15,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.validation import Strict
 from peopleboy.scenarios.running.engine.store import Result
+from peopleboy.studies.reproductions.canvas import png_address
 from peopleboy.studies.reproductions.experiment import Experiment, Texts
 from peopleboy.studies.reproductions.experiments import (
     attention,
@@ -27,7 +28,6 @@ from peopleboy.studies.reproductions.experiments import (
     windows,
 )
 from peopleboy.studies.reproductions.pictures import panoramic_figures, situation_figures, tracking_figures
-from peopleboy.studies.reproductions.pictures.canvas import png_address
 from peopleboy.studies.reproductions.units import Measurement, Unit
 
 SOURCES: Final[Mapping[str, str]] = {

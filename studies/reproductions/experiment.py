@@ -13,8 +13,8 @@ from pydantic import ConfigDict, Field, model_validator
 
 from peopleboy.scenarios.files.validation import Strict
 from peopleboy.scenarios.running.engine.store import Store
+from peopleboy.studies.reproductions.canvas import png_address
 from peopleboy.studies.reproductions.image_errors import ImageErrors
-from peopleboy.studies.reproductions.pictures.canvas import png_address
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.units import Measurement, Unfinished
 

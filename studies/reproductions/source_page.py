@@ -28,8 +28,8 @@ from peopleboy.studies.reproductions.comparison import (
     judge,
 )
 from peopleboy.studies.reproductions.experiment import Claim, Experiment, ExperimentOutcome, Samples
+from peopleboy.studies.reproductions.pictures.plots import draw
 from peopleboy.studies.reproductions.plan import QUICK_S, Plan, full_plan
-from peopleboy.studies.reproductions.plots import draw
 from peopleboy.studies.reproductions.statistics import (
     PAPER,
     PART,
@@ -145,17 +145,9 @@ def write_page(path: Path, sections: Sequence[Section], about: PageHead) -> None
 
 def page_text(sections: Sequence[Section], about: PageHead) -> str:
     """Return the page as HTML."""
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["points"] = points
-    environment.filters["span"] = span
     papers = {paper_of(part.id) for part in sections}
-    return environment.get_template("page.html.jinja").render(
+    return rendered(
+        "page.html.jinja",
         sections=sections,
         about=about,
         general=_notes(),
@@ -165,6 +157,19 @@ def page_text(sections: Sequence[Section], about: PageHead) -> str:
         papers=sorted(papers),
         there={part.id for part in sections},
     )
+
+
+def rendered(template: str, **values: Any) -> str:
+    """Fill in a template of this folder."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {"points": points, "span": span}
+    return environment.get_template(template).render(values)
 
 
 def section(outcome: ExperimentOutcome) -> Section:

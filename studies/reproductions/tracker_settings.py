@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -71,9 +72,18 @@ class TrackerSetting:
             config = changed(config, path, value)
         return config
 
+    def value(self, path: str) -> Any:
+        """Return the setting at a path."""
+        return attrgetter(path)(self.config())
+
     def make(self, rng: np.random.Generator) -> ContourTracker:
         """Make the tracker."""
         return ContourTracker(self.config(), rng)
+
+
+def changes_of(values: Mapping[str, Any]) -> Changes:
+    """Return settings with their values; a list is a tuple there."""
+    return tuple((path, tuple(one) if isinstance(one, list) else one) for path, one in values.items())
 
 
 def changed(record: Any, path: str, value: Value) -> Any:

@@ -6,28 +6,28 @@ import json
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from html import escape
 from pathlib import Path
 from typing import Annotated, Any, Final
 
-import matplotlib
 import numpy as np
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from pydantic import Field
 from rich.console import Console
 from rich.table import Table
 
+from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.suite import SuiteRun
 from peopleboy.scenarios.running.engine.store import Store
 from peopleboy.scenarios.running.engine.task import Workers
+from peopleboy.studies.reproductions.canvas import finish, svg, svg_axes
 from peopleboy.studies.reproductions.experiments.sequence_scores import USUAL
 from peopleboy.studies.reproductions.experiments.tracking import add_sums, count_unit, metric, sequence_unit
-from peopleboy.studies.reproductions.source_page import span
+from peopleboy.studies.reproductions.source_page import HERE, rendered, span
 from peopleboy.studies.reproductions.statistics import ResultDifference, margin, paired
-from peopleboy.studies.reproductions.tuned_parameters import Parameter
+from peopleboy.studies.reproductions.tracker_settings import Changes, TrackerSetting, changes_of
 from peopleboy.studies.reproductions.units import Unit, open_store, run_units
 
 # The reported data sets have seeds below 10: values chosen here must not be fitted to them.
@@ -39,20 +39,68 @@ CRITERION: Final = "AA"
 """Area accuracy, as in the thesis."""
 
 _COLUMNS = ("parameter", "thesis", "printed", "best here", f"{CRITERION}, best less printed (95 %)", "")
-_HEAD = """<!doctype html>
-<html lang="en-GB"><head><meta charset="utf-8"><title>PeopleBoy: parameters of the thesis, tuned</title>
-<style>
-body { margin: 2rem auto; max-width: 60rem; padding: 0 1rem; font: 16px/1.5 system-ui, sans-serif; }
-table { border-collapse: collapse; font-size: .875rem; } th, td { padding: .25rem .6rem; text-align: left; }
-tr { border-bottom: 1px solid #d9dee5; } img { width: 100%; }
-figure { display: inline-block; width: 28rem; max-width: 100%; margin: .5rem 0; }
-</style></head><body>
-<h1>The parameters of the thesis, one at a time</h1>
-"""
-_ABOUT = (
-    "All else is as printed. Dots are means over the films, bars the standard deviations; the line down is "
-    "the printed value. Differences have their 95 % interval over the films, and Cohen's h."
-)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameter:
+    """One of the parameters that the thesis optimised.
+
+    Attributes:
+        name: on the command line.
+        says: what it is.
+        section: of the thesis that gives its value.
+        base: the tracker of that chapter, one of `BASES`.
+        printed: the value there.
+        values: what to change in the tracker for each value; nothing for the printed one.
+    """
+
+    name: str
+    says: str
+    section: str
+    base: str
+    printed: str
+    values: Mapping[str, Changes]
+
+    @property
+    def scenario(self) -> str:
+        """That of the chapter's data set with a standing robot, here with other seeds."""
+        return "passers_by" if self.base == "thesis-single" else "hall_visits"
+
+    def setting(self, value: str) -> TrackerSetting:
+        """Return the tracker with this value."""
+        return TrackerSetting(self.base, self.values[value])
+
+
+def _parameter(name: str, declared: dict[str, Any]) -> Parameter:
+    """Read a declaration; what it `scales` may have another unit here, and stays as it is if printed."""
+    scales, others, printed = (declared.pop(key, ()) for key in ("scales", "others", "printed"))
+    if scales:
+        own = {path: TrackerSetting(declared["base"]).value(path) for path in scales}
+        declared["values"] = {
+            f"{value:g}": {} if value == printed else {path: own[path] * value / printed for path in scales}
+            for value in sorted([printed, *others])
+        }
+        printed = f"{printed:g}"
+    values = {value: changes_of(changes) for value, changes in declared.pop("values").items()}
+    return Parameter(name=name, printed=printed, values=values, **declared)
+
+
+PARAMETERS: Final[Mapping[str, Parameter]] = {
+    name: _parameter(name, declared) for name, declared in read_yaml(HERE / "tuned_parameters.yaml").items()
+}
+"""By name, in the thesis's order."""
+
+
+def chosen_parameters(names: Sequence[str]) -> list[Parameter]:
+    """Find parameters by name; all there are if none is named.
+
+    Raises:
+        BadInput: there is no such parameter.
+    """
+    for name in names:
+        if name not in PARAMETERS:
+            raise BadInput(f"--parameter {name}: must be one of {', '.join(PARAMETERS)}")
+    return [one for name, one in PARAMETERS.items() if not names or name in names]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -168,22 +216,18 @@ def _tuned(parameter: Parameter, films: TrainingFilms, store: Store) -> Tuned:
 def write_tuned_page(out: Path, tuned: Sequence[Tuned], films: str) -> Path:
     """Write NAME.svg for each parameter and a page that shows them."""
     for one in tuned:
-        # Neither date nor creator, and ids by name: the same numbers give the same bytes.
-        with matplotlib.rc_context({"svg.hashsalt": one.parameter.name}):
-            no_date = {"Date": None, "Creator": None}
-            _curve(one).savefig(out / f"{one.parameter.name}.svg", format="svg", metadata=no_date)
-    rows = "".join(_html_row("td", _cells(one)) for one in tuned)
-    pictures = "".join(
-        f'<figure><img src="{one.parameter.name}.svg" alt="{CRITERION} over {escape(one.parameter.name)}">'
-        f"</figure>\n"
-        for one in tuned
-    )
+        name = one.parameter.name
+        (out / f"{name}.svg").write_bytes(svg(_curve(one), name))
     page = out / PAGE
-    page.write_text(
-        f"{_HEAD}<p>{escape(films)} {_ABOUT}</p>\n<table>\n{_html_row('th', _COLUMNS)}{rows}</table>\n"
-        f"{pictures}</body></html>\n",
-        encoding="utf-8",
+    text = rendered(
+        "tuned.html.jinja",
+        films=films,
+        columns=_COLUMNS,
+        rows=[_cells(one) for one in tuned],
+        parameters=[one.parameter.name for one in tuned],
+        criterion=CRITERION,
     )
+    page.write_text(f"{text}\n", encoding="utf-8")
     return page
 
 
@@ -201,15 +245,9 @@ def _cells(one: Tuned) -> tuple[str, ...]:
     return (parameter.name, parameter.section, parameter.printed, one.best, gain, one.verdict)
 
 
-def _html_row(cell: str, cells: Sequence[str]) -> str:
-    return "<tr>" + "".join(f"<{cell}>{escape(text)}</{cell}>" for text in cells) + "</tr>\n"
-
-
 def _curve(one: Tuned) -> Figure:
     """Draw area accuracy over the values, which are at equal distances."""
-    figure = Figure(figsize=(4.5, 2.8), layout="constrained")
-    FigureCanvasSVG(figure)
-    axes = figure.add_subplot()
+    figure, axes = svg_axes(4.5, 2.8)
     values = list(one.accuracy)
     means = [figures.mean() for figures in one.accuracy.values()]
     spreads = [figures.std(ddof=1) if figures.size > 1 else 0.0 for figures in one.accuracy.values()]
@@ -219,7 +257,5 @@ def _curve(one: Tuned) -> Figure:
     axes.set_xlabel(f"{one.parameter.name}: {one.parameter.says}", fontsize=8)
     axes.set_ylabel(f"{CRITERION} [%]", fontsize=8)
     axes.set_ylim(bottom=0.0)
-    axes.tick_params(labelsize=8)
-    axes.grid(axis="y", linewidth=0.4, alpha=0.6)
-    axes.spines[["top", "right"]].set_visible(False)
+    finish(axes)
     return figure

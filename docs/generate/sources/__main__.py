@@ -19,8 +19,8 @@ from docs.generate.sources.source_run import FOLDER, SourceRun
 from peopleboy.scenarios.running.engine.store import Store
 from peopleboy.studies.reproductions.catalogue import choose, of_paper
 from peopleboy.studies.reproductions.experiment import ExperimentOutcome
+from peopleboy.studies.reproductions.pictures.plots import draw
 from peopleboy.studies.reproductions.plan import full_plan
-from peopleboy.studies.reproductions.plots import draw
 from peopleboy.studies.reproductions.runner import RESULTS, finished
 from peopleboy.studies.reproductions.source_page import head_of
 

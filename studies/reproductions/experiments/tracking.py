@@ -16,7 +16,7 @@ from peopleboy.studies.reproductions.experiment import Jackknife, Line, Samples,
 from peopleboy.studies.reproductions.experiments import sequence_scores as scores
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.statistics import PAPER, THESIS
-from peopleboy.studies.reproductions.tracker_settings import Changes, TrackerSetting, Value
+from peopleboy.studies.reproductions.tracker_settings import TrackerSetting, changes_of
 from peopleboy.studies.reproductions.units import Measurement, Unit
 from peopleboy.tracker.evaluation.mot_metrics import Sums
 
@@ -100,19 +100,13 @@ def trials(
         values = own.get("changes") or (
             {} if own else {path: declared + more for path, more in offsets.items()}
         )
-        changes = _changes(values) + (_changes(quick_changes or {}) if is_quick else ())
+        changes = changes_of(values) + (changes_of(quick_changes or {}) if is_quick else ())
         for name, base in (own.get("trackers") or trackers or {}).items():
             tracker = base if isinstance(base, Mapping) else {"base": base}
             seen = tuple(tracker.get("suites") or own.get("suites") or suites)
             for rule in RULES[rules]:
                 line = Line(group, name if rule == scores.USUAL else f"{name}, {rule}")
                 yield TrackerTrial(line, TrackerSetting(tracker["base"], changes), seen, rule)
-
-
-def _changes(values: Mapping[str, Any]) -> Changes:
-    """Return settings with their values; a list is a tuple there."""
-    plain: dict[str, Value] = {path: tuple(v) if isinstance(v, list) else v for path, v in values.items()}
-    return tuple(plain.items())
 
 
 def contents(using: Measurement) -> Samples:

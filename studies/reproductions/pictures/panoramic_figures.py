@@ -18,6 +18,15 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.geometry.panorama import Mirror
 from peopleboy.sim.world_config import WorldConfig
+from peopleboy.studies.reproductions.canvas import (
+    BLACK,
+    BLUE,
+    ORANGE,
+    canvas,
+    label,
+    show_image,
+    single,
+)
 from peopleboy.studies.reproductions.experiments.distance_trials import (
     SplitTrial,
     filtered,
@@ -33,15 +42,6 @@ from peopleboy.studies.reproductions.experiments.webcam_positions import (
     hat_column,
     true_webcams,
     webcam_names,
-)
-from peopleboy.studies.reproductions.pictures.canvas import (
-    BLACK,
-    BLUE,
-    ORANGE,
-    canvas,
-    label,
-    show_image,
-    single,
 )
 from peopleboy.studies.reproductions.units import Measurement
 from peopleboy.studies.training.distance import panoramas

@@ -15,6 +15,18 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.studies.reproductions.canvas import (
+    BLUE,
+    GREEN,
+    ORANGE,
+    PINK,
+    RED,
+    canvas,
+    frame_box,
+    label,
+    show_image,
+    single,
+)
 from peopleboy.studies.reproductions.experiments.attention import can_be_learned, play_focus, wanted
 from peopleboy.studies.reproductions.experiments.drive_scores import hit_rows
 from peopleboy.studies.reproductions.experiments.drive_tracking import (
@@ -37,18 +49,6 @@ from peopleboy.studies.reproductions.experiments.scenes import (
     TRACK,
     read_map,
     watch_scene,
-)
-from peopleboy.studies.reproductions.pictures.canvas import (
-    BLUE,
-    GREEN,
-    ORANGE,
-    PINK,
-    RED,
-    canvas,
-    frame_box,
-    label,
-    show_image,
-    single,
 )
 from peopleboy.studies.reproductions.units import Measurement, Unit
 from peopleboy.tracker.attention.attend import PersonModel, attention_map, learn, search

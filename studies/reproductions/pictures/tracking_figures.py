@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.studies.reproductions.experiments.playback import Moment, play
-from peopleboy.studies.reproductions.pictures.canvas import (
+from peopleboy.studies.reproductions.canvas import (
     BLACK,
     BLUE,
     GREEN,
@@ -27,6 +26,7 @@ from peopleboy.studies.reproductions.pictures.canvas import (
     label,
     single,
 )
+from peopleboy.studies.reproductions.experiments.playback import Moment, play
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
 from peopleboy.tracker.contour.explanation import Ellipse
 from peopleboy.tracker.contour.measurement.likelihood import ContourModel

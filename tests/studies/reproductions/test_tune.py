@@ -8,8 +8,14 @@ import pytest
 
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.studies.reproductions.tracker_settings import BASES
-from peopleboy.studies.reproductions.tune import RESULTS, TrainingFilms, Tuned, tune
-from peopleboy.studies.reproductions.tuned_parameters import PARAMETERS, chosen_parameters
+from peopleboy.studies.reproductions.tune import (
+    PARAMETERS,
+    RESULTS,
+    TrainingFilms,
+    Tuned,
+    chosen_parameters,
+    tune,
+)
 from peopleboy.tracker.contour.measurement.contour import section_weights
 from tests.helpers.calls.command_line import refusal
 from tests.helpers.calls.refused import refused

@@ -1,4 +1,4 @@
-"""What all figures share: a canvas, labels, images and boxes on axes, and a figure as PNG data address."""
+"""What all figures share: a canvas, labels, images and boxes on axes; a figure as SVG or as PNG address."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ import base64
 import io
 from typing import Any
 
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
@@ -88,3 +90,26 @@ def png_address(figure: Figure) -> str:
     kind, plain = Image.Quantize.MEDIANCUT, Image.Dither.NONE
     picture.quantize(COLOURS, kind, kmeans=2, dither=plain).save(few, "PNG", optimize=True)
     return "data:image/png;base64," + base64.b64encode(few.getvalue()).decode()
+
+
+def svg_axes(width_in: float, height_in: float) -> tuple[Figure, Axes]:
+    """Begin a figure with one pair of axes."""
+    figure = Figure(figsize=(width_in, height_in), layout="constrained")
+    FigureCanvasSVG(figure)
+    return figure, figure.add_subplot()
+
+
+def finish(axes: Axes) -> None:
+    """Give axes small labels, and horizontal lines behind what is drawn."""
+    axes.tick_params(labelsize=8)
+    axes.grid(axis="y", linewidth=0.4, alpha=0.6)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def svg(figure: Figure, salt: str) -> bytes:
+    """Return a figure as SVG; parts are named by a salt, so that the same figure gives the same bytes."""
+    buffer = io.BytesIO()
+    with rc_context({"svg.hashsalt": salt}):
+        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
+    return buffer.getvalue()

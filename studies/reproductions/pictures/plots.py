@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import base64
-import io
 from collections.abc import Sequence
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
+from peopleboy.studies.reproductions.canvas import finish, svg, svg_axes
 from peopleboy.studies.reproductions.experiment import SOURCE, Experiment, Samples
 from peopleboy.studies.reproductions.statistics import mean_and_spread
 
@@ -39,9 +38,12 @@ def draw(experiment: Experiment, samples: Samples) -> str | None:
     """Draw an experiment as an SVG data address; None if there is nothing to draw."""
     if experiment.chart == "none":
         return None
-    if experiment.chart == "lines":
-        return _address(_lines(experiment.plotted[0], samples, experiment))
-    return _address(_bars(experiment.plotted, samples, experiment))
+    figure = (
+        _lines(experiment.plotted[0], samples, experiment)
+        if experiment.chart == "lines"
+        else _bars(experiment.plotted, samples, experiment)
+    )
+    return "data:image/svg+xml;base64," + base64.b64encode(svg(figure, "peopleboy")).decode()
 
 
 def _lines(column: str, samples: Samples, experiment: Experiment) -> Figure:
@@ -49,9 +51,9 @@ def _lines(column: str, samples: Samples, experiment: Experiment) -> Figure:
 
     Titles of sweeps say after the comma what is varied.
     """
-    figure, axes = _canvas(6.0)
+    figure, axes = svg_axes(6.0, 3.2)
     groups = list(dict.fromkeys([*(line.group for line in samples), *experiment.printed(column)]))
-    groups.sort(key=_number)
+    groups.sort(key=lambda group: float(group.removesuffix(" %")))
     curves = {method: _ours(samples, column, method) for method in _names(samples)}
     curves[SOURCE] = experiment.printed(column)
     for method, points in curves.items():
@@ -73,7 +75,8 @@ def _lines(column: str, samples: Samples, experiment: Experiment) -> Figure:
     axes.set_xlabel(experiment.title.split(", ", 1)[-1])
     axes.set_ylabel(f"{column} [%]")
     axes.set_ylim(bottom=max(0.0, axes.get_ylim()[0]))
-    _finish(axes)
+    finish(axes)
+    axes.legend(fontsize=8, frameon=False, ncols=4, loc="lower left", bbox_to_anchor=(0.0, 1.0))
     return figure
 
 
@@ -89,7 +92,7 @@ def _bars(columns: Sequence[str], samples: Samples, experiment: Experiment) -> F
         _cluster(axes, clusters, by_column[title] if plots is columns else _of_group(by_column, title))
         axes.set_title(title if len(plots) > 1 else "", fontsize=9, loc="left")
         axes.set_ylabel(columns[0] if "%" in columns[0] else "%")
-        _finish(axes, with_legend=False)
+        finish(axes)
         if number == 0:
             handles, labels = axes.get_legend_handles_labels()
             columns_of_names = 3 if len(labels) > 4 else 4
@@ -155,30 +158,3 @@ def _names(samples: Samples) -> list[str]:
 
 def _colour(method: str, number: int) -> str:
     return COLOURS.get(method, _OTHERS[(number - 1) % len(_OTHERS)])
-
-
-def _number(group: str) -> float:
-    return float(group.removesuffix(" %"))
-
-
-def _canvas(width: float) -> tuple[Figure, Axes]:
-    figure = Figure(figsize=(width, 3.2), layout="constrained")
-    FigureCanvasSVG(figure)
-    return figure, figure.add_subplot()
-
-
-def _finish(axes: Axes, *, with_legend: bool = True) -> None:
-    axes.tick_params(labelsize=8)
-    axes.grid(axis="y", linewidth=0.4, alpha=0.6)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right"]].set_visible(False)
-    if with_legend:
-        axes.legend(fontsize=8, frameon=False, ncols=4, loc="lower left", bbox_to_anchor=(0.0, 1.0))
-
-
-def _address(figure: Figure) -> str:
-    buffer = io.BytesIO()
-    # Neither date nor creator, nor names of parts drawn at random: the same figures give the same bytes.
-    with rc_context({"svg.hashsalt": "peopleboy"}):
-        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
-    return "data:image/svg+xml;base64," + base64.b64encode(buffer.getvalue()).decode()
