@@ -24,8 +24,8 @@ from peopleboy.studies.reproductions.experiments import (
     learning,
     panoramic_room,
     scenes,
+    sliding_windows,
     tracking,
-    windows,
 )
 from peopleboy.studies.reproductions.pictures import panoramic_figures, situation_figures, tracking_figures
 from peopleboy.studies.reproductions.units import Measurement, Unit
@@ -41,7 +41,7 @@ FOLDER: Final = Path(__file__).with_name("sources")
 
 
 _MODULES: Final = (
-    *(tracking, computing_time, learning, panoramic_room, drives, windows, scenes, attention),
+    *(tracking, computing_time, learning, panoramic_room, drives, sliding_windows, scenes, attention),
     *(tracking_figures, panoramic_figures, situation_figures),
 )
 

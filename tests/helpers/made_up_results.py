@@ -17,14 +17,14 @@ from peopleboy.studies.reproductions.experiments.attention import TRACKERS
 from peopleboy.studies.reproductions.experiments.drive_tracking import CHOICES
 from peopleboy.studies.reproductions.experiments.panoramic_room import CUES
 from peopleboy.studies.reproductions.experiments.scenes import CLEAN, OURS, PRINTED
-from peopleboy.studies.reproductions.experiments.tracking import METRICS, TrackerTrial, trials
-from peopleboy.studies.reproductions.experiments.windows import (
+from peopleboy.studies.reproductions.experiments.sliding_windows import (
     BY_SIZE,
     FAR_SLIDES,
     MODELS,
     NEAR_SLIDES,
     PARTS,
 )
+from peopleboy.studies.reproductions.experiments.tracking import METRICS, TrackerTrial, trials
 from peopleboy.studies.reproductions.image_errors import ImageErrors
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.units import Measurement

@@ -3,7 +3,7 @@ from __future__ import annotations
 import cv2
 import pytest
 
-from peopleboy.studies.reproductions.experiments.windows import (
+from peopleboy.studies.reproductions.experiments.sliding_windows import (
     BY_SIZE,
     FAR_SLIDES,
     NEAR_SLIDES,
