@@ -6,7 +6,7 @@ RUN pip wheel --no-cache-dir --no-deps --wheel-dir /wheel /source
 FROM python:3.11-slim
 COPY constraints.txt /
 COPY --from=built /wheel /wheel
-RUN pip install --no-cache-dir --constraint /constraints.txt /wheel/*.whl av rosbags
+RUN pip install --no-cache-dir --constraint /constraints.txt "$(echo /wheel/*.whl)[export,meshes,viewer]"
 # Whoever runs it may be anybody, and own nothing here.
 ENV HOME=/tmp
 # A container that is thrown away would compile each time anew.
