@@ -85,7 +85,7 @@ class FormatName(click.Choice[str]):
 @click.option("--format", "form", type=FormatName(), required=True, help="What to write.")
 @options_of(
     "scenarios.export.export_runs:ExportOptions",
-    *("camera", "least_px", "boxes", "out", "overwrite"),
+    *("camera", "least_px", "boxes", "epoch", "ros_distro", "out", "overwrite"),
     out="Folder to leave.  [default: beside the run, RUN-FORMAT(-CAMERA); of several, export-FORMAT]",
 )
 def export(runs: Sequence[Path], form: str, given: GivenOptions[ExportOptions]) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -52,6 +52,18 @@ class ExportOptions:
             description="What boxes of mot's truth enclose: the torso, or all of a person.  [default: torso]"
         ),
     ] = None
+    epoch: Annotated[
+        str | None,
+        Field(
+            description="When the timestamps of mcap begin: 0, now, or a time such as 2026-05-01T12:00:00Z.  "
+            "[default: 0]"
+        ),
+        Metavar("TIME"),
+    ] = None
+    ros_distro: Annotated[
+        Literal["humble", "jazzy"] | None,
+        Field(description="ROS distribution whose message types mcap has.  [default: jazzy]"),
+    ] = None
     out: Annotated[Path, Field(description="Folder to leave.")]
     overwrite: Annotated[bool, Field(description="Replace an earlier export in the folder.")] = False
 
@@ -77,10 +89,16 @@ def export(runs: Sequence[FinishedRun], options: ExportOptions, play: Play) -> N
     if boxes is not None and not takes(form, "boxes"):
         having = [name for name in FORMATS if takes(name, "boxes")]
         raise BadInput(f"--boxes {boxes}: only {', '.join(having)} has boxes of either; leave it out")
+    for option, value in (("epoch", options.epoch), ("ros_distro", options.ros_distro)):
+        if value is not None and not takes(form, option):
+            raise BadInput(f"--{option.replace('_', '-')} {value}: is for mcap; leave it out")
     about: dict[str, Any] = {"format": form, "runs": [run.name for run in runs], "versions": versions()}
     splits = {split: [run.name for run in own] for split, own in by_split(runs).items() if split}
     about |= {"splits": splits} if splits else {}
-    asked: dict[str, Any] = {"camera": camera, "least_px": least_px, "boxes": boxes}
+    asked: dict[str, Any] = {
+        "camera": camera, "least_px": least_px, "boxes": boxes, "epoch": options.epoch,
+        "ros_distro": options.ros_distro,
+    }  # fmt: skip
     chosen = {name: value for name, value in asked.items() if value is not None}
     with atomic_folder(options.out, about | chosen, overwrite=options.overwrite) as folder:
         FORMATS[form](runs, folder, play, **chosen)

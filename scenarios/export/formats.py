@@ -31,7 +31,7 @@ FORMATS: Final = Registry(
         "yolo": Entry(f"{_HERE}.yolo:write_yolo", "boxes, for Ultralytics"),
         "yolo-pose": Entry(f"{_HERE}.yolo:write_yolo_pose", "boxes and keypoints, for Ultralytics"),
         "viper": Entry(f"{_HERE}.viper:write_viper", "ViPER XML"),
-        "mcap": Entry(f"{_HERE}.ros_bag:write_mcap", "ROS 2 bags"),
+        "mcap": Entry(f"{_HERE}.ros.ros_bag:write_mcap", "ROS 2 bags"),
         "mp4": Entry(f"{_HERE}.video:write_mp4", "films"),
     },
 )

@@ -128,10 +128,10 @@ def test_mcap_has_its_depth_its_colours_and_their_points(run: Path, tmp_path: Pa
             file, decoder_factories=[DecoderFactory()]
         ).iter_decoded_messages():
             found.setdefault(channel.topic, []).append(message)
-    for topic in ("image", "colour/image/compressed", "points", "camera_info"):
+    for topic in ("image_raw", "colour/image_raw/compressed", "points", "camera_info"):
         assert len(found[f"/depth/{topic}"]) == len(DUE), topic
         assert {one.header.frame_id for one in found[f"/depth/{topic}"]} == {"depth_optical"}
-    depth, info, cloud = (found[f"/depth/{topic}"][1] for topic in ("image", "camera_info", "points"))
+    depth, info, cloud = (found[f"/depth/{topic}"][1] for topic in ("image_raw", "camera_info", "points"))
     assert (depth.encoding, depth.step, depth.is_bigendian) == ("16UC1", 322, 0)
     read = np.frombuffer(bytes(depth.data), "<u2").reshape(depth.height, depth.width)
     assert np.array_equal(read, image(run, "depth", DUE[1]))

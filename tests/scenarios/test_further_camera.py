@@ -103,7 +103,7 @@ def test_a_bag_has_its_topics(run: Path, tmp_path: Path) -> None:
     out = export(run, "mcap", tmp_path / "mcap")
     with (out / "behind-0" / "behind-0.mcap").open("rb") as file:
         told = [channel.topic for _, channel, _ in make_reader(file).iter_messages()]
-    for topic in ("/rear/image/compressed", "/rear/camera_info", "/truth/rear/people"):
+    for topic in ("/rear/image_raw/compressed", "/rear/camera_info", "/truth/rear/people"):
         assert told.count(topic) == len(DUE)
 
 

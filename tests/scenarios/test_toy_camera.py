@@ -153,7 +153,7 @@ def test_formats_that_tell_of_all_cameras_tell_of_it(run: Path, tmp_path: Path) 
     assert "intrinsics" not in content["videos"][0]["cameras"]["all"]
     with (export(run, "mcap", tmp_path / "mcap") / "round-0" / "round-0.mcap").open("rb") as file:
         told = [channel.topic for _, channel, _ in make_reader(file).iter_messages()]
-    assert told.count("/all/image/compressed") == told.count("/truth/all/people") == len(DUE)
+    assert told.count("/all/image_raw/compressed") == told.count("/truth/all/people") == len(DUE)
     assert "/all/camera_info" not in told
 
 

@@ -4,8 +4,10 @@ import math
 import subprocess
 import sys
 from collections import defaultdict
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import cv2
 import numpy as np
@@ -20,28 +22,39 @@ from rosbags.highlevel import AnyReader
 from scipy.spatial.transform import Rotation
 
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.scenarios.export.ros_messages import OdometryCovariance, drift
+from peopleboy.scenarios.export.ros.robot_messages import OdometryCovariance, drift
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
+from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.runs.exported import export
 
-TOPICS = {
-    "/thermal/image/compressed", "/colour/image/compressed", "/thermal/camera_info", "/colour/camera_info",
+ULTRASOUND, DELETE_ALL, CYLINDER, TEXT = 0, 3, 3, 9  # of sensor_msgs/Range and visualization_msgs/Marker
+RANGES = {f"/sonar_{k:02d}/range" for k in range(16)}
+MARKERS = {"/tracks/markers", "/truth/markers"}
+ONCE = {"/tf_static", "/robot_description"}
+TOPICS = RANGES | MARKERS | {
+    "/thermal/image_raw/compressed", "/colour/image_raw/compressed", "/thermal/camera_info",
+    "/colour/camera_info",
     "/thermal/image16", "/truth/people", "/truth/colour/people", "/tracks", "/tracks/places", "/sonar",
-    "/odom", "/tf",
+    "/odom", "/tf", "/clock", "/people", "/truth/positions",
 }  # fmt: skip
 
-# SHA-256 of a type and all that it is made of, as ROS 2's own builds have them (REP 2011); that of
-# Detection3DArray follows from the published definitions.
+# SHA-256 of a type and all that it is made of, as ROS 2's own builds have them (REP 2011); those of
+# Detection3DArray, MarkerArray, People and Range follow from the published definitions.
 HASHES = {
     "nav_msgs/msg/Odometry": "3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0",
+    "people_msgs/msg/People": "9ea98a5e58f833a9532957bca23a6b8006a12885d5a16c8ca41dd901d10c33b6",
+    "rosgraph_msgs/msg/Clock": "692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564",
     "sensor_msgs/msg/CameraInfo": "b3dfd68ff46c9d56c80fd3bd4ed22c7a4ddce8c8348f2f59c299e73118e7e275",
     "sensor_msgs/msg/CompressedImage": "15640771531571185e2efc8a100baf923961a4d15d5569652e6cb6691e8e371a",
     "sensor_msgs/msg/Image": "d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47",
     "sensor_msgs/msg/PointCloud2": "9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5",
+    "sensor_msgs/msg/Range": "b42b62562e93cbfe9d42b82fe5994dfa3d63d7d5c90a317981703f7388adff3a",
+    "std_msgs/msg/String": "df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18",
     "tf2_msgs/msg/TFMessage": "e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087",
     "vision_msgs/msg/Detection2DArray": "214274120007f4a683866481336b70310268cfa107aebe9d594a6acf75bda968",
     "vision_msgs/msg/Detection3DArray": "793f5eab9595ac1c0da07873cc859db42eae51f0ee76056db8562515d830e018",
+    "visualization_msgs/msg/MarkerArray": "86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf",
 }
 
 lengths, turns = st.floats(-20.0, 20.0), st.floats(-math.pi, math.pi)
@@ -65,8 +78,16 @@ def messages(bag: Path) -> dict[str, list[Any]]:
     return found
 
 
+def stamp_of(message: Any) -> Any:
+    """The stamp of a message, or of the first that it holds."""
+    if hasattr(message, "clock"):
+        return message.clock
+    (inner, *_) = getattr(message, "transforms", None) or getattr(message, "markers", None) or (message,)
+    return inner.header.stamp
+
+
 def seconds(message: Any) -> float:
-    return message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec
+    return stamp_of(message).sec + 1e-9 * stamp_of(message).nanosec
 
 
 def pose(transform: Any) -> np.ndarray:
@@ -79,20 +100,20 @@ def pose(transform: Any) -> np.ndarray:
 
 @pytest.mark.slow
 def test_every_topic_has_a_message_a_frame(messages: dict[str, list[Any]]) -> None:
-    assert {topic: len(found) for topic, found in messages.items()} == dict.fromkeys(TOPICS, 60) | {
-        "/tf_static": 1
-    }
-    for topic in TOPICS - {"/tf"}:
+    assert {topic: len(found) for topic, found in messages.items()} == dict.fromkeys(
+        TOPICS, 60
+    ) | dict.fromkeys(ONCE, 1)
+    for topic in TOPICS:
         assert [seconds(message) for message in messages[topic]] == pytest.approx(np.arange(60) / 15.0)
 
 
 def test_the_images_are_those_of_the_run(messages: dict[str, list[Any]], crossing: Path) -> None:
     for frame in (1, 40):
         name = f"{frame:06d}.png"
-        thermal = np.frombuffer(messages["/thermal/image/compressed"][frame - 1].data, np.uint8)
+        thermal = np.frombuffer(messages["/thermal/image_raw/compressed"][frame - 1].data, np.uint8)
         stored = cv2.imread(str(crossing / "thermal" / name), cv2.IMREAD_UNCHANGED)
         assert np.array_equal(cv2.imdecode(thermal, cv2.IMREAD_UNCHANGED), stored)
-        colour = np.frombuffer(messages["/colour/image/compressed"][frame - 1].data, np.uint8)
+        colour = np.frombuffer(messages["/colour/image_raw/compressed"][frame - 1].data, np.uint8)
         lost = cv2.absdiff(
             cv2.imdecode(colour, cv2.IMREAD_COLOR), cv2.imread(str(crossing / "colour" / name))
         )
@@ -127,6 +148,85 @@ def test_points_of_sonars_lie_where_the_ring_heard_something(
             [0.166 + third[3] * math.cos(turn), 0.027 + third[3] * math.sin(turn)], abs=1e-5
         )
         assert seventh[:2] == pytest.approx([0.069, -0.136 - seventh[3]], abs=1e-5)
+
+
+def test_each_sonar_has_a_range_and_a_frame_of_its_own(
+    messages: dict[str, list[Any]], crossing: Path
+) -> None:
+    run = open_run(crossing)
+    frames = {one.child_frame_id: pose(one.transform) for one in messages["/tf_static"][0].transforms}
+    points = np.frombuffer(messages["/sonar"][5].data, "<f4").reshape(16, 4)
+    for k in range(16):
+        for message, row in zip(
+            messages[f"/sonar_{k:02d}/range"], run.files().robot.to_pylist(), strict=True
+        ):
+            assert message.header.frame_id == f"sonar_{k:02d}"
+            assert message.range == pytest.approx(row["sonar_m"][k], abs=1e-6)
+            assert (message.radiation_type, message.max_range) == (ULTRASOUND, 5.0)
+        reading = messages[f"/sonar_{k:02d}/range"][5].range
+        end = frames[f"sonar_{k:02d}"] @ [reading, 0.0, 0.0, 1.0]
+        assert end[:3] == pytest.approx(points[k, :3], abs=1e-5)
+
+
+def test_markers_and_people_stand_where_the_truth_has_them(
+    messages: dict[str, list[Any]], crossing: Path
+) -> None:
+    table = pq.read_table(crossing / "truth.parquet").to_pylist()
+    for frame in (1, 40):
+        rows = {row["name"]: row for row in table if row["frame"] == frame}
+        people = {person.name: person for person in messages["/truth/positions"][frame - 1].people}
+        first, *markers = messages["/truth/markers"][frame - 1].markers
+        assert (first.action, {marker.header.frame_id for marker in markers}) == (DELETE_ALL, {"map"})
+        labels = {m.id: m.text for m in markers if m.type == TEXT}
+        bodies = {labels[m.id]: m for m in markers if m.type == CYLINDER}
+        assert people.keys() == bodies.keys() == rows.keys()
+        for name, row in rows.items():
+            here = pytest.approx([row["x_m"], row["y_m"]])
+            assert [people[name].position.x, people[name].position.y] == here
+            assert [bodies[name].pose.position.x, bodies[name].pose.position.y] == here
+            assert 1.4 < bodies[name].scale.z < 2.1
+            assert math.hypot(people[name].velocity.x, people[name].velocity.y) < 1.3
+
+
+def test_tracks_as_people_move_as_the_truth_does(messages: dict[str, list[Any]]) -> None:
+    (anna,) = (person for person in messages["/truth/positions"][44].people if person.name == "anna")
+    message = messages["/people"][44]
+    assert message.header.frame_id == "odom"
+    near = min(message.people, key=lambda one: abs(one.velocity.y - anna.velocity.y))
+    assert near.velocity.y == pytest.approx(anna.velocity.y, abs=0.4)
+    assert (near.tagnames, 0.0 < near.reliability <= 1.0) == (["status"], True)
+    assert len(messages["/tracks/markers"][44].markers) == 1 + 2 * len(message.people)
+
+
+def test_the_description_is_a_urdf_whose_links_all_have_frames(messages: dict[str, list[Any]]) -> None:
+    root = ElementTree.fromstring(messages["/robot_description"][0].data)
+    frames = {one.child_frame_id for one in messages["/tf_static"][0].transforms}
+    links = {link.get("name") for link in root.iterfind("./link")}
+    assert "base_link" in links
+    assert links - {"base_link"} <= frames
+    assert {joint.get("link") for joint in root.iterfind("./joint/parent")} == {"base_link"}
+
+
+def test_stamps_begin_at_an_epoch_and_humble_has_its_own_range(crossing: Path, tmp_path: Path) -> None:
+    out = tmp_path / "set"
+    options = ("--epoch", "2026-05-01T12:00:00Z", "--ros-distro", "humble")
+    assert run_cli("export", crossing, "--format", "mcap", "--out", out, *options) == 0
+    start_ns = round(datetime(2026, 5, 1, 12, tzinfo=UTC).timestamp()) * 10**9
+    with AnyReader([out / "tiny-3"]) as reader:
+        assert reader.start_time == start_ns
+        (connection,) = (one for one in reader.connections if one.topic == "/sonar_00/range")
+        _, time_ns, raw = next(reader.messages([connection]))
+        message = reader.deserialize(raw, connection.msgtype)
+    assert message.header.stamp.sec * 10**9 + message.header.stamp.nanosec == time_ns == start_ns
+    assert not hasattr(message, "variance")
+
+
+@pytest.mark.parametrize("epoch", ["soon", "1969-01-01", "2040-01-01T00:00:00Z"])
+def test_what_is_no_time_for_ros_is_refused(
+    crossing: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], epoch: str
+) -> None:
+    given = ("export", crossing, "--format", "mcap", "--out", tmp_path / "out", "--epoch", epoch)
+    assert f"--epoch {epoch}" in refusal(capsys, *given)
 
 
 def test_boxes_are_those_of_truth_and_tracks(messages: dict[str, list[Any]], crossing: Path) -> None:
@@ -227,7 +327,7 @@ def test_every_distribution_from_humble_on_can_read_what_lies_beside_the_message
     for topic in about["topics_with_message_count"]:
         told = topic["topic_metadata"]
         (quality,) = yaml.safe_load(told["offered_qos_profiles"])
-        is_static = told["name"] == "/tf_static"
+        is_static = told["name"] in ONCE
         # RELIABLE; TRANSIENT_LOCAL or VOLATILE; KEEP_LAST.
         assert (quality["reliability"], quality["durability"]) == (1, 1 if is_static else 2)
         assert (quality["history"], quality["depth"]) == (1, 1 if is_static else 10)
@@ -237,7 +337,7 @@ def test_every_distribution_from_humble_on_can_read_what_lies_beside_the_message
 
 
 def test_schemas_define_every_type_that_they_use(bag: Path) -> None:
-    basic = {"string", "bool", "float64", "int32", "uint32", "uint8"}
+    basic = {"string", "bool", "float32", "float64", "int32", "uint32", "uint8"}
     with (bag / "tiny-3.mcap").open("rb") as file:
         summary = make_reader(file).get_summary()
     assert summary is not None
@@ -258,13 +358,13 @@ def test_the_folder_is_a_bag_of_ros_2_with_little_endian_messages_in_order_of_ti
     assert {path.name for path in bag.iterdir()} == {"tiny-3.mcap", "metadata.yaml"}
     times = []
     with AnyReader([bag]) as reader:
-        assert set(reader.topics) == TOPICS | {"/tf_static"}
-        assert reader.message_count == 60 * len(TOPICS) + 1
+        assert set(reader.topics) == TOPICS | ONCE
+        assert reader.message_count == 60 * len(TOPICS) + len(ONCE)
         for connection, time_ns, raw in reader.messages():
             assert bytes(raw[:4]) == b"\0\1\0\0"
             content = reader.deserialize(raw, connection.msgtype)
-            first = content if hasattr(content, "header") else content.transforms[0]
-            assert first.header.stamp.sec * 10**9 + first.header.stamp.nanosec == time_ns
+            if connection.topic != "/robot_description":
+                assert stamp_of(content).sec * 10**9 + stamp_of(content).nanosec == time_ns
             times.append(time_ns)
     assert times == sorted(times)
 
@@ -277,7 +377,7 @@ def test_rerun_understands_the_file(bag: Path, tmp_path: Path) -> None:
         return done.stdout + done.stderr
 
     checked = [line.split() for line in rerun("mcap", "check", bag / "tiny-3.mcap").splitlines()]
-    assert {line[3] for line in checked if line and line[0] == "ok"} == TOPICS | {"/tf_static"}
+    assert {line[3] for line in checked if line and line[0] == "ok"} == TOPICS | ONCE
     rerun("mcap", "convert", bag / "tiny-3.mcap", "--output", tmp_path / "tiny.rrd")
     told = rerun("rrd", "print", tmp_path / "tiny.rrd")
     for kind in ("EncodedImage:blob", "Pinhole:image_from_camera", "Transform3D:quaternion"):
