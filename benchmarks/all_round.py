@@ -22,8 +22,7 @@ from benchmarks.compare import compare, percents, print_table
 from benchmarks.peers.detectors import Hog
 from benchmarks.timing import spent_ms, timed_ms
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.loop import Tick, closed_loop, make_frame
+from peopleboy.scenarios.loop.loop import Tick, calibrations_of, closed_loop, make_frame
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.scenarios.running.engine.task import Tell, chosen_workers
 from peopleboy.sim.random_streams import stream

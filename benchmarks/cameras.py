@@ -18,8 +18,7 @@ import numpy as np
 from benchmarks import call
 from benchmarks.sequences import Recording, print_head, print_row, truth_rows
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.loop import make_frame
+from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.imaging.electronics import encode_8bit
 from peopleboy.sim.geometry.pinhole import Pinhole

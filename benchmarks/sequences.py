@@ -9,8 +9,7 @@ import click
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.loop import closed_loop, make_frame
+from peopleboy.scenarios.loop.loop import calibrations_of, closed_loop, make_frame
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.sim.world import World

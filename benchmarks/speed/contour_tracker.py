@@ -13,8 +13,7 @@ import numpy as np
 from benchmarks.peers.detectors import Hog
 from benchmarks.timing import Turns, median_ms, spent_ms, timed_ms
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.loop import make_frame
+from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.contour.appearance.appearance_model import ColourModel, likelihood

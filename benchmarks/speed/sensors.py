@@ -15,7 +15,7 @@ import numpy as np
 from benchmarks import call
 from benchmarks.timing import Turns, spent_ms, timed_ms
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import DepthConfig

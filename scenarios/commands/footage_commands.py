@@ -22,8 +22,7 @@ from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.finished_runs.import_tracks import TrackImport
-    from peopleboy.scenarios.footage.options import RgbdOptions, TrackOptions
-    from peopleboy.scenarios.footage.rgbd_camera import RgbdCamera
+    from peopleboy.scenarios.footage.options import RgbdCamera, RgbdOptions, TrackOptions
     from peopleboy.scenarios.footage.track_footage import Tracked
     from peopleboy.tracker.footage.grey import Radiometry
 
@@ -47,7 +46,7 @@ _TRACKERS = (
     "scenarios.footage.options:RgbdOptions", "depth", "m_per_count", "odometry", into="rgbd", is_optional=True
 )
 @options_of(
-    "scenarios.footage.rgbd_camera:RgbdCamera",
+    "scenarios.footage.options:RgbdCamera",
     "height_m",
     "pitch_deg",
     "focal_px",
@@ -190,7 +189,7 @@ def sim_to_real(rendered: Sequence[Path], real: Sequence[Path], out: Path, as_js
     or in thermal/, 8-bit grey, and gt.txt of the MOTChallenge format, or VOT's or OTB's. Both sides need two
     scenes at least. Needs scikit-learn.
     """
-    from peopleboy.scenarios.report.page_file import check_place
+    from peopleboy.scenarios.report.page_parts import check_place
     from peopleboy.scenarios.sim_to_real.compare import compare_images as compare
     from peopleboy.scenarios.sim_to_real.page import HEADS, headline, table_rows, write_comparison
 

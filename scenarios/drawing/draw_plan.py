@@ -15,17 +15,20 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.drawing.plan_paths import COLOUR, draw_moves, draw_person
-from peopleboy.scenarios.drawing.plan_place import (
+from peopleboy.scenarios.drawing.plan_paths import COLOUR, draw_moves, draw_person, draw_robot
+from peopleboy.scenarios.drawing.plan_sheet import (
+    INK,
+    PAPER,
     SPAN_C,
     WARMTH,
+    Labels,
     draw_floor,
     draw_things,
     draw_walls,
+    lay_out,
     name_things,
+    sections,
 )
-from peopleboy.scenarios.drawing.plan_robot import draw_robot
-from peopleboy.scenarios.drawing.plan_sheet import INK, PAPER, Labels, lay_out, sections
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.run_folder.atomic_output import writing_to
 from peopleboy.sim.world_config import WorldConfig

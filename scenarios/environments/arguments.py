@@ -1,16 +1,29 @@
-"""What an environment takes for its arguments and actions, and what it refuses."""
+"""Check the arguments, actions and options of an environment, and vary its worlds by the options.
+
+Worlds vary from episode to episode so that a learned controller does not rely on one of them.
+"""
 
 from __future__ import annotations
 
+import math
 import reprlib
-from collections.abc import Sequence
-from typing import Final
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from peopleboy.bad_input import BadInput
+from peopleboy.bad_input import BadInput, found_in
+from peopleboy.scenarios.random_worlds.distribution import Distribution, is_number, narrowed
+from peopleboy.sim.people.appearance.traits import usual_clothes
+from peopleboy.sim.people.body.clothes import Clothes, random_clothes
+from peopleboy.sim.people.person_config import SPEEDS_M_S, PersonConfig
+from peopleboy.sim.places.place import Fixture, Place, air_of
 from peopleboy.sim.robot.robot_config import RobotConfig
+from peopleboy.sim.shapes.materials import Material
+from peopleboy.sim.world_config import WorldConfig
+from peopleboy.wording import hint
 
 SMALLEST_PX: Final = (64, 48)
 LARGEST_PX: Final = (1280, 960)
@@ -82,3 +95,155 @@ def check_actions(actions: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.floa
         wrong = next(row for row in shares.reshape(-1, 2).tolist() if not np.isfinite(row).all())
         raise BadInput(f"action {wrong} must be two finite numbers: shares of speed and turn rate")
     return np.clip(shares, -1.0, 1.0).reshape(-1, 2)
+
+
+LIMITS: Final[Mapping[str, tuple[float, float]]] = {
+    "warmer_k": (-30.0, 30.0),
+    "light": (0.0, 2.0),
+    "noise": (0.0, 20.0),
+    "people": (0, 64),
+    "clothes": (0, 1),
+    "pace": (0.2, 2.0),
+    "facing": (0, 1),
+}
+"""What `reset(options=...)` takes, with its limits; each a number, or a pair from which one is drawn evenly.
+
+warmer_k [K] is added to the temperatures of the place and of everything in it; light is a factor on the
+light, and noise one on the noise of all cameras; people is how many of the scenario's people are there, its
+first ones, so that fewer hide each other; clothes, 1 or True, draws everybody's clothes anew; pace is a
+factor on everybody's walking speeds, which stay within 0.1..2.5 m/s; facing, 1 or True, lets the robot look
+at first to where the first person comes in.
+
+Of random worlds there is `world` as well: what they are drawn from, see
+`peopleboy.scenarios.random_worlds.distribution`.
+"""
+
+WORLD: Final = "world"
+
+_SWITCHES: Final = ("clothes", "facing")
+_WHOLE: Final = ("people", *_SWITCHES)
+
+
+def check_options(options: Mapping[str, Any], *, draws_worlds: bool = False) -> None:
+    """Refuse options that there are not, and values out of their limits.
+
+    Args:
+        options: by name.
+        draws_worlds: whether worlds are drawn at random, so that `world` can be said.
+
+    Raises:
+        BadInput: with the key, the value, and what would be right.
+    """
+    if not isinstance(options, Mapping):
+        raise BadInput(f"options: must be a mapping of names to values, got {options!r}")
+    for key, value in options.items():
+        if key == WORLD and draws_worlds:
+            world_of(options)
+            continue
+        if key == WORLD:
+            raise BadInput("options: world is of worlds drawn at random; make that of scenario=None")
+        if key not in LIMITS:
+            raise BadInput(f"options: unknown key {key!r}; {hint(str(key), [*LIMITS, WORLD])}")
+        low, high = LIMITS[key]
+        bounds = value if isinstance(value, tuple | list) else (value, value)
+        is_fine = len(bounds) == 2 and all(
+            _is_number(bound, key) and low <= bound <= high for bound in bounds
+        )
+        if not is_fine or bounds[0] > bounds[1]:
+            what = "a whole number" if key in _WHOLE else "a number"
+            raise BadInput(
+                f"options: {key} {value!r} must be {what} or a rising pair, within {low:g} .. {high:g}"
+            )
+
+
+def world_of(options: Mapping[str, Any]) -> Distribution | None:
+    """Return what random worlds are drawn from by these options; None for what they are always drawn from.
+
+    Raises:
+        BadInput: there is no such name, or its value is beyond the limits.
+    """
+    if WORLD not in options:
+        return None
+    with found_in("options", WORLD):
+        return narrowed(options[WORLD])
+
+
+def vary(config: WorldConfig, options: Mapping[str, Any], rng: np.random.Generator) -> WorldConfig:
+    """Vary a world by options that were checked."""
+    drawn = {key: _draw(key, options[key], rng) for key in LIMITS if key in options}
+    place, robot, people = config.place, config.robot, config.people
+    if "warmer_k" in drawn:
+        place = _warmer(place, drawn["warmer_k"])
+    if "light" in drawn:
+        place = replace(place, light=_lighter(place.light, drawn["light"]))
+    if "noise" in drawn:
+        robot = _noisier(robot, drawn["noise"])
+    if "people" in drawn:
+        people = people[: round(drawn["people"])]
+    if drawn.get("clothes"):
+        people = tuple(replace(person, clothes=_clothes(config, person, rng)) for person in people)
+    if "pace" in drawn:
+        people = tuple(_paced(person, drawn["pace"]) for person in people)
+    if drawn.get("facing") and people:
+        robot = _facing(robot, people[0])
+    return replace(config, place=place, robot=robot, people=people)
+
+
+def _paced(person: PersonConfig, factor: float) -> PersonConfig:
+    slowest, fastest = SPEEDS_M_S
+    path = tuple(
+        replace(waypoint, speed_m_s=min(max(factor * waypoint.speed_m_s, slowest), fastest))
+        for waypoint in person.path
+    )
+    return replace(person, path=path)
+
+
+def _facing(robot: RobotConfig, person: PersonConfig) -> RobotConfig:
+    dx, dy = (there - here for there, here in zip(person.path[0].at_m, robot.at_m, strict=True))
+    return replace(robot, heading_rad=math.atan2(dy, dx))
+
+
+def _clothes(config: WorldConfig, person: PersonConfig, rng: np.random.Generator) -> Clothes:
+    """Draw what a person wears: anything, or what is usual where all is drawn finely."""
+    if config.detail == "plain":
+        return random_clothes(rng)
+    return usual_clothes(rng, person.sex, air_of(config.place))
+
+
+def _is_number(value: object, key: str) -> bool:
+    if isinstance(value, bool):
+        return key in _SWITCHES
+    return is_number(value, is_whole=key in _WHOLE)
+
+
+def _draw(key: str, value: Any, rng: np.random.Generator) -> float:
+    low, high = value if isinstance(value, tuple | list) else (value, value)
+    return float(rng.integers(low, high, endpoint=True) if key in _WHOLE else rng.uniform(low, high))
+
+
+def _lighter(light: tuple[tuple[float, float], ...], factor: float) -> tuple[tuple[float, float], ...]:
+    """Scale all steps of the light, and the full light before the first of them."""
+    return tuple((at_s, factor * level) for at_s, level in ((-1.0, 1.0), *light))
+
+
+def _noisier(robot: RobotConfig, factor: float) -> RobotConfig:
+    cameras = {name: camera.noisier(factor) for name, camera in robot.cameras.items()}
+    return replace(robot, cameras=cameras)
+
+
+def _warmer(place: Place, by_k: float) -> Place:
+    fixtures = tuple(_warmer_fixture(fixture, by_k) for fixture in place.fixtures)
+    return replace(place, fixtures=fixtures, surroundings_c=place.surroundings_c + by_k)
+
+
+def _warmer_fixture(fixture: Fixture, by_k: float) -> Fixture:
+    if fixture.part is not None:
+        part = replace(fixture.part, material=_warmer_material(fixture.part.material, by_k))
+        return replace(fixture, part=part)
+    return replace(
+        fixture, material=None if fixture.material is None else _warmer_material(fixture.material, by_k)
+    )
+
+
+def _warmer_material(material: Material, by_k: float) -> Material:
+    return replace(material, temperature_c=material.temperature_c + by_k)

@@ -15,7 +15,15 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import Command
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.scenarios.environments.arguments import check_actions, check_size, check_word, shown_cameras
+from peopleboy.scenarios.environments.arguments import (
+    check_actions,
+    check_options,
+    check_size,
+    check_word,
+    shown_cameras,
+    vary,
+    world_of,
+)
 from peopleboy.scenarios.environments.episodes import (
     EpisodeSettings,
     LiveEpisodes,
@@ -23,21 +31,20 @@ from peopleboy.scenarios.environments.episodes import (
     StepOutcomes,
     track_in,
 )
-from peopleboy.scenarios.environments.observation_builder import Normaliser, ObservationBuilder
 from peopleboy.scenarios.environments.observations import (
     KINDS,
     Arrays,
+    Normaliser,
+    ObservationBuilder,
     observation_space,
     observe_tracks,
 )
-from peopleboy.scenarios.environments.randomise import check_options, vary, world_of
 from peopleboy.scenarios.environments.rewards import TASKS, TERMS
 from peopleboy.scenarios.environments.scene_picture import ScenePicture
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.loop import make_frame
+from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
 from peopleboy.scenarios.loop.tracker_by_name import make_checked_tracker, tracker_cameras
 from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
@@ -72,7 +79,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
 
     `reset(seed=3)` plays the world of `peopleboy run --seed 3`: the same commands lead to the same truth and,
     with the tracks of the same tracker, to the same figures. `reset()` goes on to a seed drawn from it.
-    `reset(options=...)` varies that one episode, see `peopleboy.scenarios.environments.randomise.LIMITS`.
+    `reset(options=...)` varies that one episode, see `peopleboy.scenarios.environments.arguments.LIMITS`.
 
     Args:
         scenario: name in the library or path of a YAML file; None for a world drawn at random at every reset
@@ -90,7 +97,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         physics_hz: steps of physics a second, a multiple of 15; None is that of a run, 240. 60 is quicker by
             what `python -m benchmarks.speed.environments` prints, beside how far the robot's way is off then.
         normalise: whether numbers are brought within -1..1, see `Normaliser` in
-            `peopleboy.scenarios.environments.observation_builder`.
+            `peopleboy.scenarios.environments.observations`.
 
     Raises:
         BadInput: an argument cannot be used.

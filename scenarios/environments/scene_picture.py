@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.drawing.overlay import Picture, draw_tracks, show_thermal
 from peopleboy.scenarios.drawing.palette import ROBOT, Rgb, person_colour
-from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_things, draw_walls
-from peopleboy.scenarios.drawing.plan_sheet import Labels
+from peopleboy.scenarios.drawing.plan_sheet import Labels, draw_floor, draw_things, draw_walls
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.place import Place

@@ -34,8 +34,7 @@ from peopleboy.scenarios.export.camera_images import (
 )
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.export.splits import by_split
-from peopleboy.scenarios.loop.calibrations import calibration_of
-from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.loop.loop import Tick, calibration_of
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import (
     image_file,

@@ -16,7 +16,7 @@ from peopleboy.scenarios.export.splits import by_split
 from peopleboy.scenarios.run_folder.atomic_output import atomic_folder
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.folder import versions
-from peopleboy.scenarios.scores.reference_boxes import CALLED, boxed_cameras, kind_of_boxes
+from peopleboy.scenarios.scores.evaluate_runs import CALLED, boxed_cameras, kind_of_boxes
 from peopleboy.settings import Metavar
 from peopleboy.tracker.footage.box_kinds import BoxKind
 

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.loop import odometry_way
+from peopleboy.scenarios.loop.loop import calibrations_of, odometry_way
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file
 from peopleboy.sim.cameras.kinds import image_folders

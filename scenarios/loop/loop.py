@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial, singledispatch
 from typing import Any, Protocol
 
 import numpy as np
@@ -15,16 +15,50 @@ from peopleboy.behaviours.behaviour import Behaviour, Command
 from peopleboy.behaviours.percept import Percept, SeenPerson
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.own_code import at_frame
-from peopleboy.scenarios.loop.calibrations import calibrations_of
 from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.geometry.panorama import Panorama
+from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, WHEEL_DISTANCE_M
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.boxes import image_shares
 from peopleboy.tracker.contour.box_interaction import standing_box
-from peopleboy.tracker.frame import THERMAL, Calibration, Frame, Odometry
+from peopleboy.tracker.frame import THERMAL, Calibration, Frame, Odometry, PinholeCalibration
+from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.track import Box, Status, Track
 from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again
+
+
+def calibrations_of(cameras: Mapping[str, CameraConfig]) -> Mapping[str, Calibration]:
+    """Return the calibration of each camera by its name; geometries without one are left out."""
+    found = {name: calibration_of(config.camera) for name, config in cameras.items()}
+    return {name: calibration for name, calibration in found.items() if calibration is not None}
+
+
+@singledispatch
+def calibration_of(geometry: object) -> Calibration | None:  # noqa: ARG001
+    """Return a tracker of a camera's geometry; a new kind of geometry registers here."""
+    return None
+
+
+@calibration_of.register
+@lru_cache(maxsize=16)
+def _(geometry: Pinhole) -> Calibration:
+    return PinholeCalibration(geometry.intrinsics, geometry.robot_from_camera)
+
+
+@calibration_of.register
+@lru_cache(maxsize=16)
+def _(geometry: Panorama) -> Calibration:
+    mirror = geometry.mirror
+    return PanoramaCalibration(
+        width=geometry.width,
+        height=geometry.height,
+        focal_px=geometry.focal_px,
+        axis_rad=mirror.axis_rad,
+        ring_radius_m=mirror.ring_radius_m,
+        ring_height_m=mirror.ring_height_m,
+    )
 
 
 def thermal_box(track: Track, calibration: Calibration) -> Box | None:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.robot import ORACLE
-from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.scenes import is_seen

@@ -25,10 +25,12 @@ from peopleboy.scenarios.recording.explanations import (
 from peopleboy.scenarios.recording.layout import (
     BACKGROUND,
     EVENTS,
+    JPEG,
     OCCLUSIONS,
     PLACES,
     THERMAL,
     TRAILS,
+    Still,
     camera_path,
     lay_out,
     person_path,
@@ -38,7 +40,6 @@ from peopleboy.scenarios.recording.layout import (
 from peopleboy.scenarios.recording.marks import Arrows, believed_arrows, true_arrows, world_arrows
 from peopleboy.scenarios.recording.rows import METRE_STEP, PIXEL_STEP, TURN_STEP, RecordingWriter, rounded
 from peopleboy.scenarios.recording.solids import NOBODY, body_capsules
-from peopleboy.scenarios.recording.still import JPEG, Still
 from peopleboy.sim.cameras.camera_config import DepthConfig
 from peopleboy.sim.cameras.depth import points_of
 from peopleboy.sim.cameras.kinds import colour_from_thermal, shown_to_people, with_boxes

@@ -15,14 +15,14 @@ from peopleboy.scenarios.drawing.palette import TRACK_COLOURS
 from peopleboy.scenarios.report import page_tables
 from peopleboy.scenarios.report.charts.error_curves import draw_error_curves
 from peopleboy.scenarios.report.charts.paths import draw_paths
-from peopleboy.scenarios.report.charts.stills import Origin
 from peopleboy.scenarios.report.charts.timelines import PersonTimeline, draw_things, swatch, timelines
 from peopleboy.scenarios.report.columns import Column, lacking, read_columns
 from peopleboy.scenarios.report.findings.run_findings import RunFindings
 from peopleboy.scenarios.report.findings.sentences import listed
-from peopleboy.scenarios.report.page_file import check_place, write_page
+from peopleboy.scenarios.report.page_parts import check_place, write_page
 from peopleboy.scenarios.report.page_tables import PageTable
 from peopleboy.scenarios.report.pictures import (
+    Origin,
     PagePicture,
     PicturedMoment,
     attention_strip,
@@ -31,7 +31,7 @@ from peopleboy.scenarios.report.pictures import (
 )
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import describe_images
-from peopleboy.scenarios.scores.reference_boxes import BoxReference
+from peopleboy.scenarios.scores.evaluate_runs import BoxReference
 from peopleboy.tracker.frame import THERMAL
 
 HERE = Path(__file__).parent

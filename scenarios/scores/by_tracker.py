@@ -16,8 +16,7 @@ from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.run_folder.finished_run import read_run
 from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
-from peopleboy.scenarios.scores.evaluate_runs import ScoreOptions, evaluate_runs
-from peopleboy.scenarios.scores.reference_boxes import BoxReference
+from peopleboy.scenarios.scores.evaluate_runs import BoxReference, ScoreOptions, evaluate_runs
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.evaluation.table import FIGURES, spread, to_json
 

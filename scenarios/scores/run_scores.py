@@ -10,14 +10,15 @@ from typing import Any, Final
 
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
-from peopleboy.scenarios.scores.evaluate_runs import ScoredPeople, score_people
-from peopleboy.scenarios.scores.following_metrics import FollowingScore
-from peopleboy.scenarios.scores.reference_boxes import (
+from peopleboy.scenarios.scores.evaluate_runs import (
     BoxReference,
+    ScoredPeople,
     kind_of_boxes,
     own_camera,
     read_reference_boxes,
+    score_people,
 )
+from peopleboy.scenarios.scores.following_metrics import FollowingScore
 from peopleboy.sim.truth.truth import (
     COUNTED_FARTHEST_M,
     COUNTED_NEAREST_M,

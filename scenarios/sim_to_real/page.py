@@ -13,8 +13,7 @@ import numpy as np
 from markupsafe import Markup
 from matplotlib.axes import Axes
 
-from peopleboy.scenarios.report.charts.svg import LINE, SERIES, inline, new_figure, svg_style
-from peopleboy.scenarios.report.page_file import write_page
+from peopleboy.scenarios.report.page_parts import LINE, SERIES, inline, new_figure, svg_style, write_page
 from peopleboy.scenarios.sim_to_real.clips import ROWS, SIDE, Grey
 from peopleboy.scenarios.sim_to_real.compare import PICTURES, Comparison, Separability, Side, figures_of
 from peopleboy.scenarios.sim_to_real.measures import (

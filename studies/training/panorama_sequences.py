@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.truth.truth import Truth

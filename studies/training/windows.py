@@ -16,7 +16,7 @@ from pydantic import Field
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.studies.training.random_scenes import FIRST_SEED, random_scene

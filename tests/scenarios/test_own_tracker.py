@@ -21,7 +21,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import thermal_box
 from peopleboy.scenarios.running.run import run as run_scenario
 from peopleboy.scenarios.running.run_options import RunOptions
-from peopleboy.scenarios.scores.reference_boxes import BoxReference, read_reference_boxes
+from peopleboy.scenarios.scores.evaluate_runs import BoxReference, read_reference_boxes
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.kinds import KINDS
 from peopleboy.sim.geometry.pinhole import Pinhole

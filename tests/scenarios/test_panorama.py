@@ -20,11 +20,10 @@ from rerun.chunk import RrdReader
 from peopleboy.scenarios.drawing.overlay import box_parts
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.calibrations import calibration_of
+from peopleboy.scenarios.loop.loop import calibration_of
 from peopleboy.scenarios.report.findings.run_findings import analyse_run
 from peopleboy.scenarios.run_folder.finished_run import open_run
-from peopleboy.scenarios.scores.evaluate_runs import ScoreOptions, evaluate_runs
-from peopleboy.scenarios.scores.reference_boxes import BoxReference
+from peopleboy.scenarios.scores.evaluate_runs import BoxReference, ScoreOptions, evaluate_runs
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.geometry.panorama import MIRRORS, Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole

@@ -17,9 +17,8 @@ from docs.generate.pictures.paper import WIDTH_IN, show
 from peopleboy.behaviours.scripted import Stand
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.drawing.palette import track_colour
-from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_walls
-from peopleboy.scenarios.drawing.plan_robot import draw_robot
-from peopleboy.scenarios.drawing.plan_sheet import Labels
+from peopleboy.scenarios.drawing.plan_paths import draw_robot
+from peopleboy.scenarios.drawing.plan_sheet import Labels, draw_floor, draw_walls
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from docs.generate.pictures.paper import show
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.loop import make_frame
+from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.attention.attend import Focus

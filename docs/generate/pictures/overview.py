@@ -16,8 +16,7 @@ from docs.generate.pictures.moments import ticks
 from docs.generate.pictures.paper import panels, show
 from peopleboy.scenarios.drawing.overlay import draw_tracks, enlarge, show_thermal
 from peopleboy.scenarios.drawing.palette import ROBOT, Rgb, person_colour
-from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_things, draw_walls
-from peopleboy.scenarios.drawing.plan_sheet import Labels
+from peopleboy.scenarios.drawing.plan_sheet import Labels, draw_floor, draw_things, draw_walls
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import Tick

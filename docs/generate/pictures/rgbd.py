@@ -10,7 +10,7 @@ from matplotlib.patches import Rectangle
 from docs.generate.pictures.paper import show
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.depth import show_depth
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame

@@ -10,8 +10,7 @@ from matplotlib.figure import Figure
 from docs.generate.pictures.paper import show
 from peopleboy.scenarios.drawing.palette import person_colour, track_colour
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.loop import make_frame
+from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.studies.reproductions.experiments.scenes import with_preset
 from peopleboy.tracker.frame import DEPTH_COLOUR, Frame

@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from markupsafe import Markup
 
-from peopleboy.scenarios.report.charts.svg import LINE, SERIES, inline, new_figure, set_tooltip, svg_style
 from peopleboy.scenarios.report.columns import Column
 from peopleboy.scenarios.report.findings.histories import Floats
 from peopleboy.scenarios.report.findings.run_findings import RunFindings
+from peopleboy.scenarios.report.page_parts import LINE, SERIES, inline, new_figure, set_tooltip, svg_style
 from peopleboy.tracker.evaluation.box_matching import counts
 
 VISIBLE = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)

@@ -7,12 +7,19 @@ from markupsafe import Markup
 from matplotlib.axes import Axes
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_things, draw_walls
-from peopleboy.scenarios.drawing.plan_sheet import PAPER, Labels, lay_out, sections
-from peopleboy.scenarios.report.charts.svg import inline, new_figure, svg_style
+from peopleboy.scenarios.drawing.plan_sheet import (
+    PAPER,
+    Labels,
+    draw_floor,
+    draw_things,
+    draw_walls,
+    lay_out,
+    sections,
+)
 from peopleboy.scenarios.report.findings.histories import Floats
 from peopleboy.scenarios.report.findings.run_findings import RunFindings
 from peopleboy.scenarios.report.findings.sentences import spoken
+from peopleboy.scenarios.report.page_parts import inline, new_figure, svg_style
 
 _WIDTH_IN = 4.3  # such that its letters are as large as the page's on a phone
 # Distinct with any colour vision.

@@ -17,7 +17,6 @@ from matplotlib.textpath import TextPath
 from matplotlib.ticker import MaxNLocator
 
 from peopleboy.scenarios.drawing.palette import TRACK_COLOURS, track_colour
-from peopleboy.scenarios.report.charts.svg import INK, LINE, SOFT, inline, new_figure, set_tooltip, svg_style
 from peopleboy.scenarios.report.charts.timeline_rows import (
     BarStyle,
     TimelineRow,
@@ -34,6 +33,7 @@ from peopleboy.scenarios.report.findings.histories import (
 )
 from peopleboy.scenarios.report.findings.run_findings import RunFindings
 from peopleboy.scenarios.report.findings.sentences import spoken
+from peopleboy.scenarios.report.page_parts import INK, LINE, SOFT, inline, new_figure, set_tooltip, svg_style
 
 _APPEARANCES: Final[dict[str, dict[str, Any]]] = {
     "seen": {"fc": "#cfdce8"},

@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from peopleboy.scenarios.loop.run_events import LogLine
-from peopleboy.scenarios.report.findings.causes import Outcome, outcome_of
 from peopleboy.scenarios.report.findings.histories import (
     PersonHistory,
     RunHistory,
@@ -23,9 +22,11 @@ from peopleboy.scenarios.report.findings.histories import (
 from peopleboy.scenarios.report.findings.identity_changes import (
     ChangeKind,
     IdentityChange,
+    Outcome,
     Transfer,
     find_changes,
     find_transfers,
+    outcome_of,
 )
 from peopleboy.scenarios.report.findings.sentences import MOMENTS, Finding, listed, seconds, spoken
 from peopleboy.scenarios.report.findings.track_losses import (

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from peopleboy.scenarios.loop.run_events import KNOWN
-from peopleboy.scenarios.report.findings.causes import BEFORE_S, Outcome, find_cause, outcome_of, steady_due
 from peopleboy.scenarios.report.findings.histories import (
     STEADY_S,
     Flags,
@@ -19,7 +18,14 @@ from peopleboy.scenarios.report.findings.histories import (
     settle,
     spans,
 )
-from peopleboy.scenarios.report.findings.identity_changes import is_return
+from peopleboy.scenarios.report.findings.identity_changes import (
+    BEFORE_S,
+    Outcome,
+    find_cause,
+    is_return,
+    outcome_of,
+    steady_due,
+)
 from peopleboy.scenarios.report.findings.sentences import AFTERWARDS, Cause, seconds, spoken
 
 _DECAY_S = 1.5  # over which the confidence is looked back at

@@ -11,8 +11,7 @@ import numpy as np
 
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.loop import make_frame
+from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.truth.truth import Truth

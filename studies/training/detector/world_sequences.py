@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.people.body.postures import Posture
 from peopleboy.sim.truth.truth import PersonTruth

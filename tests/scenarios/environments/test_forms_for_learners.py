@@ -9,8 +9,7 @@ from gymnasium.wrappers import FrameStackObservation
 
 import peopleboy  # noqa: F401  # tells gymnasium the environments
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
-from peopleboy.scenarios.environments.observation_builder import Normaliser
-from peopleboy.scenarios.environments.observations import observation_space
+from peopleboy.scenarios.environments.observations import Normaliser, observation_space
 from peopleboy.sim.robot.robot_config import RobotConfig
 
 ROBOT = RobotConfig()

@@ -1,7 +1,7 @@
 import numpy as np
 from gymnasium.vector import VectorEnv
 
-from peopleboy.scenarios.environments.step_results import join_infos
+from peopleboy.scenarios.environments.vector_environment import join_infos
 
 
 def assert_alike(ours, theirs):

@@ -9,8 +9,7 @@ import pytest
 import peopleboy  # noqa: F401  # tells gymnasium the environments
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
-from peopleboy.scenarios.environments.step_results import join_infos
-from peopleboy.scenarios.environments.vector_environment import PeopleBoyVectorEnv
+from peopleboy.scenarios.environments.vector_environment import PeopleBoyVectorEnv, join_infos
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.batch.batch_cameras import WorkerPool
 from peopleboy.sim.batch.world_batch import WorldBatch

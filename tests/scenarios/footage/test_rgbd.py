@@ -13,8 +13,7 @@ import pyarrow.parquet as pq
 import pytest
 from PIL import Image
 
-from peopleboy.scenarios.footage.options import RgbdOptions, TrackOptions
-from peopleboy.scenarios.footage.rgbd_camera import RgbdCamera
+from peopleboy.scenarios.footage.options import RgbdCamera, RgbdOptions, TrackOptions
 from peopleboy.scenarios.footage.views import open_views
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame, Odometry
 from tests.helpers.calls.footage_calls import call, refusal

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.loop.calibrations import calibration_of
+from peopleboy.scenarios.loop.loop import calibration_of
 from peopleboy.sim.geometry.panorama import MIRRORS, Panorama
 from peopleboy.sim.geometry.pinhole import invert_pose, transform
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration

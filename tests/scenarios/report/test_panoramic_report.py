@@ -7,9 +7,9 @@ import pytest
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.report.charts.error_curves import curve, distance_edges, samples
-from peopleboy.scenarios.report.charts.stills import Origin, show_frames
-from peopleboy.scenarios.report.findings.causes import find_cause
+from peopleboy.scenarios.report.findings.identity_changes import find_cause
 from peopleboy.scenarios.report.findings.run_findings import RunFindings, analyse_run, headline
+from peopleboy.scenarios.report.pictures import Origin, show_frames
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.running.run import run
 from peopleboy.scenarios.running.run_options import RunOptions

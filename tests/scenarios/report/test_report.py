@@ -19,15 +19,14 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario_file import FaultSpec
 from peopleboy.scenarios.report.charts.error_curves import curve, distance_edges, samples
-from peopleboy.scenarios.report.charts.stills import Origin, show_frames
 from peopleboy.scenarios.report.charts.timeline_rows import ASIDE, hidden_words, track_row, truth_row
 from peopleboy.scenarios.report.charts.timelines import rgb, track_edges
 from peopleboy.scenarios.report.columns import are_same_scene, lacking, read_columns
-from peopleboy.scenarios.report.findings.causes import Outcome
 from peopleboy.scenarios.report.findings.histories import TrackingState, Visibility, between, settle, spans
-from peopleboy.scenarios.report.findings.identity_changes import ChangeKind
+from peopleboy.scenarios.report.findings.identity_changes import ChangeKind, Outcome
 from peopleboy.scenarios.report.findings.run_findings import RunFindings, analyse_run, headline, worst_moments
 from peopleboy.scenarios.report.page_tables import drive_figures, plain_figures
+from peopleboy.scenarios.report.pictures import Origin, show_frames
 from peopleboy.scenarios.report.report_page import write_report
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.running.run import run

@@ -12,7 +12,7 @@ import pytest
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.cli import main
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.report.charts.stills import Origin
+from peopleboy.scenarios.report.pictures import Origin
 from peopleboy.scenarios.report.report_page import write_report
 from peopleboy.scenarios.run_folder.folder import versions
 from tests.helpers.runs import toy_runs as toy

@@ -99,5 +99,5 @@ def test_attention_is_shown_when_its_person_is_learned_lost_away_and_found(tmp_p
 def test_other_trackers_and_runs_without_images_have_no_attention_to_show(
     tmp_path: Path, tracker: str, has_images: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("peopleboy.scenarios.report.charts.stills.find_spec", lambda name: None)  # noqa: ARG005
+    monkeypatch.setattr("peopleboy.scenarios.report.pictures.find_spec", lambda name: None)  # noqa: ARG005
     assert attention_strip(attentive(tmp_path, tracker, has_images=has_images)) == []

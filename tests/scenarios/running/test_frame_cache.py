@@ -9,8 +9,7 @@ import pytest
 from peopleboy.behaviours.behaviour import Command
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.recorded_drives import read_drive, write_drive
-from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.loop import make_frame
+from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
 from peopleboy.scenarios.running.frame_cache import Film, film, film_key, frames_of, open_film
 from peopleboy.sim.world import World
 from peopleboy.tracker.footage.box_kinds import BoxKind

@@ -6,7 +6,7 @@ import pyarrow.parquet as pq
 import pytest
 import yaml
 
-from peopleboy.scenarios.loop.calibrations import calibration_of
+from peopleboy.scenarios.loop.loop import calibration_of
 from peopleboy.sim.geometry.panorama import MIRRORS, Panorama
 from peopleboy.studies.training.distance import DistanceTraining
 from peopleboy.tracker.panoramic.panorama_view import choose_view

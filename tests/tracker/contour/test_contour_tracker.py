@@ -5,7 +5,7 @@ from itertools import chain, pairwise, repeat
 import numpy as np
 import pytest
 
-from peopleboy.scenarios.loop.calibrations import calibration_of
+from peopleboy.scenarios.loop.loop import calibration_of
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.contour import contour_tracker
 from peopleboy.tracker.contour.contour_config import InteractionConfig

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from peopleboy.scenarios.loop.calibrations import calibration_of
+from peopleboy.scenarios.loop.loop import calibration_of
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.contour.estimated_mount import MountBelief, believed_from, is_learnable
 from peopleboy.tracker.contour.particle_filter import is_within

@@ -4,8 +4,7 @@ from dataclasses import replace
 import numpy as np
 
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.loop import make_frame
+from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
 from peopleboy.sim.world import World
 from peopleboy.tracker.frame import COLOUR, THERMAL
 from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker

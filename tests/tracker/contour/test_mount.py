@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.scenarios.loop.calibrations import calibration_of
+from peopleboy.scenarios.loop.loop import calibration_of
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.camera_mount import Mount, mount_of
 from peopleboy.tracker.contour.contour_config import LimitsConfig

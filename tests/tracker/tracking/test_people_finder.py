@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
-from peopleboy.scenarios.loop.loop import closed_loop, make_frame
+from peopleboy.scenarios.loop.loop import calibrations_of, closed_loop, make_frame
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.boxes import iou

@@ -14,8 +14,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from docs.generate.pictures.paper import WIDTH_IN
-from peopleboy.scenarios.drawing.plan_place import draw_floor, draw_walls
-from peopleboy.scenarios.drawing.plan_sheet import Labels
+from peopleboy.scenarios.drawing.plan_sheet import Labels, draw_floor, draw_walls
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.running.run import run
