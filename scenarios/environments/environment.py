@@ -48,7 +48,8 @@ from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
 from peopleboy.scenarios.loop.tracker_by_name import make_checked_tracker, tracker_cameras
 from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
-from peopleboy.scenarios.scores.following_score import TARGET, following_task
+from peopleboy.scenarios.scores.drive_record import TARGET
+from peopleboy.scenarios.scores.following_metrics import following_task
 from peopleboy.sim.batch.sensing import Snapshot, take_snapshot
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.random_streams import stream

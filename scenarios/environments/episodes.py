@@ -20,10 +20,10 @@ from peopleboy.scenarios.environments.rewards import (
     areas_of,
     compute_rewards,
 )
-from peopleboy.scenarios.scores.comfort_metrics import score_company
-from peopleboy.scenarios.scores.corridor_metrics import score_way
-from peopleboy.scenarios.scores.following_metrics import FollowingTask
-from peopleboy.scenarios.scores.following_score import TARGET, Spot, score_instants, track_on
+from peopleboy.scenarios.scores.comfort_metrics import score_comfort
+from peopleboy.scenarios.scores.corridor_metrics import legs_of, score_corridor
+from peopleboy.scenarios.scores.drive_record import TARGET, DriveRecord
+from peopleboy.scenarios.scores.following_metrics import FollowingTask, Spot, score_following, track_on
 from peopleboy.sim.batch.sensing import Snapshot
 from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.shapes.shape_table import Numbers, ends
@@ -68,16 +68,21 @@ class EpisodeMetrics:
         counts, is_target = worlds["end"] - worlds["first"], people["id"] == TARGET
         target = np.full((len(worlds), 2), np.nan)
         target[np.repeat(np.arange(len(worlds)), counts)[is_target]] = people["position_m"][is_target]
-        time_s, robot, contact = worlds["time_s"], worlds["robot"], worlds["is_touching"]
-        track, unknown = [number for _, _, number in self._noted], np.full(len(worlds), np.nan)
-        following = np.column_stack([time_s, robot, target, contact, track, unknown])
-        company = np.column_stack([time_s, robot, worlds["velocity"][:, 0], counts])
+        drive = DriveRecord(
+            time_s=worlds["time_s"],
+            robot=worlds["robot"],
+            speed_m_s=worlds["velocity"][:, 0],
+            is_contact=worlds["is_touching"],
+            target=target,
+            track=np.array([number for _, _, number in self._noted]),
+            is_wrong=None,
+            count=counts,
+            people=np.column_stack([people["position_m"], people["velocity_m_s"]]),
+        )
         return {
-            "following": asdict(score_instants(following, self._task)),
-            "corridor": asdict(score_way(np.column_stack([time_s, robot, contact]), self._plan)),
-            "comfort": asdict(
-                score_company(company, np.column_stack([people["position_m"], people["velocity_m_s"]]))
-            ),
+            "following": asdict(score_following(drive, self._task)),
+            "corridor": asdict(score_corridor(drive, legs_of(self._plan))),
+            "comfort": asdict(score_comfort(drive)),
         }
 
 

@@ -15,13 +15,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.loop.loop import calibrations_of, thermal_box
-from peopleboy.sim.batch.snapshot import Snapshot
+from peopleboy.sim.batch.sensing import Snapshot
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.shapes.joined_tables import Numbers
+from peopleboy.sim.shapes.shape_table import Numbers
 from peopleboy.sim.truth.scenes import SEEN, Records, Scenes
 from peopleboy.tracker.boxes import image_shares
 from peopleboy.tracker.frame import THERMAL

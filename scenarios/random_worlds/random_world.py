@@ -28,7 +28,7 @@ from peopleboy.scenarios.random_worlds.draw_scene import (
     with_one_more,
 )
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.places.furniture.thing_kinds import KINDS
+from peopleboy.sim.places.furniture.thing_config import KINDS
 from peopleboy.sim.places.pieces import Kind
 from peopleboy.sim.random_streams import stream
 

@@ -30,9 +30,8 @@ from rerun.components import Colormap, FillMode
 from peopleboy.scenarios.drawing.palette import person_colour, track_colour
 from peopleboy.scenarios.recording.solids import Solid, fixture_solids, group_fixtures, urdf_solids
 from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig
-from peopleboy.sim.geometry.camera_geometry import CameraGeometry
 from peopleboy.sim.geometry.panorama import Panorama
-from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.geometry.pinhole import CameraGeometry, Pinhole
 from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.robot.robot_body import URDF
 from peopleboy.sim.shapes.shapes import UPRIGHT, ShapeKind

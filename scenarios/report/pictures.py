@@ -41,7 +41,7 @@ from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file
 from peopleboy.scenarios.run_folder.run_tables import Row, read_explanation
 from peopleboy.sim.cameras.kinds import kind_of, layers_of
-from peopleboy.sim.geometry.camera_geometry import CameraGeometry
+from peopleboy.sim.geometry.pinhole import CameraGeometry
 from peopleboy.tracker.attention.attend import Focus
 from peopleboy.tracker.attention.people.attentive_config import AttentiveConfig
 from peopleboy.tracker.attention.people.attentive_explanation import Attended

@@ -25,9 +25,10 @@ from peopleboy.scenarios.run_folder.finished_run import open_run, read_run
 from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versions
 from peopleboy.scenarios.run_folder.image_files import about_gains
 from peopleboy.scenarios.running.run_options import RunOptions
-from peopleboy.scenarios.scores.comfort_metrics import ComfortLog
-from peopleboy.scenarios.scores.corridor_metrics import CorridorLog
-from peopleboy.scenarios.scores.following_score import FollowingLog, following_task, tracks_on_target
+from peopleboy.scenarios.scores.comfort_metrics import score_comfort
+from peopleboy.scenarios.scores.corridor_metrics import legs_of, score_corridor
+from peopleboy.scenarios.scores.drive_record import DriveLog
+from peopleboy.scenarios.scores.following_metrics import following_task, score_following, tracks_on_target
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
 from peopleboy.sim.world import World
 from peopleboy.sim.world_config import WorldConfig
@@ -61,9 +62,7 @@ class Watchers:
         faults: Sequence[FaultSpec] = (),
         is_secret: bool = False,
     ) -> None:
-        self.following = FollowingLog()
-        self.corridor = CorridorLog()
-        self.comfort = ComfortLog()
+        self.drive = DriveLog()
         self._events = RunEvents(faults)
         self._sheet = ContactSheet(title, config.robot)
         self._recorder = recorder
@@ -76,9 +75,7 @@ class Watchers:
         events = self._events.update(tick)
         track, is_wrong = tracks_on_target(tick, self._boxes, self._track)
         self._track = track or self._track
-        self.following.add(tick.truth, track, None if self._is_secret else is_wrong)
-        self.corridor.add(tick.truth)
-        self.comfort.add(tick.truth)
+        self.drive.add(tick.truth, track, None if self._is_secret else is_wrong)
         self._sheet.add(tick, events)
         if self._recorder is not None:
             self._recorder.log(tick, events)
@@ -181,16 +178,14 @@ def run(
             folder.write(tick, [event.to_json() for event in events])
             report(tick, frames)
         folder.flush()
-        following = None
+        drive, following, corridor, comfort = watchers.drive.record(), None, None, None
         if scenario.robot.behaviour in FOLLOWERS and config.people:
             task = following_task(config, scenario.follow_config().keep_height)
-            following = watchers.following.score(task)
-        corridor = None
+            following = score_following(drive, task)
         if scenario.robot.behaviour == "follow_corridor":
-            corridor = watchers.corridor.score(scenario.plan)
-        comfort = None
+            corridor = score_corridor(drive, legs_of(scenario.plan))
         if scenario.robot.behaviour != "stand" and config.people:
-            comfort = watchers.comfort.score()
+            comfort = score_comfort(drive)
         scores = score_run(options.out, frames, following, corridor, comfort, options.boxes, name)
         watchers.save(options.out)
         folder.complete(scores.to_json())

@@ -9,12 +9,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.scenarios.scores.score_record import Floats, ScoreRecord, count_starts, metric
+from peopleboy.scenarios.scores.drive_record import DriveRecord, Flags, Floats, root_mean_square
+from peopleboy.scenarios.scores.score_record import ScoreRecord, metric
 from peopleboy.sim.robot.robot_body import RADIUS_M, outline_gap
-from peopleboy.sim.truth.scenes import ImageFreeTruth
-from peopleboy.sim.truth.truth import Truth
 
 # Spaces about a person, from the robot's outline to the middle of the body (E. T. Hall, The Hidden Dimension,
 # 1966, which measures from body to body).
@@ -22,6 +20,7 @@ INTIMATE_M: Final = 0.45
 PERSONAL_M: Final = 1.2
 SOCIAL_M: Final = 3.6
 _FORESEEN_S: Final = 30.0  # beyond which nobody goes on as they are
+_BODY_M: Final = 0.25  # radius of the disc that stands for a person
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,50 +47,41 @@ class ComfortScore(ScoreRecord):
     felt_jerk_m_s3: float = metric("jerk felt", "m/s3", "the same with somebody within 3.6 m")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ComfortRun:
-    """What happened in a run; one row a frame.
+def score_comfort(run: DriveRecord) -> ComfortScore:
+    """Score how a robot drove among people."""
+    row = np.repeat(np.arange(len(run.time_s)), run.count)
+    gap_m, soonest_s = np.full((2, len(run.time_s)), np.inf)
+    np.minimum.at(gap_m, row, _gaps(run.robot[row], run.people))
+    np.minimum.at(soonest_s, row, _times_to_collision(run.robot[row], run.speed_m_s[row], run.people))
+    return score_nearness(run, gap_m, soonest_s)
 
-    Attributes:
-        time_s: (T,) [s] rising.
-        robot: (T, 3) [m, m, rad] x, y, heading in the world frame.
+
+def score_nearness(run: DriveRecord, gap_m: Floats, time_to_collision_s: Floats) -> ComfortScore:
+    """Score one run; a frame lasts until the next one.
+
+    Args:
+        run: what happened.
         gap_m: (T,) [m] from the robot's outline to the nearest person's middle; inf where nobody is there.
         time_to_collision_s: (T,) [s] least over all people; inf where none is on a collision course.
-
-    Raises:
-        BadInput: the arrays do not have these shapes, or time does not rise.
     """
-
-    time_s: Floats
-    robot: Floats
-    gap_m: Floats
-    time_to_collision_s: Floats
-
-    def __post_init__(self) -> None:
-        """Refuse arrays that do not belong together."""
-        frames = len(self.time_s)
-        shapes = [a.shape for a in (self.time_s, self.robot, self.gap_m, self.time_to_collision_s)]
-        if frames == 0 or shapes != [(frames,), (frames, 3), (frames,), (frames,)]:
-            raise BadInput(f"comfort: shapes must be (T,), (T, 3), (T,), (T,) with T > 0, got {shapes}")
-        if not np.all(np.diff(self.time_s) > 0.0):
-            raise BadInput("comfort: time_s must rise from frame to frame")
-
-
-def score_comfort(run: ComfortRun) -> ComfortScore:
-    """Score one run; a frame lasts until the next one."""
     lasts_s = np.diff(run.time_s, append=run.time_s[-1])
-    is_personal, is_intimate = run.gap_m < PERSONAL_M, run.gap_m < INTIMATE_M
-    nearest_s = float(np.min(run.time_to_collision_s))
+    is_personal, is_intimate = gap_m < PERSONAL_M, gap_m < INTIMATE_M
+    nearest_s = float(np.min(time_to_collision_s))
     jerk = _jerk(run)
     return ComfortScore(
         personal_s=float(lasts_s[is_personal].sum()),
         intimate_s=float(lasts_s[is_intimate].sum()),
-        personal_intrusions=float(count_starts(is_personal)),
-        intimate_intrusions=float(count_starts(is_intimate)),
+        personal_intrusions=float(_count_starts(is_personal)),
+        intimate_intrusions=float(_count_starts(is_intimate)),
         min_time_to_collision_s=nearest_s if nearest_s <= _FORESEEN_S else math.nan,
-        jerk_m_s3=_root_mean_square(jerk),
-        felt_jerk_m_s3=_root_mean_square(jerk[run.gap_m[3:] < SOCIAL_M]),
+        jerk_m_s3=root_mean_square(jerk),
+        felt_jerk_m_s3=root_mean_square(jerk[gap_m[3:] < SOCIAL_M]),
     )
+
+
+def _count_starts(flags: Flags) -> int:
+    """Count the runs of true values (T,)."""
+    return int(np.sum(flags & ~np.concatenate([[False], flags[:-1]])))
 
 
 def times_to_collision(gaps: Floats, velocities: Floats, reach_m: float) -> Floats:
@@ -120,7 +110,7 @@ def _products(one: Floats, other: Floats) -> Floats:
     return products
 
 
-def _jerk(run: ComfortRun) -> Floats:
+def _jerk(run: DriveRecord) -> Floats:
     """Return the second derivative of the forward speed [m/s3] by differences: (T - 3,)."""
     if len(run.time_s) < 4:
         return np.zeros(0)
@@ -132,61 +122,18 @@ def _jerk(run: ComfortRun) -> Floats:
     return jerk
 
 
-def _root_mean_square(values: Floats) -> float:
-    return math.sqrt(float(np.mean(values**2))) if values.size else math.nan
-
-
-_BODY_M: Final = 0.25  # radius of the disc that stands for a person
-
-
-class ComfortLog:
-    """Keeps what the scores of comfort need, instant by instant, and works out the rest when asked."""
-
-    def __init__(self) -> None:
-        self._rows: list[tuple[float, ...]] = []
-        self._people: list[tuple[float, ...]] = []
-
-    def add(self, truth: Truth | ImageFreeTruth) -> None:
-        """Take in one instant."""
-        robot, (speed, _), people = truth.robot, truth.robot_velocity, truth.people
-        self._rows.append((truth.time_s, robot.x, robot.y, robot.heading, speed, len(people)))
-        self._people += [(*person.position_m, *person.velocity_m_s) for person in people]
-
-    def score(self) -> ComfortScore:
-        """Score what happened so far."""
-        people = np.array(self._people, dtype=np.float64).reshape(-1, 4)
-        return score_company(np.array(self._rows, dtype=np.float64), people)
-
-
-def score_company(table: NDArray[np.float64], people: NDArray[np.float64]) -> ComfortScore:
-    """Score how a robot drove among people.
-
-    Args:
-        table: (T, 6) of each instant the time [s], the robot's x, y [m], heading [rad] and forward speed
-            [m/s], and how many people were there.
-        people: (Q, 4) x, y [m] and velocity [m/s] of all of them, one instant after the other.
-    """
-    row = np.repeat(np.arange(len(table)), table[:, 5].astype(np.int64))
-    gap_m, soonest_s = np.full((2, len(table)), np.inf)
-    np.minimum.at(gap_m, row, _gaps(table[row], people))
-    np.minimum.at(soonest_s, row, _times_to_collision(table[row], people))
-    return score_comfort(
-        ComfortRun(time_s=table[:, 0], robot=table[:, 1:4], gap_m=gap_m, time_to_collision_s=soonest_s)
-    )
-
-
-def _gaps(robots: NDArray[np.float64], people: NDArray[np.float64]) -> list[float]:
-    """Distances [m] on the floor of people, (Q, 4), from the outlines of robots, (Q, 6), as above."""
+def _gaps(robots: Floats, people: Floats) -> list[float]:
+    """Distances [m] on the floor of people, (Q, 4), from the outlines of robots, (Q, 3)."""
     return [
         outline_gap(Pose2(*robot), (x, y))
-        for robot, (x, y) in zip(robots[:, 1:4].tolist(), people[:, :2].tolist(), strict=True)
+        for robot, (x, y) in zip(robots.tolist(), people[:, :2].tolist(), strict=True)
     ]
 
 
-def _times_to_collision(robots: NDArray[np.float64], people: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Times [s] (Q,) of robots and people, rows as above."""
-    headings, speeds = robots[:, 3].tolist(), robots[:, 4]
+def _times_to_collision(robots: Floats, speeds: Floats, people: Floats) -> Floats:
+    """Times [s] (Q,) of robots, by pose and forward speed, and people, rows as above."""
+    headings = robots[:, 2].tolist()
     own_x = speeds * [math.cos(heading) for heading in headings]
     own_y = speeds * [math.sin(heading) for heading in headings]
     velocity = people[:, 2:] - np.stack([own_x, own_y], axis=1)
-    return times_to_collision(people[:, :2] - robots[:, 1:3], velocity, RADIUS_M + _BODY_M)
+    return times_to_collision(people[:, :2] - robots[:, :2], velocity, RADIUS_M + _BODY_M)

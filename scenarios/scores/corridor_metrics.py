@@ -7,13 +7,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.scores.score_record import Flags, Floats, ScoreRecord, count_contacts, metric
+from peopleboy.scenarios.scores.drive_record import (
+    DriveRecord,
+    Floats,
+    count_contacts,
+    mean,
+    root_mean_square,
+    way_m,
+)
+from peopleboy.scenarios.scores.score_record import ScoreRecord, metric
 from peopleboy.sim.places.floor_plan import FloorPlan, Rectangle
-from peopleboy.sim.truth.scenes import ImageFreeTruth
-from peopleboy.sim.truth.truth import Truth
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,36 +52,25 @@ class CorridorScore(ScoreRecord):
     legs: int = metric("legs", "", "straight pieces of corridor that the robot was on")
 
 
-def score_corridor(*, time_s: Floats, robot: Floats, is_contact: Flags, legs: Sequence[Leg]) -> CorridorScore:
+def score_corridor(run: DriveRecord, legs: Sequence[Leg]) -> CorridorScore:
     """Score one run in which the robot was to follow corridors.
 
     Args:
-        time_s: (T,) [s] rising.
-        robot: (T, 3) [m, m, rad] x, y, heading in the world frame.
-        is_contact: (T,) whether the robot touched anything or anyone.
+        run: what happened.
         legs: the corridors.
-
-    Raises:
-        BadInput: the arrays do not have these shapes.
     """
-    frames = len(time_s)
-    if frames == 0 or (robot.shape, is_contact.shape) != ((frames, 3), (frames,)):
-        raise BadInput(
-            f"corridor: shapes must be (T,), (T, 3), (T,) with T > 0, "
-            f"got {time_s.shape}, {robot.shape}, {is_contact.shape}"
-        )
+    robot = run.robot
     errors = [_errors(robot, leg, legs) for leg in legs]
     lateral = np.concatenate([np.zeros(0), *(lateral for lateral, _ in errors)])
     heading = np.concatenate([np.zeros(0), *(heading for _, heading in errors)])
-    way_m = float(np.sum(np.hypot(*np.diff(robot[:, :2], axis=0).T)))
-    lasted_s = float(time_s[-1] - time_s[0])
+    driven_m, lasted_s = way_m(robot), float(run.time_s[-1] - run.time_s[0])
     return CorridorScore(
-        lateral_rms_m=math.sqrt(float(np.mean(lateral**2))) if len(lateral) else math.nan,
+        lateral_rms_m=root_mean_square(lateral),
         lateral_max_m=float(np.max(lateral)) if len(lateral) else math.nan,
-        heading_error_rad=float(np.mean(heading)) if len(heading) else math.nan,
-        contacts=count_contacts(time_s, is_contact),
-        mean_speed_m_s=way_m / lasted_s if lasted_s > 0.0 else math.nan,
-        way_m=way_m,
+        heading_error_rad=mean(heading),
+        contacts=count_contacts(run.time_s, run.is_contact),
+        mean_speed_m_s=driven_m / lasted_s if lasted_s > 0.0 else math.nan,
+        way_m=driven_m,
         legs=sum(len(lateral) > 0 for lateral, _ in errors),
     )
 
@@ -103,36 +96,9 @@ def _along_and_beside(points: Floats, leg: Leg) -> Floats:
     return places
 
 
-class CorridorLog:
-    """Keeps what the scores of corridor following need, instant by instant."""
-
-    def __init__(self) -> None:
-        self._rows: list[tuple[float, ...]] = []
-
-    def add(self, truth: Truth | ImageFreeTruth) -> None:
-        """Take in one instant."""
-        robot = truth.robot
-        self._rows.append((truth.time_s, robot.x, robot.y, robot.heading, float(bool(truth.contacts))))
-
-    def score(self, plan: FloorPlan) -> CorridorScore:
-        """Score the way so far in the corridors of a floor plan."""
-        return score_way(np.array(self._rows, dtype=np.float64), plan)
-
-
-def score_way(table: NDArray[np.float64], plan: FloorPlan) -> CorridorScore:
-    """Score a way in the corridors of a floor plan.
-
-    Args:
-        table: (T, 5) of each instant the time [s], the robot's x, y [m] and heading [rad], and whether it
-            touched anything.
-        plan: of the place.
-    """
-    return score_corridor(
-        time_s=table[:, 0],
-        robot=table[:, 1:4],
-        is_contact=table[:, 4] > 0.0,
-        legs=tuple(centre_line(area) for _, area in plan.areas),
-    )
+def legs_of(plan: FloorPlan) -> tuple[Leg, ...]:
+    """Return the corridors of a floor plan."""
+    return tuple(centre_line(area) for _, area in plan.areas)
 
 
 def centre_line(area: Rectangle) -> Leg:

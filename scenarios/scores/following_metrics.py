@@ -3,13 +3,33 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.scores.score_record import Flags, Floats, ScoreRecord, count_contacts, metric
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.scores.drive_record import (
+    TARGET,
+    DriveRecord,
+    Flags,
+    Floats,
+    count_contacts,
+    mean,
+    root_mean_square,
+    way_m,
+)
+from peopleboy.scenarios.scores.score_record import ScoreRecord, metric
+from peopleboy.sim.cameras.kinds import flat_geometry
+from peopleboy.sim.truth.truth import Box
+from peopleboy.sim.world_config import WorldConfig
+from peopleboy.tracker.boxes import iou
+from peopleboy.tracker.evaluation.floor import floor_squares
+from peopleboy.tracker.footage.box_kinds import BoxKind
+from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.track import Status, Track
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,53 +82,7 @@ class FollowingScore(ScoreRecord):
     identity_changes: int = metric("identity changes", "", "new numbers of the person's track")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class FollowingRun:
-    """What happened in a run in which the robot was to follow one person; one row a frame.
-
-    Attributes:
-        time_s: (T,) [s] rising.
-        robot: (T, 3) [m, m, rad] x, y, heading in the world frame.
-        person: (T, 2) [m] x, y in the world frame, NaN while the person is not there.
-        is_tracked: (T,) whether a track lay on this person.
-        is_contact: (T,) whether the robot touched anything or anyone.
-        track: (T,) number of the track that lay on this person, 0 for none; None to leave that out.
-        is_wrong: (T,) whether the robot went after another person; None if nobody knows.
-
-    Raises:
-        BadInput: the arrays do not have these shapes, or time does not rise.
-    """
-
-    time_s: Floats
-    robot: Floats
-    person: Floats
-    is_tracked: Flags
-    is_contact: Flags
-    track: NDArray[np.int64] | None = None
-    is_wrong: Flags | None = None
-
-    def __post_init__(self) -> None:
-        """Refuse arrays that do not belong together."""
-        frames = len(self.time_s)
-        arrays = (self.time_s, self.robot, self.person, self.is_tracked, self.is_contact)
-        shapes = [a.shape for a in arrays]
-        if frames == 0 or shapes != [(frames,), (frames, 3), (frames, 2), (frames,), (frames,)]:
-            raise BadInput(
-                f"following: shapes must be (T,), (T, 3), (T, 2), (T,), (T,) with T > 0, got {shapes}"
-            )
-        more = [a.shape for a in (self.track, self.is_wrong) if a is not None]
-        if any(shape != (frames,) for shape in more):
-            raise BadInput(f"following: track and is_wrong must be ({frames},), got {more}")
-        if not np.all(np.diff(self.time_s) > 0.0):
-            raise BadInput("following: time_s must rise from frame to frame")
-
-    @property
-    def first(self) -> int:
-        """Index of the encounter; T if there was none."""
-        return int(np.argmax(self.is_tracked)) if self.is_tracked.any() else len(self.time_s)
-
-
-def score_following(run: FollowingRun, task: FollowingTask | None = None) -> FollowingScore:
+def score_following(run: DriveRecord, task: FollowingTask | None = None) -> FollowingScore:
     """Score one run in which the robot was to follow one person.
 
     Args:
@@ -116,8 +90,9 @@ def score_following(run: FollowingRun, task: FollowingTask | None = None) -> Fol
         task: what was asked.
     """
     task = FollowingTask() if task is None else task
-    time_s, is_tracked, first = run.time_s, run.is_tracked, run.first
-    distance, bearing = _person_from_robot(run.robot, run.person)
+    time_s, is_tracked = run.time_s, run.is_tracked
+    first = int(np.argmax(is_tracked)) if is_tracked.any() else len(time_s)
+    distance, bearing = _person_from_robot(run.robot, run.target)
     is_there = np.isfinite(distance)
     since = is_there & (np.arange(len(time_s)) >= first)
     nearest_m, farthest_m = task.keep_m - task.within_m, task.keep_m + task.within_m
@@ -128,28 +103,28 @@ def score_following(run: FollowingRun, task: FollowingTask | None = None) -> Fol
     return FollowingScore(
         found=bool(is_tracked.any()),
         time_to_find_s=float(time_s[first] - time_s[0]) if is_tracked.any() else math.nan,
-        followed=_mean(is_tracked[since]),
-        in_band=_mean(is_kept[since]),
-        facing=_mean(is_facing[since]),
-        in_band_and_facing=_mean((is_kept & is_facing)[since]),
-        mean_distance_error_m=_mean(error),
-        rms_distance_error_m=math.sqrt(_mean(error**2)),
+        followed=mean(is_tracked[since]),
+        in_band=mean(is_kept[since]),
+        facing=mean(is_facing[since]),
+        in_band_and_facing=mean((is_kept & is_facing)[since]),
+        mean_distance_error_m=mean(error),
+        rms_distance_error_m=root_mean_square(error),
         min_distance_m=float(np.min(distance[is_there])) if is_there.any() else math.nan,
         collisions=count_contacts(time_s, run.is_contact),
         times_lost=int(np.sum(lost >= task.lost_s)),
         longest_lost_s=float(np.max(lost, initial=0.0)),
         followed_to_end=_is_at_end(run, task.reached_s),
         path_efficiency=_path_efficiency(run.robot[first:], is_kept[first:]),
-        mean_heading_error_rad=_mean(np.abs(bearing[since])),
+        mean_heading_error_rad=mean(np.abs(bearing[since])),
         wrong_person_s=math.nan if run.is_wrong is None else float(np.sum(_periods(time_s, run.is_wrong))),
-        identity_changes=0 if run.track is None else _changes(run.track),
+        identity_changes=_changes(run.track),
     )
 
 
-def _is_at_end(run: FollowingRun, last_s: float) -> bool:
+def _is_at_end(run: DriveRecord, last_s: float) -> bool:
     """Return whether the person was tracked for most of the last part, and nobody else followed."""
     last = run.time_s >= run.time_s[-1] - last_s
-    is_there = last & np.isfinite(run.person[:, 0])
+    is_there = last & np.isfinite(run.target[:, 0])
     is_wrong = run.is_wrong is not None and bool(run.is_wrong[last].any())
     return bool(np.mean(run.is_tracked[is_there]) > 0.5) and not is_wrong if is_there.any() else False
 
@@ -159,7 +134,7 @@ def _path_efficiency(robot: Floats, is_kept: Flags) -> float:
     if not is_kept.any():
         return math.nan
     way = robot[: int(np.argmax(is_kept)) + 1, :2]
-    driven = float(np.sum(np.hypot(*np.diff(way, axis=0).T)))
+    driven = way_m(way)
     return float(np.hypot(*(way[-1] - way[0]))) / driven if driven > 0.1 else math.nan
 
 
@@ -175,12 +150,97 @@ def _person_from_robot(robot: Floats, person: Floats) -> tuple[Floats, Floats]:
     return np.hypot(x, y), np.arctan2(np.sin(bearing), np.cos(bearing))
 
 
-def _mean(values: Floats | Flags) -> float:
-    return float(np.mean(values)) if values.size else math.nan
-
-
 def _periods(time_s: Floats, flags: Flags) -> Floats:
     """Return the length [s] of each run of true values, up to the next frame or the end: (N,)."""
     edges = np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     return time_s[np.minimum(ends, len(time_s) - 1)] - time_s[starts]
+
+
+# The scores of following one person, instant by instant, in a run and in an environment alike.
+
+_LEAST_IOU = 0.5  # a track lies on a person whom it overlaps by more
+
+
+class Spot(NamedTuple):
+    """Where a person truly is.
+
+    Attributes:
+        box: left, top, width, height [px] in the thermal image.
+        place_m: [m] forward, left, in the robot's frame.
+    """
+
+    box: Box
+    place_m: tuple[float, float]
+
+
+def tracks_on_target(tick: Tick, boxes: BoxKind = BoxKind.TORSO, before: int = 0) -> tuple[int, bool]:
+    """Return the number of the track on the person to follow, 0 for none; and whether another is followed.
+
+    Args:
+        tick: the instant.
+        boxes: what the tracker's boxes are drawn round.
+        before: see `track_on`.
+    """
+    robot, is_whole = tick.truth.robot, boxes is BoxKind.WHOLE
+    spots = {
+        person.id: Spot(box, robot.to_local(person.position_m))
+        for person in tick.truth.people
+        if (box := person.whole_box if is_whole else person.box) is not None
+    }
+    return track_on(spots.get(TARGET), tick.tracks, before), _is_wrong(spots, tick)
+
+
+def track_on(spot: Spot | None, tracks: Iterable[Track], before: int = 0) -> int:
+    """Return the number of the track that lies on a person, 0 if none does well enough.
+
+    Args:
+        spot: where the person is.
+        tracks: of the instant.
+        before: the track that lay there last, 0 for none: as long as it does, no other is taken, however
+            well that one lies.
+    """
+    if spot is None:
+        return 0
+    lying = [
+        (track.id == before, overlap, track.id)
+        for track in _sure(tracks)
+        if (overlap := _overlap(track, spot)) > _LEAST_IOU
+    ]
+    return max(lying)[2] if lying else 0
+
+
+def _is_wrong(spots: dict[int, Spot], tick: Tick) -> bool:
+    """Return whether the track that the robot follows lies on another person than the person to follow."""
+    for track in _sure(tick.tracks):
+        if track.id == tick.following:
+            overlaps = [(_overlap(track, spot), number) for number, spot in spots.items()]
+            overlap, whose = max(overlaps, default=(0.0, 0))
+            return whose != TARGET and overlap > _LEAST_IOU
+    return False
+
+
+def _sure(tracks: Iterable[Track]) -> Iterable[Track]:
+    return (track for track in tracks if track.status is not Status.TENTATIVE)
+
+
+def _overlap(track: Track, spot: Spot) -> float:
+    """Return how well a track lies on a person, in 0..1: in the thermal image, or else on the floor."""
+    if THERMAL in track.boxes:
+        return float(iou(np.array(track.boxes[THERMAL]), np.array(spot.box)))
+    if track.place is None:
+        return 0.0
+    said, true = np.array(track.place.position_m), np.array(spot.place_m)
+    return float(iou(floor_squares(said), floor_squares(true)))
+
+
+def following_task(config: WorldConfig, keep_height: float) -> FollowingTask:
+    """Turn the height [image heights] at which a person is to be seen into the distance that shows it so.
+
+    It is the first person who is to be followed; where there is nobody, the distance is the usual one.
+    """
+    if not config.people:
+        return FollowingTask()
+    camera = flat_geometry(config.robot.cameras, "thermal")
+    shown_px = keep_height * camera.height
+    return FollowingTask(keep_m=camera.focal_px * config.people[0].height_m / shown_px + camera.position_m[0])

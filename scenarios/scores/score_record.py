@@ -1,4 +1,4 @@
-"""Declare the figures of a score once: key, table name, unit and meaning; count what the scores share."""
+"""Declare the figures of a score once: key, table name, unit and meaning."""
 
 from __future__ import annotations
 
@@ -7,13 +7,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
-from peopleboy.sim.truth.events import CONTACT_ENDS_S
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 Row = tuple[str, float, str, str]  # name, value, unit, explanation
 
 # Records hold shares and radians.
@@ -66,20 +59,3 @@ class ScoreRecord:
             key: None if isinstance(value, float) and math.isnan(value) else value
             for key, value in figures.items()
         }
-
-
-def count_contacts(time_s: Floats, is_contact: Flags) -> int:
-    """Count the contacts that begin in a run; bouncing, or rubbing along a wall, is one contact.
-
-    Args:
-        time_s: (T,) of the frames.
-        is_contact: (T,) whether the robot touched anything or anyone at each of them.
-    """
-    touches = np.flatnonzero(is_contact)
-    is_apart = time_s[touches[1:] - 1] - time_s[touches[:-1]] >= CONTACT_ENDS_S
-    return min(len(touches), 1) + int(is_apart.sum())
-
-
-def count_starts(flags: Flags) -> int:
-    """Count the runs of true values (T,)."""
-    return int(np.sum(flags & ~np.concatenate([[False], flags[:-1]])))

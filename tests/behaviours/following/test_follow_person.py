@@ -11,7 +11,8 @@ from peopleboy.behaviours.following.follow_identity import recognise
 from peopleboy.behaviours.following.follow_person import FollowConfig, FollowPerson, FollowState, follow
 from peopleboy.behaviours.make_behaviour import make_behaviour
 from peopleboy.behaviours.safety_limits import SafetyConfig
-from peopleboy.scenarios.scores.following_metrics import FollowingRun, score_following
+from peopleboy.scenarios.scores.following_metrics import score_following
+from tests.helpers.drives import made_drive
 from tests.helpers.percepts.percepts import percept, person
 from tests.helpers.percepts.toy_world import STEP_S, Toy, drive, room, straight, wall
 
@@ -250,14 +251,10 @@ def test_a_person_who_walks_in_circles_is_followed(speed, radius, sign):
 
     toy = Toy(path=path, rng=np.random.default_rng(0))
     log = drive(toy, make_behaviour("follow_person"), 30.0)
-    run = FollowingRun(
-        time_s=log.time_s,
-        robot=log.robot,
-        person=log.person,
-        is_tracked=log.is_tracked,
-        is_contact=log.is_contact,
+    track = log.is_tracked.astype(np.int64)
+    score = score_following(
+        made_drive(log.time_s, log.robot, target=log.person, track=track, is_contact=log.is_contact)
     )
-    score = score_following(run)
     assert score.followed == 1.0
     assert score.facing > 0.95
     assert score.collisions == 0

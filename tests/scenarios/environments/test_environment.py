@@ -18,7 +18,7 @@ from peopleboy.registration import ENVIRONMENTS
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.observations import KINDS
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.scores.following_score import following_task
+from peopleboy.scenarios.scores.following_metrics import following_task
 from peopleboy.sim.world import World
 from tests.helpers.calls.refused import refused
 from tests.helpers.some_of import some_of

@@ -7,21 +7,20 @@ import pytest
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import closed_loop
-from peopleboy.scenarios.scores.corridor_metrics import CorridorLog, Leg, centre_line, score_corridor
+from peopleboy.scenarios.scores.corridor_metrics import Leg, centre_line, legs_of, score_corridor
+from peopleboy.scenarios.scores.drive_record import DriveLog
 from peopleboy.sim.places.floor_plan import Rectangle
 from peopleboy.sim.world import World
+from tests.helpers.drives import made_drive
 
 LEG = Leg((0.0, 0.0), (20.0, 0.0), 3.0)
 
 
 def score(x, y, heading, contact=None, legs=(LEG,)):
     count = len(x)
-    return score_corridor(
-        time_s=np.arange(count) / 2.0,
-        robot=np.stack([x, np.broadcast_to(y, count), np.broadcast_to(heading, count)], axis=1).astype(float),
-        is_contact=np.zeros(count, bool) if contact is None else np.array(contact),
-        legs=legs,
-    )
+    robot = np.stack([x, np.broadcast_to(y, count), np.broadcast_to(heading, count)], axis=1).astype(float)
+    is_contact = np.zeros(count, bool) if contact is None else np.array(contact)
+    return score_corridor(made_drive(np.arange(count) / 2.0, robot, is_contact=is_contact), legs)
 
 
 def test_a_robot_beside_the_middle_has_that_lateral_error_either_way_along():
@@ -72,13 +71,13 @@ def test_a_robot_in_a_world_follows_its_corridor_by_the_image_and_keeps_the_midd
     scenario = load_scenario("corridor_straight")
     robot = replace(scenario.spec.robot, walls_by="image")
     scenario = replace(scenario, spec=replace(scenario.spec, robot=robot))
-    log = CorridorLog()
+    log = DriveLog()
     with World(scenario.world(0)) as world:
         modes = set()
         for tick in closed_loop(world, NoTracker(), scenario.make_behaviour(), 7 * 15):
-            log.add(tick.truth)
+            log.add(tick.truth, track=0)
             modes.add(tick.mode)
-    found = log.score(scenario.plan)
+    found = score_corridor(log.record(), legs_of(scenario.plan))
     assert "corridor" in modes
     assert found.contacts == 0
     assert found.way_m > 2.0

@@ -10,14 +10,10 @@ from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.scores.following_metrics import (
-    FollowingRun,
-    FollowingTask,
-    count_contacts,
-    score_following,
-)
-from peopleboy.scenarios.scores.following_score import following_task
+from peopleboy.scenarios.scores.drive_record import count_contacts
+from peopleboy.scenarios.scores.following_metrics import FollowingTask, following_task, score_following
 from peopleboy.sim.truth.events import EventLog
+from tests.helpers.drives import made_drive
 
 STEP_S = 0.5
 
@@ -28,13 +24,12 @@ def score(distance, *, bearing=0.0, tracked=None, contact=None, heading=0.7, tas
     frames = len(distance)
     angle = heading + np.broadcast_to(bearing, frames)
     person = np.stack([1.0 + distance * np.cos(angle), 2.0 + distance * np.sin(angle)], axis=1)
-    run = FollowingRun(
-        time_s=10.0 + STEP_S * np.arange(frames),
-        robot=np.tile([1.0, 2.0, heading], (frames, 1)),
-        person=person,
-        is_tracked=np.array([True] * frames if tracked is None else tracked),
+    run = made_drive(
+        10.0 + STEP_S * np.arange(frames),
+        np.tile([1.0, 2.0, heading], (frames, 1)),
+        target=person,
         is_contact=np.array([False] * frames if contact is None else contact),
-        **more,
+        **({"track": np.array([True] * frames if tracked is None else tracked).astype(np.int64)} | more),
     )
     return score_following(run, task)
 
@@ -122,17 +117,10 @@ def test_a_person_who_is_away_is_not_lost_meanwhile():
 
 
 def test_arrays_of_different_lengths_and_standing_time_are_refused():
-    good = {
-        "time_s": np.arange(3.0),
-        "robot": np.zeros((3, 3)),
-        "person": np.ones((3, 2)),
-        "is_tracked": np.ones(3, bool),
-        "is_contact": np.zeros(3, bool),
-    }
     with pytest.raises(BadInput, match="shapes"):
-        FollowingRun(**{**good, "person": np.ones((2, 2))})
+        made_drive(np.arange(3.0), np.zeros((3, 3)), target=np.ones((2, 2)))
     with pytest.raises(BadInput, match="rise"):
-        FollowingRun(**{**good, "time_s": np.zeros(3)})
+        made_drive(np.zeros(3), np.zeros((3, 3)))
 
 
 def test_a_person_lost_or_exchanged_in_the_last_seconds_was_not_followed_to_the_end():
@@ -155,8 +143,7 @@ def test_a_detour_to_the_person_halves_the_efficiency():
     robot = np.stack([x, np.where(np.arange(frames) % 2, 0.1 * math.sqrt(3.0), 0.0), 0.0 * x], axis=1)
     person = np.stack([x + 9.0, 0.0 * x], axis=1)
     person[-1, 0] = x[-1] + 3.0
-    seen = np.ones(frames, bool)
-    run = FollowingRun(time_s=time_s, robot=robot, person=person, is_tracked=seen, is_contact=~seen)
+    run = made_drive(time_s, robot, target=person, track=np.ones(frames, np.int64))
     assert score_following(run).path_efficiency == pytest.approx(0.5)
     assert score_following(run).mean_heading_error_rad < 0.05
 

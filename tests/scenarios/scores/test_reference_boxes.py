@@ -14,7 +14,7 @@ import pytest
 from peopleboy.registry import Entry
 from peopleboy.scenarios.report.findings.run_findings import analyse_run, headline
 from peopleboy.scenarios.run_folder.finished_run import open_run
-from peopleboy.scenarios.scores.following_score import tracks_on_target
+from peopleboy.scenarios.scores.following_metrics import tracks_on_target
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Status, Track

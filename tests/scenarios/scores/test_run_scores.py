@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
-from peopleboy.scenarios.scores.following_metrics import FollowingRun, score_following
+from peopleboy.scenarios.scores.following_metrics import score_following
 from peopleboy.scenarios.scores.run_scores import RunScores, headline
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
+from tests.helpers.drives import made_drive
 
 CORRIDOR = CorridorScore(
     lateral_rms_m=0.05,
@@ -58,12 +59,11 @@ def test_all_means_all_and_none_means_none(found: int, false: int, clues: list[s
 def test_who_follows_somebody_else_is_told_so(tmp_path: Path) -> None:
     people = scores_of(tmp_path, 200)
     still = np.zeros(30, dtype=np.bool_)
-    run = FollowingRun(
-        time_s=np.arange(30) / 15.0,
-        robot=np.zeros((30, 3)),
-        person=np.full((30, 2), 3.0),
-        is_tracked=~still,
-        is_contact=still,
+    run = made_drive(
+        np.arange(30) / 15.0,
+        np.zeros((30, 3)),
+        target=np.full((30, 2), 3.0),
+        track=np.ones(30, np.int64),
         is_wrong=np.arange(30) < 12,
     )
     assert "went after somebody else for 0.8 s; no contact" in headline(

@@ -1,0 +1,135 @@
+"""Record what happened while a robot drove among people: what the scores of its driving are made of."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.bad_input import BadInput
+from peopleboy.sim.truth.events import CONTACT_ENDS_S
+from peopleboy.sim.truth.scenes import ImageFreeTruth
+from peopleboy.sim.truth.truth import Truth
+
+TARGET = 1  # the person to follow: the scenario's first
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class DriveRecord:
+    """What happened in a run; one row a frame.
+
+    Attributes:
+        time_s: (T,) [s] rising.
+        robot: (T, 3) [m, m, rad] x, y, heading in the world frame.
+        speed_m_s: (T,) of the robot, forwards.
+        is_contact: (T,) whether the robot touched anything or anyone.
+        target: (T, 2) [m] x, y of the person to follow, NaN while that one is not there.
+        track: (T,) number of the track that lay on this person, 0 for none.
+        is_wrong: (T,) whether the robot went after another person; None if that is not known.
+        count: (T,) how many people were there.
+        people: (Q, 4) [m, m, m/s, m/s] x, y and velocity of all of them, one frame after the other.
+
+    Raises:
+        BadInput: the arrays do not have these shapes, or time does not rise.
+    """
+
+    time_s: Floats
+    robot: Floats
+    speed_m_s: Floats
+    is_contact: Flags
+    target: Floats
+    track: NDArray[np.int64]
+    is_wrong: Flags | None
+    count: NDArray[np.int64]
+    people: Floats
+
+    def __post_init__(self) -> None:
+        """Refuse arrays that do not belong together."""
+        frames, one = len(self.time_s), (len(self.time_s),)
+        wrong = one if self.is_wrong is None else self.is_wrong.shape
+        arrays = (self.time_s, self.speed_m_s, self.is_contact, self.track, self.count)
+        shapes = [*(a.shape for a in arrays), wrong, self.robot.shape, self.target.shape, self.people.shape]
+        if frames == 0 or shapes != [*[one] * 6, (frames, 3), (frames, 2), (self.count.sum(), 4)]:
+            raise BadInput(
+                "drive: shapes of time, speed, contact, track, count and is_wrong must be (T,), of robot "
+                f"(T, 3), target (T, 2), people (Q, 4), with T > 0 and Q the sum of count, got {shapes}"
+            )
+        if not np.all(np.diff(self.time_s) > 0.0):
+            raise BadInput("drive: time_s must rise from frame to frame")
+
+    @property
+    def is_tracked(self) -> Flags:
+        """(T,) whether a track lay on the person to follow."""
+        return self.track > 0
+
+
+class DriveLog:
+    """Collects what a `DriveRecord` holds, instant by instant."""
+
+    def __init__(self) -> None:
+        self._rows: list[tuple[float, ...]] = []
+        self._people: list[tuple[float, ...]] = []
+
+    def add(self, truth: Truth | ImageFreeTruth, track: int, is_wrong: bool | None = None) -> None:
+        """Take in one instant.
+
+        Args:
+            truth: of the instant.
+            track: number of the track that lies on the person to follow, 0 for none.
+            is_wrong: whether the robot goes after another person; None if that is not known.
+        """
+        robot, (speed_m_s, _), people = truth.robot, truth.robot_velocity, truth.people
+        target = next((person.position_m for person in people if person.id == TARGET), (math.nan, math.nan))
+        wrong = math.nan if is_wrong is None else float(is_wrong)
+        pose = (robot.x, robot.y, robot.heading)
+        events = (bool(truth.contacts), track, wrong, len(people))
+        self._rows.append((truth.time_s, *pose, speed_m_s, *target, *events))
+        self._people += [(*person.position_m, *person.velocity_m_s) for person in people]
+
+    def record(self) -> DriveRecord:
+        """Return what happened so far."""
+        table = np.array(self._rows, np.float64).reshape(-1, 11)
+        wrong = table[:, 9]
+        return DriveRecord(
+            time_s=table[:, 0],
+            robot=table[:, 1:4],
+            speed_m_s=table[:, 4],
+            target=table[:, 5:7],
+            is_contact=table[:, 7] > 0.0,
+            track=table[:, 8].astype(np.int64),
+            is_wrong=None if np.isnan(wrong).any() else wrong > 0.0,
+            count=table[:, 10].astype(np.int64),
+            people=np.array(self._people, np.float64).reshape(-1, 4),
+        )
+
+
+def count_contacts(time_s: Floats, is_contact: Flags) -> int:
+    """Count the contacts that begin in a run; bouncing, or rubbing along a wall, is one contact.
+
+    Args:
+        time_s: (T,) of the frames.
+        is_contact: (T,) whether the robot touched anything or anyone at each of them.
+    """
+    touches = np.flatnonzero(is_contact)
+    is_apart = time_s[touches[1:] - 1] - time_s[touches[:-1]] >= CONTACT_ENDS_S
+    return min(len(touches), 1) + int(is_apart.sum())
+
+
+def mean(values: Floats | Flags) -> float:
+    """Return the mean of values (N,); NaN of none."""
+    return float(np.mean(values)) if values.size else math.nan
+
+
+def root_mean_square(values: Floats) -> float:
+    """Return the root mean square of values (N,); NaN of none."""
+    return math.sqrt(mean(values**2))
+
+
+def way_m(robot: Floats) -> float:
+    """Return the length [m] of a way (T, 2 or more), whose first columns are x and y."""
+    return float(np.sum(np.hypot(*np.diff(robot[:, :2], axis=0).T)))
