@@ -12,7 +12,7 @@ from matplotlib.patches import Circle, Polygon
 from numpy.typing import NDArray
 
 from peopleboy.scenarios.drawing.plan_sheet import Labels, footprints
-from peopleboy.scenarios.files.check_people import ROBOT_M
+from peopleboy.scenarios.files.check import ROBOT_M
 from peopleboy.scenarios.files.robot import CommandSpec
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.sim.cameras.kinds import flat_geometry

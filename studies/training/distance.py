@@ -15,8 +15,8 @@ from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.scenarios.running.frame_cache import film_key
-from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.sim.world_config import WorldConfig
 from peopleboy.studies.training.samples import Arrays, SampleTask, Split, Tasks, sample_folder
