@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.calibrations import calibrations_of
+from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.sim.random_streams import stream
 from peopleboy.studies.reproductions.experiments.drive_scores import (
