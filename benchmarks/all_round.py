@@ -34,7 +34,7 @@ from peopleboy.tracker.frame import COLOUR, PANORAMA, THERMAL, Frame
 from peopleboy.tracker.fusion.fused_explanations import BothExplanations
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
-from peopleboy.tracker.panoramic.people.place_model import load_places
+from peopleboy.tracker.panoramic.people.place_model import PlaceModel
 from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.trackers import Tracker, explanation_of, make_tracker
 
@@ -156,7 +156,7 @@ class Play:
 
 def _make(name: str, seed: int) -> Tracker:
     if name == ONE_IMAGE:
-        return PanoramicTracker(*load_places(), PeopleConfig(restlessness=1e3))
+        return PanoramicTracker(PlaceModel.load(), PeopleConfig(restlessness=1e3))
     return make_tracker(name, stream(seed, "tracker"))
 
 

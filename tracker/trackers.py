@@ -97,9 +97,9 @@ def _contour_tracker(name: str, rng: np.random.Generator) -> ContourTracker:
 
 def _panoramic_tracker() -> PanoramicTracker:
     from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
-    from peopleboy.tracker.panoramic.people.place_model import load_places
+    from peopleboy.tracker.panoramic.people.place_model import PlaceModel
 
-    return PanoramicTracker(*load_places())
+    return PanoramicTracker(PlaceModel.load())
 
 
 def _rgbd_tracker(config: RgbdConfig, rng: np.random.Generator) -> RgbdTracker:

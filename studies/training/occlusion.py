@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, ClassVar, Literal
 
@@ -12,19 +12,215 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 from rich.console import Console
-from sklearn.base import BaseEstimator, ClassifierMixin
-from sklearn.ensemble import AdaBoostClassifier
 
 from peopleboy.bad_input import BadInput
-from peopleboy.studies.training import occlusion_pairs
-from peopleboy.studies.training.occlusion_pairs import LEAST, SCENARIOS, PairSamples, accuracy, collect_pairs
-from peopleboy.studies.training.samples import SampleTask, Split, Tasks, load_samples, sample_folder
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.loop.loop import closed_loop
+from peopleboy.sim.random_streams import stream
+from peopleboy.sim.truth.truth import PersonTruth
+from peopleboy.studies.training.samples import (
+    Arrays,
+    SampleTask,
+    Split,
+    Tasks,
+    load_samples,
+    sample_folder,
+)
 from peopleboy.studies.training.specification import Specification
+from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.contour.contour_config import TrackerConfig
+from peopleboy.tracker.contour.contour_tracker import ContourTracker
+from peopleboy.tracker.contour.occlusion.depth_order import ExpectedPerson, Leads, Order, lower_foot
+from peopleboy.tracker.contour.occlusion.learned_order import LearnedOrder, features_of
 from peopleboy.tracker.contour.occlusion.learned_table import TABLES, LearnedTable, WeakClassifier
-from peopleboy.tracker.contour.occlusion.pair_features import FEATURES, Features
-from peopleboy.tracker.contour.occlusion.weak_classifiers import SortedSums, Stump, best_stump, weighted_sums
+from peopleboy.tracker.contour.occlusion.pair_features import FEATURES, Features, overlapping_pairs
+from peopleboy.tracker.contour.occlusion.weak_classifiers import SortedSums, best_stump, weighted_sums
+from peopleboy.tracker.contour.particle_filter import FrameView
 from peopleboy.tracker.contour.variants import CONTOUR, THESIS_OCCLUSION
+
+SCENARIOS = (
+    "crossing_pair",
+    "crossing_3",
+    "pass_behind",
+    "stop_and_talk",
+    "group_abreast",
+    "crowd_8_moving",
+    "crossing_2",
+    "crossing_2_moving",
+    "crossing_4",
+    "three_depths",
+    "leader_swap",
+    "same_uniform",
+)
+"""Where people occlude each other, and samples come from."""
+
+LEAST = 20
+"""Fewer pairs are not trained on."""
+
+# A tracked person is the true one whose box it overlaps most, and by at least this (thesis, section 3.4).
+_LEAST_IOU = 0.5
+# With less than this of a person in view, the moment of total occlusion has come: earlier than in the event
+# log, as so little of a person has no appearance to measure.
+_TOTAL = 0.15
+# Neither is in front if one occludes less than this share of the other, and their distances differ by less.
+_LEAST_HIDDEN, _LEAST_GAP_M = 0.02, 0.3
+# Frames between two samples of one occlusion, and frames apart after which it is another one.
+_EVERY, _PAUSE = 2, 15
+
+
+PairRow = tuple[int, str, str, Features, bool]
+"""Frame, names of the one and the other, features, and whether the one is in front."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PairSamples(Arrays):
+    """N times two overlapping people at one instant.
+
+    Attributes:
+        scenario, seed, frame: (N,) where they are from.
+        one, other: (N,) their names.
+        features: (N, 6) the one's minus the other's.
+        is_front: (N,) whether the one is in front.
+    """
+
+    scenario: NDArray[np.str_]
+    seed: NDArray[np.int64]
+    frame: NDArray[np.int64]
+    one: NDArray[np.str_]
+    other: NDArray[np.str_]
+    features: Features
+    is_front: NDArray[np.bool_]
+
+    @classmethod
+    def from_rows(cls, scenario: str, seed: int, rows: Sequence[PairRow]) -> PairSamples:
+        """Take the pairs of a run."""
+        frame, one, other, features, is_front = zip(*rows, strict=True) if rows else [()] * 5
+        return cls(
+            scenario=np.full(len(rows), scenario),
+            seed=np.full(len(rows), seed),
+            frame=np.array(frame, np.int64),
+            one=np.array(one, np.str_),
+            other=np.array(other, np.str_),
+            features=np.array(features, np.float64).reshape(-1, len(FEATURES)),
+            is_front=np.array(is_front, np.bool_),
+        )
+
+    def mirror(self) -> tuple[Features, NDArray[np.bool_]]:
+        """Return features (2 N, 6) and labels (2 N,) of all pairs one way round, then of all the other way.
+
+        So as many are positive as negative (thesis, section 7.4).
+        """
+        labels = np.concatenate([self.is_front, ~self.is_front])
+        return np.concatenate([self.features, -self.features]), labels
+
+
+@dataclass(slots=True)
+class RecordingOrder:
+    """An order of people that answers like another, and keeps what it was asked since `asked` was cleared.
+
+    Attributes:
+        remembers_feet: as in `pair_features`.
+        order: that answers.
+        asked: the people who overlap, two by two, with their features.
+    """
+
+    remembers_feet: bool
+    order: Order = lower_foot
+    asked: list[tuple[ExpectedPerson, ExpectedPerson, Features]] = field(default_factory=list)
+
+    def __call__(self, figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:
+        """Return who is in front."""
+        seen = [figure for figure in figures if not figure.person.is_hidden]
+        if len(seen) > 1:
+            pairs = overlapping_pairs(np.stack([figure.state for figure in seen]))
+            features = features_of(seen, pairs, view, remembers_feet=self.remembers_feet)
+            self.asked += [(seen[i], seen[j], row) for (i, j), row in zip(pairs, features, strict=True)]
+        return self.order(figures, view)
+
+
+@dataclass(slots=True)
+class Episodes:
+    """The occlusions that are going on, by the names of the two."""
+
+    last_frame: dict[frozenset[str], int] = field(default_factory=dict)
+    last_taken: dict[frozenset[str], int] = field(default_factory=dict)
+    over: set[frozenset[str]] = field(default_factory=set)
+
+    def takes(self, one: PersonTruth, other: PersonTruth, frame: int) -> bool:
+        """Return whether to keep this sample: not every frame, and none from a total occlusion on.
+
+        Source: thesis, section 7.4: only what precedes the moment of total occlusion.
+        """
+        pair = frozenset((one.name, other.name))
+        if frame - self.last_frame.get(pair, frame) > _PAUSE:
+            self.over.discard(pair)
+        self.last_frame[pair] = frame
+        if 1.0 - max(one.occluded_fraction, other.occluded_fraction) < _TOTAL:
+            self.over.add(pair)
+        if pair in self.over or frame - self.last_taken.get(pair, -_EVERY) < _EVERY:
+            return False
+        self.last_taken[pair] = frame
+        return True
+
+
+def is_in_front(one: PersonTruth, other: PersonTruth) -> bool | None:
+    """Tell whether the one is in front: it hides more of the other, or is clearly nearer; None if neither."""
+    hides = other.hidden_by.get(one.name, 0.0) - one.hidden_by.get(other.name, 0.0)
+    if abs(hides) >= _LEAST_HIDDEN:
+        return hides > 0.0
+    gap = other.distance_m - one.distance_m
+    return gap > 0.0 if abs(gap) >= _LEAST_GAP_M else None
+
+
+def collect_pairs(scenario: str, seed: int, config: TrackerConfig) -> PairSamples:
+    """Run a tracker through a scenario, and keep what it measures of people who overlap.
+
+    Raises:
+        BadInput: an unknown scenario.
+    """
+    from peopleboy.sim.world import World  # here, as samples that are there can be read without PyBullet
+
+    loaded = load_scenario(scenario)
+    order, episodes = RecordingOrder(config.depth.remembers_feet), Episodes()
+    people = ContourTracker(config, stream(seed, "tracker"), order)
+    rows: list[PairRow] = []
+    with World(loaded.world(seed)) as world:
+        frames = round(loaded.duration_s * world.config.control_hz)
+        for tick in closed_loop(world, people, loaded.make_behaviour(), frames):
+            for *pair, features in order.asked:
+                one, other = (_true_person(figure, tick.truth.people) for figure in pair)
+                if one is None or other is None or one is other:
+                    continue
+                is_front = is_in_front(one, other)
+                if episodes.takes(one, other, tick.frame) and is_front is not None:
+                    rows.append((tick.frame, one.name, other.name, features, is_front))
+            order.asked.clear()
+    return PairSamples.from_rows(loaded.name, seed, rows)
+
+
+def _true_person(figure: ExpectedPerson, people: Sequence[PersonTruth]) -> PersonTruth | None:
+    """Return the person whose box a tracked one overlaps most; None if it overlaps none enough."""
+    boxed = [person for person in people if person.box is not None]
+    if not boxed:
+        return None
+    overlap = iou(np.array([person.box for person in boxed]), np.asarray(figure.region, np.float64))
+    best = int(np.argmax(overlap))
+    return boxed[best] if overlap[best] >= _LEAST_IOU else None
+
+
+def accuracy(table: LearnedTable, samples: PairSamples) -> float:
+    """Return the share of right answers [%] among pairs and their mirror images; no answer counts half."""
+    features, is_front = samples.mirror()
+    return share_right(LearnedOrder.build(table).lead(features), is_front)
+
+
+def share_right(lead: Features, is_front: NDArray[np.bool_]) -> float:
+    """Return the share of right answers [%]; no answer counts half, NaN without any question."""
+    if len(lead) == 0:
+        return float("nan")
+    right = np.where(is_front, lead, -lead)
+    return float(100 * ((right > 0) + 0.5 * (right == 0)).mean())
+
 
 TRACKERS: dict[str, TrackerConfig] = {"contour": CONTOUR, "thesis": THESIS_OCCLUSION}
 """The trackers that order people by a learned table, by name."""
@@ -52,7 +248,7 @@ class OcclusionTraining(Specification[PairSamples]):
 
     def tasks(self, out: Path) -> Tasks:
         """Run the tracker through the scenarios."""
-        folder, config = sample_folder(out, Path(occlusion_pairs.__file__)), TRACKERS[self.tracker]
+        folder, config = sample_folder(out, Path(__file__)), TRACKERS[self.tracker]
         runs = [(name, seed) for seed in range(self.sequences) for name in SCENARIOS]
         return Split(
             [
@@ -99,43 +295,6 @@ def cross_accuracy(samples: PairSamples, rounds: int = ROUNDS) -> float:
     return right / len(samples)
 
 
-class WeakLearner(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
-    """Picks the best weak classifier there is; scikit-learn's AdaBoostClassifier asks it once a round.
-
-    All rounds share the weights and the sorted sums, which do not depend on the samples' weights.
-    """
-
-    def __init__(self, weights: Features) -> None:
-        self.weights = weights
-        self._sorted: dict[int, tuple[Features, SortedSums]] = {}
-
-    def __sklearn_clone__(self) -> WeakLearner:
-        copy = WeakLearner(self.weights)
-        copy._sorted = self._sorted
-        return copy
-
-    def fit(
-        self, samples: Features, labels: NDArray[np.int64], sample_weight: NDArray[np.float64]
-    ) -> WeakLearner:
-        """Choose a stump for samples (N, features) with labels 0 or 1 that count as much as their weight."""
-        self.classes_ = np.array([0, 1])
-        self.stump_: Stump = best_stump(self._sums_of(samples), labels > 0, sample_weight)
-        return self
-
-    def predict(self, samples: Features) -> NDArray[np.int64]:
-        """Return 0 or 1 for each sample."""
-        stump = self.stump_
-        is_front = stump.parity * (samples @ self.weights[stump.row]) < stump.parity * stump.threshold
-        return np.asarray(is_front, np.int64)
-
-    def _sums_of(self, samples: Features) -> SortedSums:
-        # The samples are kept with their sums: an id is only unique as long as its object lives.
-        if id(samples) not in self._sorted:
-            self._sorted.clear()
-            self._sorted[id(samples)] = (samples, SortedSums.build(samples, self.weights))
-        return self._sorted[id(samples)][1]
-
-
 def boost(
     features: Features,
     is_front: NDArray[np.bool_],
@@ -156,23 +315,34 @@ def boost(
     Raises:
         BadInput: samples in which all these features are 0.
 
-    Source: thesis, algorithm 5, with scikit-learn's AdaBoostClassifier (SAMME, which for two classes is the
-    same).
+    Source: thesis, algorithm 5.
     """
     columns = [FEATURES.index(name) for name in uses]
     scale = np.maximum(features.std(axis=0), 1e-6)
     if not (features[:, columns] != 0).any():
         raise BadInput(f"{', '.join(uses)} are 0 in all samples: there is nothing to train on")
-    weights = weighted_sums(len(columns), most)
-    boosted = AdaBoostClassifier(WeakLearner(weights), n_estimators=rounds)
-    boosted.fit((features / scale)[:, columns], is_front.astype(np.int64))
-    chosen = tuple(
-        WeakClassifier(
-            weights={name: float(w) for name, w in zip(uses, weights[learner.stump_.row], strict=True) if w},
-            threshold=learner.stump_.threshold,
-            parity=learner.stump_.parity,
-            importance=float(importance),
+    weights, samples = weighted_sums(len(columns), most), (features / scale)[:, columns]
+    sums, counts = SortedSums.build(samples, weights), np.full(len(samples), 1.0 / len(samples))
+    chosen: list[WeakClassifier] = []
+    for _ in range(rounds):
+        counts = np.maximum(counts, np.finfo(np.float64).eps)  # what counts nothing would never count again
+        stump = best_stump(sums, is_front, counts)
+        answer = stump.parity * (samples @ weights[stump.row]) < stump.parity * stump.threshold
+        error = float(np.average(answer != is_front, weights=counts))
+        if error >= 0.5:
+            break
+        importance = float(np.log((1.0 - error) / error)) if error > 0.0 else 1.0
+        chosen.append(
+            WeakClassifier(
+                weights={name: float(w) for name, w in zip(uses, weights[stump.row], strict=True) if w},
+                threshold=stump.threshold,
+                parity=stump.parity,
+                importance=importance,
+            )
         )
-        for learner, importance in zip(boosted.estimators_, boosted.estimator_weights_, strict=False)
-    )
-    return LearnedTable(scale=dict(zip(FEATURES, scale.tolist(), strict=True)), classifiers=chosen)
+        if error <= 0.0:
+            break
+        counts = np.exp(np.log(counts) + importance * (answer != is_front))
+        counts /= counts.sum()
+    named_scale = dict(zip(FEATURES, scale.tolist(), strict=True))
+    return LearnedTable(scale=named_scale, classifiers=tuple(chosen))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
@@ -196,25 +196,6 @@ def _beside(one: _Standing, rng: np.random.Generator) -> Floats:
     return places[places[:, 1] > NEAREST_M]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PlaceWeights:
-    """A model with the camera that it holds for.
-
-    Attributes:
-        model: the networks.
-        view: of the camera.
-        about: what they were trained on.
-    """
-
-    model: PlaceModel
-    view: PanoramaView
-    about: Mapping[str, str] = field(default_factory=dict)
-
-    def save(self, path: Path) -> None:
-        """Write the model."""
-        self.model.save(path, self.view, self.about)
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlacesTraining(Specification[Split[PlaceSamples]]):
     """Train on scenes drawn at random, after `peopleboy train foreground --ship`, which it builds on."""
@@ -242,7 +223,7 @@ class PlacesTraining(Specification[Split[PlaceSamples]]):
         """Read the samples."""
         return Split(*(load_samples(PlaceSamples, part) for part in tasks))
 
-    def fit(self, data: Split[PlaceSamples]) -> Mapping[str, PlaceWeights]:
+    def fit(self, data: Split[PlaceSamples]) -> Mapping[str, PlaceModel]:
         """Train the three networks."""
         samples, people = data.training, int(data.training.is_person.sum())
         calibration = panorama_calibration(load_scenario(next(iter(LIBRARY))), FIRST_SEED)
@@ -251,12 +232,12 @@ class PlacesTraining(Specification[Split[PlaceSamples]]):
             f"in {self.sequences} scenes drawn at random, and {', '.join(LIBRARY)}, seeds from {FIRST_SEED}"
         }
         view = view_of(calibration, calibration.width, calibration.height)
-        return {FILE: PlaceWeights(model=fit_places(samples), view=view, about=about)}
+        return {FILE: replace(fit_places(samples, view), about=about)}
 
-    def evaluate(self, model: PlaceWeights, data: Split[PlaceSamples]) -> Mapping[str, str]:
+    def evaluate(self, model: PlaceModel, data: Split[PlaceSamples]) -> Mapping[str, str]:
         """Measure offsets, their deviations, and presence."""
         samples = data.validation
-        found = model.model.look(samples.patches.astype(np.float32), samples.distance_m)
+        found = model.look(samples.patches.astype(np.float32), samples.distance_m)
         is_person, is_found = samples.is_person, found.evidence > 0
         along, across = np.abs(found.offset_m - samples.offset_m)[is_person].mean(axis=0)
         squared = ((found.offset_m - samples.offset_m) / found.deviation_m)[is_person] ** 2
@@ -305,13 +286,14 @@ _LOG_OF_NORMAL: Final = 0.6352
 """Minus the mean of log |e| for a normal e of deviation 1."""
 
 
-def fit_places(samples: PlaceSamples, *, seed: int = 0) -> PlaceModel:
+def fit_places(samples: PlaceSamples, view: PanoramaView, *, seed: int = 0) -> PlaceModel:
     """Train where people are, how sure that is, and whether they are there.
 
     How sure it is, is trained on the errors on that half of the samples that a network was not trained on.
 
     Args:
         samples: in the order in which they were collected, so that halves have other scenes.
+        view: of the camera that they are of.
         seed: draws first weights and order.
     """
     inputs, is_person = samples.inputs, samples.is_person
@@ -325,6 +307,7 @@ def fit_places(samples: PlaceSamples, *, seed: int = 0) -> PlaceModel:
         presence=fit_dense(PRESENCE, _cross_entropy, inputs, is_person[:, None], seed),
         place=fit_dense(PLACE, _squares, people, offset, seed),
         doubt=fit_dense(DOUBT, _squares, people, logarithms, seed),
+        view=view,
     )
 
 

@@ -30,7 +30,7 @@ from peopleboy.tracker.panoramic.people.figure_patch import ACROSS, BOTTOM_M, HA
 from peopleboy.tracker.panoramic.people.panorama_patches import PanoramaScene
 from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
-from peopleboy.tracker.panoramic.people.place_model import load_places
+from peopleboy.tracker.panoramic.people.place_model import PlaceModel
 from peopleboy.tracker.panoramic.people_foreground import Foreground
 from peopleboy.tracker.track import FloorPlace, Status, Track
 from peopleboy.tracker.trackers import make_tracker
@@ -104,7 +104,7 @@ def _moment() -> Moment:
     name, seed = DRIVE
     scenario = load_scenario(name)
     film, camera = render_panoramas(scenario, seed), panorama_calibration(scenario, seed)
-    tracker, eyes = PanoramicTracker(*load_places()), Foreground()
+    tracker, eyes = PanoramicTracker(PlaceModel.load()), Foreground()
     for k, image in enumerate(film.images[: IMAGE + 1]):
         time_s, moved = float(film.time_s[k]), film.odometry(k)
         frame = Frame(

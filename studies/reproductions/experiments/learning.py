@@ -16,11 +16,12 @@ from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.statistics import SHARE, TRAINING_SHARE
 from peopleboy.studies.reproductions.tracker_settings import TrackerSetting
 from peopleboy.studies.reproductions.units import Measurement, Unit
-from peopleboy.studies.training.occlusion_pairs import (
+from peopleboy.studies.training.occlusion import (
     LEAST,
     SCENARIOS,
     PairSamples,
     accuracy,
+    boost,
     collect_pairs,
 )
 from peopleboy.studies.training.samples import Split
@@ -153,8 +154,6 @@ def learn_pairs(
         The share of right answers [%] by the names of `TESTS`, and the weights of the "best" classifiers,
         which are learned from the random split.
     """
-    from peopleboy.studies.training.occlusion import boost  # only learning needs scikit-learn
-
     if len(examples) < LEAST:
         return dict.fromkeys(TESTS, math.nan) | {"best": []}
     rng = stream(split, "occlusion.split")

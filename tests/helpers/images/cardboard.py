@@ -99,6 +99,8 @@ class CardboardEyes:
 class CardboardModel:
     """In the place of a taught model: reads from the patch where cardboard ends below, and its middle."""
 
+    view = VIEW
+
     def look(self, patches: NDArray[np.float32], distance_m: NDArray[np.float64]) -> PlaceEstimates:
         told = [_read(one, away) for one, away in zip(patches, distance_m.tolist(), strict=True)]
         numbers = np.array(told, np.float32).reshape(-1, 5)

@@ -11,14 +11,14 @@ from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
 from peopleboy.tracker.track import Track
-from tests.helpers.images.cardboard import VIEW, Cardboard, CardboardEyes, CardboardModel, frame_of
+from tests.helpers.images.cardboard import Cardboard, CardboardEyes, CardboardModel, frame_of
 
 Tracks = tuple[Track, ...]
 
 
 def cardboard_tracker(config: PeopleConfig | None = None) -> PanoramicTracker:
     """A tracker with stand-ins for all that is taught."""
-    tracker = PanoramicTracker(CardboardModel(), VIEW, config)
+    tracker = PanoramicTracker(CardboardModel(), config)
     tracker._foreground = CardboardEyes()
     return tracker
 

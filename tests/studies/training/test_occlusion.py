@@ -12,10 +12,10 @@ from peopleboy.studies.reproductions.experiments.learning import (
     split_by_scenario,
 )
 from peopleboy.studies.training import occlusion
-from peopleboy.studies.training.occlusion import OcclusionTraining
-from peopleboy.studies.training.occlusion_pairs import (
+from peopleboy.studies.training.occlusion import (
     LEAST,
     Episodes,
+    OcclusionTraining,
     PairSamples,
     is_in_front,
     share_right,

@@ -13,7 +13,7 @@ from peopleboy.studies.training import places, specification
 from peopleboy.studies.training.panorama_sequences import panorama_calibration
 from peopleboy.studies.training.places import DenseRecipe, PlaceSamples, PlacesTraining, fit_places
 from peopleboy.tracker.panoramic.people.figure_patch import PATCH
-from peopleboy.tracker.panoramic.people.place_model import load_places
+from peopleboy.tracker.panoramic.people.place_model import PlaceModel
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.images.cardboard import CAMERA, VIEW
@@ -37,7 +37,7 @@ def plain(seed: int, number: int = 300) -> PlaceSamples:
 @pytest.mark.slow
 def test_it_learns_who_is_there_where_and_how_sure_that_is() -> None:
     told, test = plain(0, 1500), plain(1)
-    seen = fit_places(told).look(test.patches.astype(np.float32), test.distance_m)
+    seen = fit_places(told, VIEW).look(test.patches.astype(np.float32), test.distance_m)
     assert np.mean((seen.evidence > 0) == test.is_person) > 0.98
     off = np.abs(seen.offset_m - test.offset_m)[test.is_person]
     assert off[:, 0].mean() < 0.08
@@ -49,7 +49,7 @@ def test_it_learns_who_is_there_where_and_how_sure_that_is() -> None:
 
 @pytest.mark.thorough
 def test_the_same_examples_give_the_same_networks() -> None:
-    one, two = (fit_places(plain(0)) for _ in range(2))
+    one, two = (fit_places(plain(0), VIEW) for _ in range(2))
     for name in ("presence", "place", "doubt"):
         for ours, theirs in zip(getattr(one, name).layers, getattr(two, name).layers, strict=True):
             assert all(np.array_equal(a, b) for a, b in zip(ours, theirs, strict=True))
@@ -101,8 +101,8 @@ def train(folder: Path, *more: object) -> int:
 def test_it_leaves_a_model_that_knows_its_camera_and_films_nothing_anew(folder: Path) -> None:
     assert train(folder) == 0
     path = folder / "out" / "places.npz"
-    model, view = load_places(path)
-    assert view.refusal(VIEW) == ""
+    model = PlaceModel.load(path)
+    assert model.view.refusal(VIEW) == ""
     assert list((folder / "films").iterdir()) == []
     assert model.look(plain(5).patches.astype(np.float32), plain(5).distance_m).evidence.shape == (300,)
 
@@ -110,7 +110,7 @@ def test_it_leaves_a_model_that_knows_its_camera_and_films_nothing_anew(folder: 
 def test_shipped_it_lies_where_the_tracker_looks(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(specification.Specification, "SHIPPED_IN", folder / "shipped")
     assert train(folder, "--ship") == 0
-    assert load_places(folder / "shipped" / "places.npz")[1].refusal(VIEW) == ""
+    assert PlaceModel.load(folder / "shipped" / "places.npz").view.refusal(VIEW) == ""
     assert not (folder / "out" / "places.npz").exists()
 
 

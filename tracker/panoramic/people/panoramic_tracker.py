@@ -10,7 +10,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.frame import PANORAMA, Calibration, Frame, Odometry
 from peopleboy.tracker.panorama_calibration import PanoramaCalibration
-from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
+from peopleboy.tracker.panoramic.panorama_view import view_of
 from peopleboy.tracker.panoramic.people.band_colours import BandColours
 from peopleboy.tracker.panoramic.people.floor_motion import FloorMotion
 from peopleboy.tracker.panoramic.people.panorama_patches import PanoramaScene, person_box, promising_places
@@ -31,14 +31,13 @@ class PanoramicTracker:
     for those behind.
 
     Args:
-        model: reads what the panorama shows at a place.
-        view: of the camera that the model holds for.
+        model: reads what the panorama of the camera that it holds for shows at a place.
         config: settings.
     """
 
-    def __init__(self, model: PlaceModel, view: PanoramaView, config: PeopleConfig | None = None) -> None:
+    def __init__(self, model: PlaceModel, config: PeopleConfig | None = None) -> None:
         self.config = PeopleConfig() if config is None else config
-        self._model, self._view = model, view
+        self._model = model
         self._foreground = Foreground()
         self._register = Register(self.config.identity)
         self._pose = Pose2()
@@ -102,7 +101,7 @@ class PanoramicTracker:
             return self._camera
         if not isinstance(camera, PanoramaCalibration):
             raise BadInput(f"camera {PANORAMA!r}: the tracker wants a calibrated one that sees all round")
-        if why := self._view.refusal(view_of(camera, camera.width, camera.height)):
+        if why := self._model.view.refusal(view_of(camera, camera.width, camera.height)):
             raise BadInput(f"{why}; there are none for another")
         self._camera = camera
         return camera

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Final
 
@@ -47,11 +47,15 @@ class PlaceModel:
         presence: to the log odds that a person is there.
         place: to the offset of the person [m].
         doubt: to the logarithms of the offset's standard deviations [m].
+        view: of the camera that they hold for.
+        about: what they were trained on, for the reader of the file.
     """
 
     presence: DenseNetwork
     place: DenseNetwork
     doubt: DenseNetwork
+    view: PanoramaView
+    about: Mapping[str, str] = field(default_factory=dict)
 
     def look(self, patches: Map, distance_m: NDArray[np.float64]) -> PlaceEstimates:
         """Return what patches (N, PATCH) at distances (N,) show."""
@@ -62,32 +66,31 @@ class PlaceModel:
             deviation_m=np.exp(self.doubt.predict(inputs)),
         )
 
-    def save(self, path: Path, view: PanoramaView, about: Mapping[str, str]) -> None:
-        """Write the networks, which hold for the camera of this view."""
+    def save(self, path: Path) -> None:
+        """Write the networks."""
         arrays = {
             f"{name}.{number}.{part}": array
             for name in _OUTPUTS
             for number, layer in enumerate(getattr(self, name).layers)
             for part, array in zip(("weights", "bias"), layer, strict=True)
         }
-        WeightsArchive(arrays, about, asdict(view)).save(path)
+        WeightsArchive(arrays, self.about, asdict(self.view)).save(path)
 
+    @classmethod
+    def load(cls, path: Path = SHIPPED / FILE) -> PlaceModel:
+        """Read and check a model.
 
-def load_places(path: Path = SHIPPED / FILE) -> tuple[PlaceModel, PanoramaView]:
-    """Read and check a model, and the camera for which it holds.
-
-    Raises:
-        BadInput: a file that is missing or is no such model.
-    """
-    specs = {name: _specs(name, *sizes) for name, sizes in _OUTPUTS.items()}
-    together = {key: spec for each in specs.values() for key, spec in each.items()}
-    archive = WeightsArchive.load(path, MODEL, together, PanoramaView.of_plain)
-    found = {name: [archive.arrays[key] for key in each] for name, each in specs.items()}
-    networks = {
-        name: DenseNetwork(list(zip(arrays[::2], arrays[1::2], strict=True)))
-        for name, arrays in found.items()
-    }
-    return PlaceModel(**networks), archive.camera
+        Raises:
+            BadInput: a file that is missing or is no such model.
+        """
+        specs = {name: _specs(name, *sizes) for name, sizes in _OUTPUTS.items()}
+        together = {key: spec for each in specs.values() for key, spec in each.items()}
+        archive = WeightsArchive.load(path, MODEL, together, PanoramaView.of_plain)
+        found = {name: [archive.arrays[key] for key in each] for name, each in specs.items()}
+        networks = (
+            DenseNetwork(list(zip(arrays[::2], arrays[1::2], strict=True))) for arrays in found.values()
+        )
+        return cls(*networks, archive.camera, archive.about)
 
 
 def _specs(name: str, outputs: int, layers: int) -> dict[str, ArraySpec]:

@@ -18,7 +18,6 @@ from tests.helpers.images.cardboard import (
     GREEN,
     HALL,
     RED,
-    VIEW,
     WHITE,
     WIDTH,
     Cardboard,
@@ -272,7 +271,7 @@ def test_it_explains_who_was_taken_for_whom():
     replace(CAMERA, axis_rad=0.8), replace(CAMERA, ring_height_m=1.5), replace(CAMERA, width=360),
 ])  # fmt: skip
 def test_another_camera_than_the_one_that_was_learned_is_refused(other):
-    tracker = PanoramicTracker(CardboardModel(), VIEW)
+    tracker = PanoramicTracker(CardboardModel())
     with refused("panorama", "trained", "none for another"):
         tracker.check_cameras({"panorama": other})
     with refused("panorama", "trained", "none for another"):
@@ -281,7 +280,7 @@ def test_another_camera_than_the_one_that_was_learned_is_refused(other):
 
 
 def test_a_camera_that_is_flat_or_unknown_is_refused():
-    tracker = PanoramicTracker(CardboardModel(), VIEW)
+    tracker = PanoramicTracker(CardboardModel())
     flat = PinholeCalibration(intrinsics=np.eye(3), robot_from_camera=np.eye(4))
     for calibrations in ({}, {"panorama": flat}, {"other": CAMERA}):
         with refused("panorama", "sees all round"):
@@ -292,12 +291,12 @@ def test_a_camera_that_is_flat_or_unknown_is_refused():
 
 @pytest.mark.parametrize("image", [HALL[:, :, 0], HALL.astype(float), np.zeros((0, 0, 3), np.uint8)])
 def test_what_is_no_colour_image_is_refused(image):
-    tracker = PanoramicTracker(CardboardModel(), VIEW)
+    tracker = PanoramicTracker(CardboardModel())
     with refused("panorama image must be (H, W, 3) uint8"):
         tracker.update(Frame(images={"panorama": image}, time_s=0.0, calibrations={"panorama": CAMERA}))
 
 
 def test_without_images_there_is_nobody():
-    tracker = PanoramicTracker(CardboardModel(), VIEW)
+    tracker = PanoramicTracker(CardboardModel())
     assert tracker.cameras == ("panorama",)
     assert tracker.update(Frame(images={}, time_s=0.0)) == ()

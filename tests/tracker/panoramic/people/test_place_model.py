@@ -10,7 +10,6 @@ from peopleboy.tracker.panoramic.people.figure_patch import PATCH
 from peopleboy.tracker.panoramic.people.place_model import (
     INPUTS,
     PlaceModel,
-    load_places,
     with_distance,
 )
 from peopleboy.tracker.trackers import make_tracker
@@ -30,7 +29,13 @@ def network(seed, outputs, units=(7,)):
 
 
 OUTPUTS = ("presence", "place", "doubt")
-MODEL = PlaceModel(presence=network(1, 1), place=network(2, 2, (9, 4)), doubt=network(3, 2))
+MODEL = PlaceModel(
+    presence=network(1, 1),
+    place=network(2, 2, (9, 4)),
+    doubt=network(3, 2),
+    view=VIEW,
+    about={"trained on": "drawn numbers"},
+)
 
 
 def patches(number):
@@ -72,10 +77,10 @@ def test_distances_are_told_by_their_inverse_and_as_a_share():
 
 def test_a_file_gives_back_what_was_written_and_the_same_bytes_each_time(tmp_path):
     for name in ("a.npz", "b.npz"):
-        MODEL.save(tmp_path / name, VIEW, {"trained on": "drawn numbers"})
+        MODEL.save(tmp_path / name)
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
-    read, view = load_places(tmp_path / "a.npz")
-    assert view == VIEW
+    read = PlaceModel.load(tmp_path / "a.npz")
+    assert (read.view, read.about) == (VIEW, MODEL.about)
     shown, distance = patches(4)
     ours, theirs = MODEL.look(shown, distance), read.look(shown, distance)
     for one, other in (
@@ -111,13 +116,13 @@ def test_layers_that_do_not_fit_are_refused(tmp_path, change, words):
     changed = {name: array for name, array in (arrays() | change).items() if array is not None}
     WeightsArchive(changed, camera=asdict(VIEW)).save(tmp_path / "places.npz")
     with refused("places.npz", words):
-        load_places(tmp_path / "places.npz")
+        PlaceModel.load(tmp_path / "places.npz")
 
 
 def test_what_comes_with_the_tracker_holds_for_the_usual_mirror():
-    model, view = load_places()
-    assert view.refusal(VIEW) == ""
-    assert view.refusal(replace(VIEW, centre_m=1.5))
+    model = PlaceModel.load()
+    assert model.view.refusal(VIEW) == ""
+    assert model.view.refusal(replace(VIEW, centre_m=1.5))
     assert [getattr(model, name).layers[-1][1].size for name in OUTPUTS] == [1, 2, 2]
     for name in ("panoramic", "handover"):
         make_tracker(name, np.random.default_rng(0)).check_cameras({"panorama": CAMERA})
