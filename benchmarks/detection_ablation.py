@@ -28,7 +28,7 @@ from peopleboy.tracker.camera_mount import Mount
 from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.detector.detector import SMALLEST_PX, Grey, PeopleDetector, detect_with_trees
 from peopleboy.tracker.detector.people_trees import shipped_people_trees
-from peopleboy.tracker.detector.rescoring import rescore, shipped_rescoring
+from peopleboy.tracker.detector.rescoring import RescoringNetwork, rescore
 from peopleboy.tracker.evaluation.evaluate import combine
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Track
@@ -91,7 +91,7 @@ class DetectorOfStage(PeopleDetector):
         if self._stage is DetectorStage.TREES:
             return detect_with_trees(shipped_people_trees(), grey, change, mount, SMALLEST_PX, LEAST)
         first = self.detect_first(grey, change, mount, expected) if everywhere else expected
-        return rescore(shipped_rescoring(), grey, change, first, mount, LEAST)
+        return rescore(RescoringNetwork.shipped(), grey, change, first, mount, LEAST)
 
 
 class WarmFinder:

@@ -8,17 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.camera_mount import Mount
-from peopleboy.tracker.detector.box_refinement import (
-    BoxRefinementNetwork,
-    refine_boxes,
-    shipped_box_refinement,
-)
 from peopleboy.tracker.detector.detections import NO_DETECTIONS, SHARED, Detections, suppress
 from peopleboy.tracker.detector.image_change import PastImages
 from peopleboy.tracker.detector.patches import integrate
 from peopleboy.tracker.detector.people_trees import PeopleModel, shipped_people_trees
 from peopleboy.tracker.detector.pyramid import pyramid_levels
-from peopleboy.tracker.detector.rescoring import RescoringNetwork, rescore, shipped_rescoring
+from peopleboy.tracker.detector.rescoring import BoxRefinementNetwork, RescoringNetwork, refine_boxes, rescore
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.networks.convolution import Buffer, Workspace
 from peopleboy.tracker.networks.inference import one_thread
@@ -54,8 +49,8 @@ class PeopleDetector:
             least_score: of the detections that are returned.
         """
         self._model = shipped_people_trees() if model is None else model
-        self._rescoring = shipped_rescoring() if rescoring is None else rescoring
-        self._box_refinement = shipped_box_refinement() if box_refinement is None else box_refinement
+        self._rescoring = RescoringNetwork.shipped() if rescoring is None else rescoring
+        self._box_refinement = BoxRefinementNetwork.shipped() if box_refinement is None else box_refinement
         self._smallest_px = smallest_px
         self._least_score = least_score
         self._past = PastImages()

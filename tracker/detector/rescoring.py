@@ -1,8 +1,7 @@
-"""Rescoring: a small network on crops corrects the scores and the boxes of the cascade's detections."""
+"""Second stage of the detector: small networks on crops correct the scores and boxes of detections."""
 
 from __future__ import annotations
 
-from functools import cache
 from typing import ClassVar, Final
 
 import numpy as np
@@ -22,17 +21,12 @@ from peopleboy.tracker.detector.detections import Detections, suppress
 from peopleboy.tracker.detector.window import Floats
 from peopleboy.tracker.networks.convolution import Workspace
 from peopleboy.tracker.networks.inference import Architecture, CropNetwork, CropSize, NetworkLayer
-from peopleboy.tracker.networks.weights_archive import SHIPPED
 
 Grey = NDArray[np.uint8]
 
-_LAYERS: Final = ((5, 2, 24), (3, 2, 48), (3, 1, 64), (3, 2, 96), (3, 1, 96), (1, 1, 32))
-SCALES: Final = np.array([1.0, 0.02, 0.06, 0.08, 0.03])
-"""Units of the outputs: log odds, and offsets as of `encode_boxes`."""
-USUAL: Final = np.array([0.0, 0.0, 0.0, 0.0, 0.22])
-"""What outputs of 0 stand for."""
-
-FILE: Final = "rescoring.npz"
+_LAYERS: Final = tuple(
+    NetworkLayer(*one) for one in ((5, 2, 24), (3, 2, 48), (3, 1, 64), (3, 2, 96), (3, 1, 96))
+)
 
 # In rendered images all of the correction would be right; on images of real cameras the network is too sure
 # of itself, and most so where the mount is not known, which is no robot's own camera.
@@ -46,9 +40,13 @@ class RescoringNetwork(CropNetwork):
     """Predicts log odds and offsets; its weight `line` is gain and offset that calibrate the log odds."""
 
     ARCHITECTURE: ClassVar[Architecture] = Architecture(
-        CropSize(64, 48, 1.4), FEATURES, tuple(NetworkLayer(*one) for one in _LAYERS), 128, 1 + OFFSETS
+        CropSize(64, 48, 1.4), FEATURES, (*_LAYERS, NetworkLayer(1, 1, 32)), 128, 1 + OFFSETS
     )
     MODEL: ClassVar[str] = "rescoring"
+    SCALES: ClassVar[Floats] = np.array([1.0, 0.02, 0.06, 0.08, 0.03])
+    """Units of the outputs: log odds, and offsets as of `encode_boxes`."""
+    USUAL: ClassVar[Floats] = np.array([0.0, 0.0, 0.0, 0.0, 0.22])
+    """What outputs of 0 stand for."""
 
     @classmethod
     def shapes(cls) -> dict[str, tuple[int, ...]]:
@@ -61,7 +59,25 @@ class RescoringNetwork(CropNetwork):
         outputs[:, 0] += SCORES * features[:, 0]
         gain, offset = self.weights["line"].tolist()
         outputs[:, 0] = gain * outputs[:, 0] + offset
-        return np.asarray(outputs * SCALES + USUAL)
+        return np.asarray(outputs * self.SCALES + self.USUAL)
+
+
+class BoxRefinementNetwork(CropNetwork):
+    """Predicts offsets of boxes, and no scores; it sees 1.6 times as finely."""
+
+    ARCHITECTURE: ClassVar[Architecture] = Architecture(
+        CropSize(96, 72, 1.3), FEATURES - 1, (*_LAYERS, NetworkLayer(3, 2, 128)), 160, OFFSETS
+    )
+    MODEL: ClassVar[str] = "box-refinement"
+    SCALES: ClassVar[Floats] = np.array([0.015, 0.03, 0.05, 0.03])
+    """Units of the outputs: offsets as of `encode_boxes`."""
+    USUAL: ClassVar[Floats] = np.array([0.0, 0.0, 0.0, 0.22])
+    """What outputs of 0 stand for."""
+
+    def predict(self, planes: Planes, features: Planes, workspace: Workspace | None = None) -> Floats:
+        """Return offsets (N, 4) for crops (N, 96, 72, 3) with features (N, 9), the score aside."""
+        outputs = self.outputs(planes, features, workspace)
+        return np.asarray(outputs.astype(np.float64) * self.SCALES + self.USUAL)
 
 
 def rescore(
@@ -79,16 +95,31 @@ def rescore(
     """
     if len(first.box) == 0:
         return first
-    crops = cut_crops(grey, change, first.box, RescoringNetwork.ARCHITECTURE.crop)
-    features = crop_features(first, crops, (grey.shape[0], grey.shape[1]), mount)
-    predicted = network.predict(normalise_crops(crops), features, workspace)
+    predicted = network.predict(*_inputs(network, grey, change, first, mount), workspace)
     trusted = TRUSTED_WITHOUT_MOUNT if mount is None else TRUSTED
     score = first.score + trusted * (predicted[:, 0] - first.score)
     rescored = Detections(decode_boxes(first.box, predicted[:, 1:]), score, first.trees)
     return suppress(rescored.take(score >= least_score))
 
 
-@cache
-def shipped_rescoring() -> RescoringNetwork:
-    """Read the network that comes with the tracker."""
-    return RescoringNetwork.load(SHIPPED / FILE)
+def refine_boxes(
+    network: BoxRefinementNetwork,
+    grey: Grey,
+    change: Grey,
+    found: Detections,
+    mount: Mount | None,
+    workspace: Workspace | None = None,
+) -> Detections:
+    """Refine the boxes of detections in an image (H, W) with the change of its greys (H, W)."""
+    if len(found.box) == 0:
+        return found
+    offsets = network.predict(*_inputs(network, grey, change, found, mount), workspace)
+    return found._replace(box=decode_boxes(found.box, offsets))
+
+
+def _inputs(
+    network: CropNetwork, grey: Grey, change: Grey, found: Detections, mount: Mount | None
+) -> tuple[Planes, Planes]:
+    """Return normalised crops and features of detections."""
+    crops = cut_crops(grey, change, found.box, network.ARCHITECTURE.crop)
+    return normalise_crops(crops), crop_features(found, crops, (grey.shape[0], grey.shape[1]), mount)

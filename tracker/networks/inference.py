@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from threadpoolctl import ThreadpoolController
 
 from peopleboy.tracker.networks.convolution import Planes, Workspace, convolve, convolve_tiles, tile_kernel
-from peopleboy.tracker.networks.weights_archive import ArraySpec, WeightsArchive
+from peopleboy.tracker.networks.weights_archive import SHIPPED, ArraySpec, WeightsArchive
 
 Floats = NDArray[np.float32]
 
@@ -129,7 +129,7 @@ class CropNetwork:
 
     ARCHITECTURE: ClassVar[Architecture]
     MODEL: ClassVar[str]
-    """Its name for `peopleboy train`."""
+    """Its name for `peopleboy train`, and of its file."""
 
     weights: Mapping[str, Planes]
     about: Mapping[str, str] = field(default_factory=dict)
@@ -176,6 +176,12 @@ class CropNetwork:
                 kernel = self.weights[f"kernel{number}"]
                 planes = convolve(planes, kernel, bias, layer.side, layer.stride, workspace)
         return planes
+
+    @classmethod
+    @cache
+    def shipped(cls) -> Self:
+        """Read the network that comes with the tracker."""
+        return cls.load(SHIPPED / f"{cls.MODEL}.npz")
 
     def save(self, path: Path) -> None:
         """Write the network; weights have 11 bits in the file, which is half as large then."""

@@ -111,7 +111,6 @@ class CropTraining(Specification[CropData]):
     """
 
     NETWORK: ClassVar[type[CropNetwork]]
-    FILE: ClassVar[str]
     EPOCHS: ClassVar[int]
     DROPOUT: ClassVar[float]
     VERSIONS: ClassVar[int]
@@ -170,7 +169,7 @@ class CropTraining(Specification[CropData]):
         samples, architecture = data.samples.training, self.NETWORK.ARCHITECTURE
         weights = fit_crops(architecture, self.loss, samples, epochs=self.EPOCHS, dropout=self.DROPOUT)
         about = {"trained on": f"{len(data.tasks.training)} sequences, {len(samples)} samples"}
-        return {self.FILE: self.NETWORK(weights, about)}
+        return {f"{self.NETWORK.MODEL}.npz": self.NETWORK(weights, about)}
 
 
 def later_seeds(worlds: int) -> list[int]:

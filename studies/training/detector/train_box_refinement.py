@@ -23,9 +23,9 @@ from peopleboy.studies.training.detector.crop_samples import (
 from peopleboy.studies.training.detector.world_sequences import ThermalImage
 from peopleboy.studies.training.optimiser import huber
 from peopleboy.tracker.boxes import area, cover, intersection, iou
-from peopleboy.tracker.detector.box_refinement import FILE, SCALES, USUAL, BoxRefinementNetwork
 from peopleboy.tracker.detector.box_regression import encode_boxes
 from peopleboy.tracker.detector.detections import Detections
+from peopleboy.tracker.detector.rescoring import BoxRefinementNetwork
 from peopleboy.tracker.detector.window import Floats
 
 _HARDLY_VISIBLE: Final = 0.3  # of people that are hidden or not upright are trained on
@@ -50,7 +50,6 @@ class BoxRefinementTraining(CropTraining):
     """Train on people in random worlds that the cascade was not trained on."""
 
     NETWORK: ClassVar[type[BoxRefinementNetwork]] = BoxRefinementNetwork
-    FILE: ClassVar[str] = FILE
     EPOCHS: ClassVar[int] = 2
     DROPOUT: ClassVar[float] = 0.2
     VERSIONS: ClassVar[int] = 4
@@ -70,8 +69,9 @@ class BoxRefinementTraining(CropTraining):
 
     def loss(self, outputs: jax.Array, batch: CropSamples) -> tuple[jax.Array, dict[str, jax.Array]]:
         """Return the losses of overlap (Yu et al., UnitBox 2016) and of offsets in units."""
-        off = jnp.abs(outputs - (batch.offsets - USUAL) / SCALES)
-        offsets = jnp.clip(outputs, -_CLIPPED, _CLIPPED) * SCALES + USUAL
+        scales, usual = self.NETWORK.SCALES, self.NETWORK.USUAL
+        off = jnp.abs(outputs - (batch.offsets - usual) / scales)
+        offsets = jnp.clip(outputs, -_CLIPPED, _CLIPPED) * scales + usual
         overlap = _iou(offsets, jnp.asarray(batch.offsets))
         units = jnp.minimum(huber(off, _LINEAR_FROM), _MOST).mean(axis=1)
         whole = _OVERLAP * (1.0 - overlap) + _UNITS * units

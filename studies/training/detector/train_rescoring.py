@@ -27,7 +27,7 @@ from peopleboy.tracker.detector.crops import SCORES
 from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.detector.detector import SMALLEST_PX, WEAKEST, detect_with_trees
 from peopleboy.tracker.detector.people_trees import shipped_people_trees
-from peopleboy.tracker.detector.rescoring import FILE, SCALES, USUAL, RescoringNetwork
+from peopleboy.tracker.detector.rescoring import RescoringNetwork
 from peopleboy.tracker.networks.inference import CropNetwork
 
 POSITIVE: Final = 0.35
@@ -48,7 +48,6 @@ class RescoringTraining(CropTraining):
     """Train on what the shipped cascade detects in random worlds that it was not trained on."""
 
     NETWORK: ClassVar[type[RescoringNetwork]] = RescoringNetwork
-    FILE: ClassVar[str] = FILE
     EPOCHS: ClassVar[int] = 4
     DROPOUT: ClassVar[float] = 0.4
     VERSIONS: ClassVar[int] = 2
@@ -71,7 +70,8 @@ class RescoringTraining(CropTraining):
         is_person = batch.overlap >= POSITIVE
         counts = is_person | (batch.overlap < NEGATIVE)
         entropy = jnp.logaddexp(0.0, jnp.where(is_person, -score, score)) * counts
-        off = jnp.abs(outputs[:, 1:] - (batch.offsets - USUAL[1:]) / SCALES[1:]) * is_person[:, None]
+        units = (batch.offsets - self.NETWORK.USUAL[1:]) / self.NETWORK.SCALES[1:]
+        off = jnp.abs(outputs[:, 1:] - units) * is_person[:, None]
         results = {
             "log loss": entropy.sum() / jnp.maximum(counts.sum(), 1),
             "units off": off.sum() / jnp.maximum(is_person.sum(), 1) / OFFSETS,
@@ -80,8 +80,10 @@ class RescoringTraining(CropTraining):
 
     def fit(self, data: CropData) -> Mapping[str, CropNetwork]:
         """Train the network, and calibrate its scores."""
-        network = CropTraining.fit(self, data)[FILE]
-        return {FILE: with_log_odds(network, data.samples.validation)}
+        others = data.samples.validation
+        return {
+            file: with_log_odds(network, others) for file, network in CropTraining.fit(self, data).items()
+        }
 
     def evaluate(self, model: RescoringNetwork, data: CropData) -> Mapping[str, str]:
         """Measure by how much scores and boxes are better than the cascade's."""

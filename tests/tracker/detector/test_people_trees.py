@@ -1,4 +1,5 @@
 import itertools
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from peopleboy.tracker.detector.window import WindowKind
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_trees import PATCHES, PLACING_TREES, TREES, drawn_cascade, drawn_placing
 
-PAGE = Path(__file__).parents[3] / "docs" / "explanation" / "detector.md"
+DOCS = Path(__file__).parents[3] / "docs"
 PLACING = (OFFSETS, PLACING_TREES)
 
 
@@ -127,9 +128,17 @@ def test_the_trees_that_are_shipped_say_what_they_were_trained_on() -> None:
         assert "from seed 1000" in shipped_people_trees().about[f"{kind} people"]
 
 
-def test_the_page_says_of_the_shipped_trees_what_their_file_does() -> None:
-    page = " ".join(PAGE.read_text(encoding="utf-8").split())
+def test_the_pages_say_of_the_shipped_trees_what_their_file_does() -> None:
+    results, data = (
+        (DOCS / name).read_text(encoding="utf-8")
+        for name in ("explanation/detector.md", "reference/models.md")
+    )
     about = shipped_people_trees().about
     for mount in ("known", "unknown"):
-        assert about[f"on worlds 0 to 29, mount {mount}"] in page
-    assert about["whole people"] in page
+        measured = about[f"on worlds 0 to 29, mount {mount}"]
+        numbers = re.findall(r"(?:precision|recall|overlap) ([\d.]+)", measured)
+        assert f"| mount {mount} | {' | '.join(numbers)} |" in results
+    for name, kind in (("cascade", "whole"), ("second cascade", "cut")):
+        worlds = sum(map(int, re.findall(r"(\d+) [^,;]+ from seed", about[f"{kind} people"])))
+        (held,) = re.findall(r"(\d+) of them held back", about[f"{kind} people"])
+        assert re.search(rf"\| {name} \| `--sequences {worlds}[^|]*` \| {held} sequences \|", data)

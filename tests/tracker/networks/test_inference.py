@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_limits
 
-from peopleboy.tracker.detector.box_refinement import BoxRefinementNetwork, shipped_box_refinement
 from peopleboy.tracker.detector.crops import CHANNELS
-from peopleboy.tracker.detector.rescoring import RescoringNetwork, shipped_rescoring
+from peopleboy.tracker.detector.rescoring import BoxRefinementNetwork, RescoringNetwork
 from peopleboy.tracker.networks.convolution import Workspace, convolve
 from peopleboy.tracker.networks.inference import CropNetwork
 from tests.helpers.calls.refused import refused
@@ -20,7 +19,7 @@ def drawn_network(kind: type[CropNetwork]) -> CropNetwork:
     return kind(drawn_weights(kind.ARCHITECTURE) | line, {"trained on": "nothing"})
 
 
-@pytest.mark.parametrize("shipped", [shipped_rescoring(), shipped_box_refinement()])
+@pytest.mark.parametrize("shipped", [RescoringNetwork.shipped(), BoxRefinementNetwork.shipped()])
 @pytest.mark.parametrize("count", [1, 4, 7])
 def test_what_is_told_does_not_hang_on_how_many_threads_there_are(shipped: CropNetwork, count: int) -> None:
     rng = np.random.default_rng(count)

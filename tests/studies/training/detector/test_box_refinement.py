@@ -11,9 +11,9 @@ from peopleboy.studies.training.detector.crop_samples import CropSamples
 from peopleboy.studies.training.detector.train_box_refinement import BoxRefinementTraining
 from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.detector.box_refinement import SCALES, BoxRefinementNetwork
 from peopleboy.tracker.detector.box_regression import decode_boxes
 from peopleboy.tracker.detector.crops import normalise_crops
+from peopleboy.tracker.detector.rescoring import BoxRefinementNetwork
 from tests.helpers.images.drawn_crops import drawn_crops, drawn_weights, loss_of
 from tests.helpers.images.drawn_films import drawn_film
 
@@ -80,7 +80,7 @@ def test_the_loss_is_that_of_what_boxes_do_not_share_and_huber_s_of_places() -> 
     ours = BoxRefinementNetwork(weights).predict(planes, looks.features)
     window = np.repeat(WINDOW, 6, axis=0)
     shared = iou(decode_boxes(window, ours), decode_boxes(window, looks.offsets.astype(np.float64)))
-    off = np.abs(ours - looks.offsets) / SCALES
+    off = np.abs(ours - looks.offsets) / BoxRefinementNetwork.SCALES
     bent = np.where(off < 1.0, off**2 / 2.0, off - 0.5)
     assert bent.max() < 8.0
     told = loss(weights, planes, looks)

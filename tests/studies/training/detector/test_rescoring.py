@@ -16,7 +16,7 @@ from peopleboy.studies.training.detector.train_rescoring import (
 )
 from peopleboy.studies.training.detector.world_sequences import ThermalImage, load_images
 from peopleboy.tracker.detector.crops import CHANNELS, FEATURES, SCORES, normalise_crops
-from peopleboy.tracker.detector.rescoring import SCALES, RescoringNetwork
+from peopleboy.tracker.detector.rescoring import RescoringNetwork
 from tests.helpers.calls.refused import refused
 from tests.helpers.images.drawn_crops import drawn_crops, drawn_weights, loss_of
 from tests.helpers.images.drawn_films import drawn_film
@@ -77,7 +77,7 @@ def test_the_loss_is_that_of_log_odds_and_huber_s_of_places() -> None:
         planes, looks.features
     )
     is_person = looks.overlap > 0.5
-    off = np.abs((ours[:, 1:] - looks.offsets) / SCALES[1:]) * is_person[:, None]
+    off = np.abs((ours[:, 1:] - looks.offsets) / RescoringNetwork.SCALES[1:]) * is_person[:, None]
     bent = np.where(off < 2.0, off**2 / 2.0, 2.0 * off - 2.0)
     expected = np.log1p(np.exp(np.where(is_person, -ours[:, 0], ours[:, 0]))).mean() + 0.5 * bent.mean()
     assert float(loss(weights, planes, looks)[0]) == pytest.approx(expected, rel=1e-3)
