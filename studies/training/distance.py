@@ -194,7 +194,10 @@ def fit_distances(
 
     Source: OMNIVIS 2003, section 4.4.
     """
-    _check_samples(cues, distances_m)
+    if len(cues) < 10:
+        raise BadInput(f"{len(cues)} samples of distances: at least 10 are needed; take more sequences")
+    if np.ptp(distances_m) <= 0.0 or np.any(np.ptp(cues, axis=0) <= 0.0):
+        raise BadInput("samples of distances: all are alike, so there is nothing to train on")
     settings = Backpropagation() if settings is None else settings
     ranges = np.stack([cues.min(axis=0), cues.max(axis=0)], axis=1)
     nearest, farthest = float(distances_m.min()), float(distances_m.max())
@@ -236,13 +239,6 @@ def run_epoch(
             output[j] += rate * blame * units[j]
             hidden[j] += rate * passed * inputs[sample]
         output[-1] += rate * blame
-
-
-def _check_samples(cues: Floats, distances_m: Floats) -> None:
-    if len(cues) < 10:
-        raise BadInput(f"{len(cues)} samples of distances: at least 10 are needed; take more sequences")
-    if np.ptp(distances_m) <= 0.0 or np.any(np.ptp(cues, axis=0) <= 0.0):
-        raise BadInput("samples of distances: all are alike, so there is nothing to train on")
 
 
 def walks(run: DistanceSamples, measured: Floats) -> list[tuple[Floats, Floats]]:

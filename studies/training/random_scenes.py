@@ -27,6 +27,10 @@ _STANDING: Final = (
     "cabinet", "table", "chair", "block", "pillar", "round_pillar", "plant", "floor_lamp", "robot",
 )  # fmt: skip
 _HANGING: Final = ("radiator", "poster", "window", "pipe")
+_LENGTHS: Final = {
+    "room": ("length_m",), "corridor": ("length_m",),
+    "l_corridor": ("first_m", "second_m"), "t_corridor": ("stem_m", "bar_m"),
+}  # fmt: skip
 
 
 def random_scene(seed: int, camera: str = "panorama") -> Data:
@@ -71,22 +75,11 @@ def _stage(rng: Draw, camera: str, rate: int, duration_s: float) -> Data:
 
 
 def _place(rng: Draw) -> Data:
-    kind = str(rng.choice(["room", "corridor", "l_corridor", "t_corridor"], p=[0.7, 0.1, 0.1, 0.1]))
-    is_room = kind == "room"
-    long, across = (
-        (rng.uniform(4.0, 14.0), rng.uniform(3.5, 12.0))
-        if is_room
-        else (
-            rng.uniform(8.0, 16.0),
-            rng.uniform(2.2, 3.8),
-        )
-    )
-    lengths = {
-        "room": ("length_m",), "corridor": ("length_m",),
-        "l_corridor": ("first_m", "second_m"), "t_corridor": ("stem_m", "bar_m"),
-    }  # fmt: skip
+    kind = str(rng.choice(list(_LENGTHS), p=[0.7, 0.1, 0.1, 0.1]))
+    limits = ((4.0, 14.0), (3.5, 12.0)) if kind == "room" else ((8.0, 16.0), (2.2, 3.8))
+    long, across = (rng.uniform(*each) for each in limits)
     colours = {part: colour(rng) for part in ("floor", "walls", "doors") if rng.random() < 0.8}
-    sizes = {name: rounded(long) for name in lengths[kind]}
+    sizes = {name: rounded(long) for name in _LENGTHS[kind]}
     return {"kind": kind, "width_m": rounded(across), **sizes, "colours": colours}
 
 

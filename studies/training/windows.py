@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Final, NamedTuple
+from typing import Annotated, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,7 @@ from peopleboy.studies.training.random_scenes import FIRST_SEED, random_scene
 from peopleboy.studies.training.samples import Arrays, SampleTask, Split, Tasks, load_samples, sample_folder
 from peopleboy.studies.training.specification import Specification, missing_package
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR
-from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
+from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.rgbd.human_windows import (
     Features,
     Image,
@@ -87,17 +87,6 @@ class WindowSamples(Arrays):
         return self.near_is_person if kind is WindowRange.NEAR else self.far_is_person
 
 
-class _Window(NamedTuple):
-    """A window of an image, and whether a person is in it."""
-
-    image: Image
-    depth: Depth
-    z_m: float
-    window: Box
-    kind: WindowRange
-    is_person: bool
-
-
 def collect_windows(scenario: str, seed: int, has_jitter: bool) -> WindowSamples:
     """Run a scenario, and keep the windows of what has about the size of a human.
 
@@ -120,11 +109,20 @@ def collect_windows(scenario: str, seed: int, has_jitter: bool) -> WindowSamples
             continue
         next_s = observation.time_s + APART_S
         depth, image = observation.images[DEPTH], observation.images[DEPTH_COLOUR]
-        layout = detector(depth, view)
-        for window in _windows(image, depth, layout, view, world.truth(DEPTH), rng):
-            for described in _describe(window, rng, has_jitter=has_jitter):
-                rows[window.kind].append(described)
-                labels[window.kind].append(window.is_person)
+        layout, truth = detector(depth, view), world.truth(DEPTH)
+        for found in (*layout.detections, *_anywhere(layout, view, image.shape[:2], rng)):
+            is_person = _is_person(found, truth, view)
+            if is_person is None:
+                continue
+            kind = range_of(found.z_m, layout.floor, view, image.shape[0])
+            windows = [window_of(found, kind, layout.floor, view)]
+            if has_jitter and is_person:
+                windows += [_jittered(windows[0], rng) for _ in range(_JITTERS)]
+            for window in windows:
+                patches = cut(image, window, kind), cut_depth(depth, found.z_m, window, kind)
+                described = _describe(patches, kind, is_mirrored=has_jitter)
+                rows[kind] += described
+                labels[kind] += [is_person] * len(described)
     features = {
         kind: np.array(rows[kind], np.float16).reshape(-1, 2 * feature_length(kind)) for kind in WindowRange
     }
@@ -141,23 +139,6 @@ def _scenario(name: str, seed: int) -> Scenario:
         return load_scenario(name)
     data = random_scene(seed, DEPTH)
     return parse_scenario(data, source=data["name"], folder=Path())
-
-
-def _windows(
-    image: Image,
-    depth: Depth,
-    layout: Layout,
-    view: DepthView,
-    truth: Truth,
-    rng: np.random.Generator,
-) -> Iterator[_Window]:
-    for found in (*layout.detections, *_anywhere(layout, view, image.shape[:2], rng)):
-        kind = range_of(found.z_m, layout.floor, view, image.shape[0])
-        is_person = _is_person(found, truth, view)
-        if is_person is not None:
-            yield _Window(
-                image, depth, found.z_m, window_of(found, kind, layout.floor, view), kind, is_person
-            )
 
 
 def _is_person(found: PreDetection, truth: Truth, view: DepthView) -> bool | None:
@@ -203,23 +184,13 @@ def _anywhere(
         )  # fmt: skip
 
 
-def _describe(one: _Window, rng: np.random.Generator, *, has_jitter: bool) -> Iterator[NDArray[np.float16]]:
-    """Yield the histograms of a window; with jitter, of people also a little off, and of all mirrored."""
-    windows = [one.window]
-    if has_jitter and one.is_person:
-        windows += [_jittered(one.window, rng) for _ in range(_JITTERS)]
-    for window in windows:
-        patches = (
-            cut(one.image, window, one.kind),
-            cut_depth(one.depth, one.z_m, window, one.kind),
-        )
-        yield _histograms(patches, one.kind)
-        if has_jitter:
-            yield _histograms([np.ascontiguousarray(patch[:, ::-1]) for patch in patches], one.kind)
-
-
-def _histograms(patches: Sequence[Image], kind: WindowRange) -> NDArray[np.float16]:
-    return np.concatenate([hog(patch, kind) for patch in patches]).astype(np.float16)
+def _describe(patches: Sequence[Image], kind: WindowRange, *, is_mirrored: bool) -> list[NDArray[np.float16]]:
+    """Return the histograms of the patches of a window, and those of their mirror images."""
+    sides = [patches, [np.ascontiguousarray(patch[:, ::-1]) for patch in patches]]
+    return [
+        np.concatenate([hog(patch, kind) for patch in side]).astype(np.float16)
+        for side in sides[: 1 + is_mirrored]
+    ]
 
 
 def _jittered(window: Box, rng: np.random.Generator) -> Box:

@@ -94,7 +94,7 @@ class Binned:
         def sort(number: int) -> None:
             values = patches.of(sums, number)
             self.edges[number] = np.quantile(values[some], np.arange(1, _BINS) / _BINS)
-            _bin(values, self.edges[number], self.bins[number])
+            self.bins[number] = np.searchsorted(self.edges[number], values)
 
         for _ in in_threads(sort, range(len(patches))):
             pass
@@ -167,24 +167,6 @@ class _Sample(NamedTuple):
     window: NDArray[np.int64]
     slope: Floats
     bend: Floats
-
-
-@njit(cache=True, nogil=True)
-def _count_below(edges: Floats, value: np.float32) -> int:  # pragma: no cover
-    low, high = 0, len(edges)
-    while low < high:
-        middle = (low + high) // 2
-        if edges[middle] < value:
-            low = middle + 1
-        else:
-            high = middle
-    return low
-
-
-@njit(cache=True, nogil=True)
-def _bin(column: Floats, edges: Floats, bins: Bins) -> None:  # pragma: no cover
-    for k in range(len(column)):
-        bins[k] = _count_below(edges, column[k])
 
 
 @njit(cache=True, nogil=True)

@@ -24,6 +24,7 @@ Floats = NDArray[np.float64]
 _HIT: Final = 0.5  # IoU
 _THERE: Final = 0.4  # IoU with a person who is there
 _LEAST_SCORE: Final = -2.0
+_TALLEST: Final = 0.75  # of the image's rows: the window of a taller person does not fit into it
 FALSE_PER_IMAGE: Final = 0.1
 """False positives per image at which recall is reported."""
 
@@ -82,7 +83,8 @@ def evaluate_trees(
     for image in samples:
         mount = image.mount if knows_mount else None
         found = detect_with_trees(model, image.grey, image.change, mount, SMALLEST_PX, _LEAST_SCORE)
-        is_counted = image.is_good & (image.box[:, 3] >= SMALLEST_PX) & (image.box[:, 3] <= _tallest(image))
+        height, tallest = image.box[:, 3], _TALLEST * len(image.grey)
+        is_counted = image.is_good & (height >= SMALLEST_PX) & (height <= tallest)
         people, images = people + int(is_counted.sum()), images + 1
         parts.append(_match(found, image.box, is_counted))
     scores, hits, overlaps = (np.concatenate(column) for column in zip(*parts, strict=True))
@@ -102,9 +104,8 @@ def calibrate(kind: WindowKind, trees: PeopleTrees, samples: Sequence[ThermalIma
     scores: list[float] = []
     is_person: list[bool] = []
     for image in samples:
-        for version in calibration_pair(
-            image, np.random.default_rng(int(image.grey.sum(dtype=np.int64))), kind
-        ):
+        rng = np.random.default_rng(int(image.grey.sum(dtype=np.int64)))
+        for version in calibration_pair(image, rng, kind):
             found = detect_with_trees(model, version.grey, version.change, None, SMALLEST_PX, _LEAST_SCORE)
             overlap = iou(found.box[:, None], version.box[None])
             scores += found.score.tolist()
@@ -140,11 +141,6 @@ def check_labels(is_person: NDArray[np.bool_]) -> None:
         raise BadInput(
             f"{is_person.sum()} of {len(is_person)} validation detections are people; take more sequences"
         )
-
-
-def _tallest(image: ThermalImage) -> float:
-    """Return how tall [px] a person can be whose window fits into the image."""
-    return 0.75 * len(image.grey)
 
 
 def _match(

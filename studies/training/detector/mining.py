@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
-from typing import Final, NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Final, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +18,14 @@ from peopleboy.tracker.detector.cascade import Cascade
 from peopleboy.tracker.detector.channels import CHANNELS, Cells
 from peopleboy.tracker.detector.detector import SMALLEST_PX
 from peopleboy.tracker.detector.patches import Patches, integrate
-from peopleboy.tracker.detector.pyramid import STEP, Level, pyramid_levels
+from peopleboy.tracker.detector.pyramid import STEP, pyramid_levels
 from peopleboy.tracker.detector.window import CELL_PX, COLUMNS, PERSON_PX, ROWS, WindowKind
 
 Floats = NDArray[np.float64]
 Windows = NDArray[np.float16]
+Drawn = tuple[ThermalImage, np.random.Generator]
+"""An augmented image, with random numbers of its own."""
+Found = TypeVar("Found")
 
 CELLS: Final = CHANNELS * ROWS * COLUMNS
 """Of a window, by channel, row and column."""
@@ -52,8 +55,7 @@ def windows_with_people(
     images: Sequence[ThermalImage], rng: np.random.Generator, kind: WindowKind
 ) -> Windows:
     """Collect windows (N, 1800) that people fill, in augmented images, each also a cell off."""
-    found = [each for windows in in_threads(_filled, _with_people(images, rng, kind)) for each in windows]
-    return np.array(found, np.float16).reshape(-1, CELLS)
+    return _stacked(_collect(_filled, _with_people(images, rng, kind)))
 
 
 def detected_windows(
@@ -64,33 +66,43 @@ def detected_windows(
     Returns:
         The windows, and the offsets of the people (N, 4): see `encode_boxes`.
     """
-    drawn = _with_people(images, rng, kind)
-    found = [
-        each for some in in_threads(lambda one: _let_through(*one, cascade, kind), drawn) for each in some
-    ]
-    windows = np.array([window for window, _ in found], np.float16).reshape(-1, CELLS)
-    return windows, np.array([each for _, each in found]).reshape(-1, 4)
+    found = _collect(lambda drawn: _let_through(*drawn, cascade, kind), _with_people(images, rng, kind))
+    return _stacked([window for window, _ in found]), np.array([each for _, each in found]).reshape(-1, 4)
+
+
+def _collect(
+    work: Callable[[Drawn], list[Found]], images: Iterable[Drawn], most: float = math.inf
+) -> list[Found]:
+    """Collect what is found in images, on all cores, until it is enough."""
+    found: list[Found] = []
+    for here in in_threads(work, images):
+        found += here
+        if len(found) >= most:
+            break
+    return found
+
+
+def _stacked(windows: Sequence[Windows]) -> Windows:
+    return np.array(windows, np.float16).reshape(-1, CELLS)
 
 
 def _with_people(
     images: Sequence[ThermalImage], rng: np.random.Generator, kind: WindowKind
-) -> Iterator[tuple[ThermalImage, np.random.Generator]]:
+) -> Iterator[Drawn]:
     """Yield augmented images with people to train on, with random numbers of their own."""
     return _augment(
         (image for image in images if has_people(image, kind) for _ in range(_AUGMENTED)), rng, kind
     )
 
 
-def _augment(
-    images: Iterable[ThermalImage], rng: np.random.Generator, kind: WindowKind
-) -> Iterator[tuple[ThermalImage, np.random.Generator]]:
+def _augment(images: Iterable[ThermalImage], rng: np.random.Generator, kind: WindowKind) -> Iterator[Drawn]:
     """Yield augmented images, each with random numbers of its own."""
     for image in images:
         own = np.random.default_rng(rng.integers(2**63))
         yield augment_for(image, own, kind), own
 
 
-def _filled(drawn: tuple[ThermalImage, np.random.Generator]) -> list[Windows]:
+def _filled(drawn: Drawn) -> list[Windows]:
     image, rng = drawn
     box, found = image.box[image.is_good], []
     for level in pyramid_levels(image.grey, image.change, None, SMALLEST_PX):
@@ -138,11 +150,13 @@ def windows_anywhere(
             for first, end in level.rows[kind]:
                 rows = rng.integers(first, end, _A_LEVEL)
                 columns = rng.integers(0, level.cells.shape[2] - COLUMNS + 1, _A_LEVEL)
-                here += _without(image, level, rows, columns)
+                is_clear = _is_clear(level.boxes(rows, columns), image)
+                places = zip(rows[is_clear].tolist(), columns[is_clear].tolist(), strict=True)
+                here += [_cut(level.cells, *place) for place in places]
         found += [here[k] for k in rng.permutation(len(here))[:_AN_IMAGE]]
         if len(found) >= most:
             break
-    return np.array(found, np.float16).reshape(-1, CELLS)
+    return _stacked(found)
 
 
 def false_positives(
@@ -157,13 +171,8 @@ def false_positives(
         most: how many are enough.
         kind: of windows.
     """
-    found: list[Windows] = []
     order = _augment((images[k] for k in rng.permutation(len(images)).tolist()), rng, kind)
-    for here in in_threads(lambda drawn: _false_positives(drawn[0], cascade, kind), order):
-        found += here
-        if len(found) >= most:
-            break
-    return np.array(found, np.float16).reshape(-1, CELLS)
+    return _stacked(_collect(lambda drawn: _false_positives(drawn[0], cascade, kind), order, most))
 
 
 def _false_positives(image: ThermalImage, cascade: Cascade, kind: WindowKind) -> list[Windows]:
@@ -189,16 +198,6 @@ def _hits(image: ThermalImage, cascade: Cascade, kind: WindowKind) -> _Hits:
             scores.append(hits.score[is_some])
             places += [(level.cells, *place) for place in zip(row.tolist(), column.tolist(), strict=True)]
     return _Hits(np.concatenate(boxes), np.concatenate(scores), places)
-
-
-def _without(
-    image: ThermalImage, level: Level, rows: NDArray[np.int64], columns: NDArray[np.int64]
-) -> list[Windows]:
-    is_clear = _is_clear(level.boxes(rows, columns), image)
-    return [
-        _cut(level.cells, row, column)
-        for row, column in zip(rows[is_clear].tolist(), columns[is_clear].tolist(), strict=True)
-    ]
 
 
 def _is_clear(box: Floats, image: ThermalImage) -> NDArray[np.bool_]:

@@ -99,11 +99,6 @@ class CascadeTraining(Specification[Tasks]):
         """Return the folder that all models of the detector share."""
         return Path("runs/detector")
 
-    @property
-    def kinds(self) -> list[WindowKind]:
-        """The kinds of windows that are trained."""
-        return [kind for kind in WindowKind if kind in self.windows]
-
     def tasks(self, out: Path) -> Tasks:
         """Render the worlds."""
         seeds = seeds_of(self.sequences), range(VALIDATION)
@@ -114,18 +109,18 @@ class CascadeTraining(Specification[Tasks]):
         held = data.training[_HELD_BACK - 1 :: _HELD_BACK] or data.training[-1:]
         images = load_images(one.path for one in data.training if one not in held)
         others, shipped = load_images(one.path for one in held), shipped_people_trees()
-        if self.only_boxes:
-            trees = {kind: with_boxes(images, shipped.trees[kind].cascade, kind) for kind in self.kinds}
-        else:
-            trees = fit_trees(images, others, self.kinds)
+        trees = {
+            kind: with_boxes(images, shipped.trees[kind].cascade, kind)
+            if self.only_boxes
+            else fit_trees(images, others, kind)
+            for kind in WindowKind
+            if kind in self.windows
+        }
         counts = ((len(kind.seeds(self.sequences)), kind) for kind in KINDS)
         drawn = ", ".join(f"{count} {kind.description} from seed {kind.first_seed}" for count, kind in counts)
         parts = ("where {} people are",) if self.only_boxes else ("{} people", "where {} people are")
-        about = {
-            part.format(kind): f"{drawn}; {len(held)} of them held back"
-            for part in parts
-            for kind in self.kinds
-        }
+        drawn += f"; {len(held)} of them held back"
+        about = {part.format(kind): drawn for part in parts for kind in trees}
         before = shipped if self.only_boxes or len(trees) < len(WindowKind) else PeopleModel({})
         return {FILE: PeopleModel({**before.trees, **trees}, {**before.about, **about})}
 
@@ -139,24 +134,18 @@ class CascadeTraining(Specification[Tasks]):
 
 
 def fit_trees(
-    images: Sequence[ThermalImage], others: Sequence[ThermalImage], kinds: Sequence[WindowKind]
-) -> dict[WindowKind, PeopleTrees]:
+    images: Sequence[ThermalImage], others: Sequence[ThermalImage], kind: WindowKind
+) -> PeopleTrees:
     """Train trees round by round, each time with the false positives of the round before.
 
     Args:
         images: to train on.
         others: of other worlds, by which scores are calibrated.
-        kinds: of windows.
+        kind: of windows.
 
     Raises:
         BadInput: scikit-learn is missing, or too few people.
     """
-    return {kind: _fit_kind(images, others, kind) for kind in kinds}
-
-
-def _fit_kind(
-    images: Sequence[ThermalImage], others: Sequence[ThermalImage], kind: WindowKind
-) -> PeopleTrees:
     people = windows_with_people(images, np.random.default_rng(_SEED_OF_PEOPLE), kind)
     rng, patches = np.random.default_rng(_SEED_OF_NEGATIVES), patch_pool()
     negatives = windows_anywhere(images, rng, _FIRST_NEGATIVES, kind)

@@ -78,29 +78,28 @@ _WARM_AIR_C: Final = (27.0, 31.0)
 
 def with_library_span(world: World) -> World:
     """Return a world without details, in the robot's own span of 24..36 degC: most of it is black."""
-    place = {key: value for key, value in world["place"].items() if key != "sun"}
-    warmth = place.get("temperatures", {})
-    if max((warmth.get(surface, 0.0) for surface in _SURFACES), default=0.0) > _WARMEST_C:
-        del place["temperatures"]
-    return world | {"detail": "plain", "place": place, "robot": _with_own_camera(world["robot"])}
-
-
-def _with_own_camera(robot: World) -> World:
-    """Return a robot whose thermal camera has the default span."""
-    cameras = robot["cameras"]
-    own = {key: value for key, value in cameras["thermal"].items() if key in _OF_CAMERA}
-    return robot | {"cameras": cameras | {"thermal": own}}
+    warmth = world["place"].get("temperatures", {})
+    is_warm = max((warmth.get(surface, 0.0) for surface in _SURFACES), default=0.0) > _WARMEST_C
+    return _plain(world, {} if is_warm else warmth)
 
 
 def with_warm_air(world: World, air_c: float) -> World:
     """Return a world without details, in the same span, with all temperatures shifted by as much as air."""
-    place = {key: value for key, value in world["place"].items() if key != "sun"}
-    warmth = place["temperatures"]
+    warmth = world["place"]["temperatures"]
     warmer = air_c - warmth["air_c"]
     walls = {name: rounded(value + warmer) for name, value in warmth["single_walls_c"].items()}
     warm = {key: rounded(value + warmer) for key, value in warmth.items() if key != "single_walls_c"}
-    place |= {"temperatures": warm | {"single_walls_c": walls}}
-    return world | {"detail": "plain", "place": place, "robot": _with_own_camera(world["robot"])}
+    return _plain(world, warm | {"single_walls_c": walls})
+
+
+def _plain(world: World, temperatures: World) -> World:
+    """Return a world of these temperatures without details and sun, seen in the robot's own span."""
+    place = {key: value for key, value in world["place"].items() if key not in ("sun", "temperatures")}
+    place |= {"temperatures": temperatures} if temperatures else {}
+    cameras = world["robot"]["cameras"]
+    own = {key: value for key, value in cameras["thermal"].items() if key in _OF_CAMERA}
+    robot = world["robot"] | {"cameras": cameras | {"thermal": own}}
+    return world | {"detail": "plain", "place": place, "robot": robot}
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ from peopleboy.studies.training.samples import SampleTask
 from peopleboy.tracker.detector.box_regression import encode_boxes
 from peopleboy.tracker.detector.channels import CHANNELS
 from peopleboy.tracker.detector.patches import Patches, integrate, integrate_windows
-from peopleboy.tracker.detector.people_trees import PeopleModel, shipped_people_trees
+from peopleboy.tracker.detector.people_trees import PeopleModel, PeopleTrees, shipped_people_trees
 from peopleboy.tracker.detector.window import COLUMNS, ROWS, WindowKind
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names, refused
@@ -43,7 +43,8 @@ def few_patches(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("quick", "few_patches")
 def test_drawn_people_are_learned_and_found_in_other_images(shots: list[ThermalImage]) -> None:
-    model = PeopleModel(train_cascade.fit_trees(shots[:30], shots[30:36], [WindowKind.WHOLE]))
+    kind = WindowKind.WHOLE
+    model = PeopleModel({kind: train_cascade.fit_trees(shots[:30], shots[30:36], kind)})
     found = evaluate_trees(model, shots[36:], knows_mount=False)
     assert (found.people, found.images) == (12, 12)
     assert found.recall(1.0) > 0.7
@@ -106,10 +107,8 @@ def test_a_tenth_of_the_worlds_is_held_back_and_at_least_one(
 ) -> None:
     split: list[int] = []
 
-    def stop(
-        shots: list[ThermalImage], others_of: list[ThermalImage], kinds: list[WindowKind]
-    ) -> PeopleModel:
-        assert kinds == list(WindowKind)
+    def stop(shots: list[ThermalImage], others_of: list[ThermalImage], kind: WindowKind) -> PeopleTrees:
+        assert kind is WindowKind.WHOLE
         split.extend((len(shots), len(others_of)))
         raise KeyboardInterrupt
 
