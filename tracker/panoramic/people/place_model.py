@@ -87,10 +87,11 @@ class PlaceModel:
         together = {key: spec for each in specs.values() for key, spec in each.items()}
         archive = WeightsArchive.load(path, MODEL, together, PanoramaView.of_plain)
         found = {name: [archive.arrays[key] for key in each] for name, each in specs.items()}
-        networks = (
-            DenseNetwork(list(zip(arrays[::2], arrays[1::2], strict=True))) for arrays in found.values()
-        )
-        return cls(*networks, archive.camera, archive.about)
+        networks = {
+            name: DenseNetwork(list(zip(arrays[::2], arrays[1::2], strict=True)))
+            for name, arrays in found.items()
+        }
+        return cls(**networks, view=archive.camera, about=archive.about)
 
 
 def _specs(name: str, outputs: int, layers: int) -> dict[str, ArraySpec]:
