@@ -5,7 +5,9 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from zipfile import ZipFile
 
+import pyarrow.parquet as pq
 import pytest
 
 from tests.helpers.import_graph import ROOT
@@ -13,23 +15,27 @@ from tests.helpers.pages import DOCS, blocks
 
 pytestmark = pytest.mark.install
 
-# PyBullet has no wheels for these, so that nothing installs it there.
-WITHOUT_WHEELS = ("python3.13", "python3.12")
+NEWER = ("python3.13", "python3.12")
+ROOMS = ("behaviours", "geometry", "scenarios", "sim", "studies", "tracker")
 CONSTRAINTS = ROOT / "constraints.txt"
 
 
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The wheel of what git knows of this checkout, so that nothing else gets in."""
-    source, folder = tmp_path_factory.mktemp("source"), tmp_path_factory.mktemp("wheel")
+def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What git knows of this checkout, so that nothing else gets in."""
+    folder = tmp_path_factory.mktemp("source")
     listed = subprocess.run(
         ["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True
     ).stdout
     for name in filter(None, listed.split("\0")):
-        (source / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(ROOT / name, source / name, follow_symlinks=False)
-    pip(sys.executable, "wheel", "--no-deps", "--wheel-dir", str(folder), str(source))
-    return next(folder.glob("*.whl"))
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(ROOT / name, folder / name, follow_symlinks=False)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wheel(source: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return build(source, tmp_path_factory.mktemp("wheel"))
 
 
 @pytest.fixture(scope="module")
@@ -45,15 +51,16 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def whole(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The programs of an environment with everything that the wheel asks for."""
-    return environment(sys.executable, wheel, tmp_path_factory.mktemp("whole"))
+    """The programs of an environment with everything that the wheel asks for, and what recordings need."""
+    return environment(sys.executable, f"{wheel}[viewer]", tmp_path_factory.mktemp("whole"))
 
 
 @pytest.fixture(scope="module")
 def without_pybullet(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The programs of an environment without PyBullet: a Python without wheels for it, if there is one."""
-    programs = environment(newer_python() or sys.executable, wheel, tmp_path_factory.mktemp("without"))
-    subprocess.run([programs / "pip", "uninstall", "--quiet", "--yes", "pybullet"], check=True)
+    """The programs of an environment without PyBullet and without rerun."""
+    programs = environment(newer_python() or sys.executable, str(wheel), tmp_path_factory.mktemp("without"))
+    gone = ["pybullet", "pybullet-arm64"]
+    subprocess.run([programs / "pip", "uninstall", "--quiet", "--yes", *gone], check=True)
     return programs
 
 
@@ -69,9 +76,14 @@ def pip(python: str | Path, *arguments: str) -> None:
     subprocess.run(command, check=True, timeout=900)
 
 
+def build(source: Path, folder: Path) -> Path:
+    pip(sys.executable, "wheel", "--no-deps", "--wheel-dir", str(folder), str(source))
+    return next(folder.glob("*.whl"))
+
+
 def newer_python() -> str | None:
-    """A Python for which PyBullet has no wheels: on the path, or one of pyenv's."""
-    on_path = [path for name in WITHOUT_WHEELS if (path := shutil.which(name))]
+    """A newer Python than 3.11: on the path, or one of pyenv's."""
+    on_path = [path for name in NEWER if (path := shutil.which(name))]
     of_pyenv = [str(path) for path in sorted(Path.home().glob(".pyenv/versions/3.1[23].*/bin/python"))]
     for path in [*on_path, *of_pyenv]:
         if subprocess.run([path, "-c", ""], capture_output=True, check=False).returncode == 0:
@@ -79,9 +91,9 @@ def newer_python() -> str | None:
     return None
 
 
-def environment(python: str, wheel: Path, folder: Path) -> Path:
+def environment(python: str, wheel: str, folder: Path) -> Path:
     subprocess.run([python, "-m", "venv", str(folder)], check=True)
-    pip(folder / "bin" / "python", "install", "--constraint", str(CONSTRAINTS), str(wheel))
+    pip(folder / "bin" / "python", "install", "--constraint", str(CONSTRAINTS), wheel)
     return folder / "bin"
 
 
@@ -147,8 +159,9 @@ def test_the_environment_is_made_by_its_name(whole: Path, home: Path) -> None:
         ["track", "run/thermal", "--out", "tracked"],
         ["export", "run", "--format", "viper", "--out", "viper"],
         ["export", "run", "--format", "mot", "--out", "mot"],
-        ["run", "crossing_2", "--physics", "kinematic", "--no-rrd", "--out", "kinematic"],
-        ["sweep", "crossing_2", "--seeds", "2", "--physics", "kinematic", "--out", "swept"],
+        ["run", "crossing_2", "--out", "kinematic"],
+        ["sweep", "crossing_2", "--seeds", "2", "--out", "swept"],
+        ["render", "crossing_pair", "--seeds", "2", "--out", "set"],
     ],
     ids=" ".join,
 )
@@ -160,26 +173,67 @@ def test_what_needs_no_pybullet_works_without_it(
     assert done.returncode == 0, done.stderr
 
 
+def test_what_is_missing_is_said_in_a_line(without_pybullet: Path, home: Path) -> None:
+    done = call(without_pybullet, home, "run", "crossing_pair", "--quiet", "--out", "lacking")
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.splitlines() == [
+        "peopleboy: PyBullet is not installed; physics is kinematic",
+        "peopleboy: no recording is written: needs rerun: pip install 'peopleboy[viewer]'",
+    ]
+    assert not (home / "lacking" / "recording.rrd").exists()
+
+
 @pytest.mark.parametrize(
-    "arguments",
+    ("arguments", "missing"),
     [
-        ["run", "crossing_2"],
-        ["run", "dataset1"],
-        ["sweep", "crossing_2", "--seeds", "2"],
-        ["render", "crossing_2", "--seeds", "2"],
-        ["compare", "--scenario", "single_follow", "--seeds", "1"],
-        ["export", "run", "--format", "coco", "--out", "coco"],
+        (["run", "crossing_2", "--physics", "bullet"], "PyBullet"),
+        (["sweep", "crossing_2", "--seeds", "2", "--physics", "bullet"], "PyBullet"),
+        (["export", "run", "--format", "coco", "--out", "coco"], "PyBullet"),
+        (["view", "run"], "peopleboy[viewer]"),
+        (["run", "crossing_2", "--live"], "peopleboy[viewer]"),
     ],
-    ids=" ".join,
+    ids=str,
 )
-def test_what_needs_pybullet_says_so_in_a_line_and_leaves_nothing(
-    without_pybullet: Path, finished: Path, home: Path, arguments: list[str]
+def test_what_needs_a_missing_package_says_so_in_a_line_and_leaves_nothing(
+    without_pybullet: Path, finished: Path, home: Path, arguments: list[str], missing: str
 ) -> None:
     assert finished.is_dir()
     before = sorted(home.rglob("*"))
     done = call(without_pybullet, home, *arguments)
     assert done.returncode == 2
-    assert len(done.stderr.splitlines()) == 1
-    assert "pybullet" in done.stderr
-    assert "3.11" in done.stderr
+    *notices, line = done.stderr.splitlines()
+    assert missing in line
+    assert notices in ([], ["peopleboy: PyBullet is not installed; physics is kinematic"])
     assert sorted(home.rglob("*")) == before
+
+
+def test_an_archive_without_symbolic_links_gives_the_same_wheel(
+    source: Path, wheel: Path, tmp_path: Path
+) -> None:
+    shutil.copytree(source, tmp_path / "source", symlinks=True)
+    for room in ROOMS:
+        link = tmp_path / "source" / "src" / "peopleboy" / room
+        link.unlink()
+        link.write_text(f"../../{room}", encoding="utf-8")  # as git on Windows leaves it
+
+    other = build(tmp_path / "source", tmp_path / "wheel")
+
+    contents = [{e.filename: e.CRC for e in ZipFile(path).infolist()} for path in (wheel, other)]
+    for content in contents:
+        content.pop("peopleboy-0.1.0.dist-info/RECORD")
+    assert contents[0] == contents[1]
+
+
+def test_two_numpy_versions_give_the_same_bytes(wheel: Path, home: Path, tmp_path: Path) -> None:
+    python = newer_python()
+    if python is None:
+        pytest.skip("NumPy 2.5 needs Python 3.12 or newer")
+    programs, found = environment(python, str(wheel), tmp_path / "environment"), []
+    for version in ("2.4.*", "2.5.*"):
+        pip(programs / "python", "install", f"numpy=={version}")
+        out = tmp_path / version
+        done = call(programs, home, "run", "single_follow", "--seed", "1", "--out", str(out))
+        assert done.returncode == 0, done.stderr
+        tables = sorted(out.rglob("*.parquet"))
+        found.append([(path.name, pq.read_table(path).to_pylist()) for path in tables])
+    assert str(found[0]) == str(found[1])

@@ -1,5 +1,6 @@
 """What is installed, by which Python on which system, and that all files that say so agree."""
 
+import os
 import re
 import runpy
 import shutil
@@ -91,7 +92,14 @@ def test_an_incomplete_archive_is_refused_in_one_line(tmp_path: Path) -> None:
 
 
 def test_constraints_are_those_of_the_lock_file() -> None:
-    made = subprocess.run([ROOT / ".ci" / "constraints"], capture_output=True, text=True, check=True).stdout
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])  # where uv is
+    made = subprocess.run(
+        [ROOT / ".ci" / "constraints"],
+        env=os.environ | {"PATH": path},
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
 
     assert made == (ROOT / "constraints.txt").read_text(encoding="utf-8"), "`make lock` writes both"
 

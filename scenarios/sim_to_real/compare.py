@@ -7,7 +7,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Final
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,6 +23,7 @@ from peopleboy.scenarios.sim_to_real.clips import (
     random_patches,
 )
 from peopleboy.scenarios.sim_to_real.measures import ImageStatistics, gradient, measure_images
+from peopleboy.tracker.rgbd.human_windows import hog_descriptor
 
 # A two-sample test as one number: how well a small classifier separates rendered patches from real ones.
 
@@ -62,7 +62,7 @@ def features(patch: Grey) -> Floats:
     Source: N. Dalal and B. Triggs, Histograms of oriented gradients for human detection, CVPR 2005: cells of
     8 x 8 pixels, blocks of 2 x 2 cells, 9 orientations.
     """
-    hog = np.asarray(_HOG.compute(patch), np.float64).ravel()
+    hog = np.asarray(hog_descriptor((SIDE, SIDE)).compute(patch), np.float64).ravel()
     steps = np.histogram(gradient(patch), _GRADIENTS)[0] / patch.size
     return np.concatenate([hog, np.sqrt(steps)])
 
@@ -144,9 +144,6 @@ def _gather(
     ]
     labels = np.repeat([0, 1], [len(rows) for rows in chosen])
     return np.concatenate(chosen), labels
-
-
-_HOG = cv2.HOGDescriptor((SIDE, SIDE), (16, 16), (8, 8), (8, 8), 9)
 
 
 PICTURES: Final = 40

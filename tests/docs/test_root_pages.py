@@ -42,7 +42,10 @@ def test_every_figure_of_the_readme_is_one_of_the_results() -> None:
 def test_what_a_page_of_the_repository_points_to_is_there(name: str) -> None:
     page = ROOT / name
     text = page.read_text(encoding="utf-8")
-    links = [link.partition("#")[0] for link in re.findall(r"\]\((?!https?:|#)([^)]+)\)", text)]
+    # Badges point to the repository's Actions page, relative to the README's address.
+    links = [
+        link.partition("#")[0] for link in re.findall(r"\]\((?!https?:|#|\.\./\.\./actions/)([^)]+)\)", text)
+    ]
     assert not [link for link in links if not (page.parent / link).exists()]
 
 

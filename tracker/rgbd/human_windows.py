@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from enum import StrEnum
 from functools import lru_cache
-from typing import Final
+from typing import Any, Final
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.bad_input import BadInput
 from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
 from peopleboy.tracker.rgbd.pre_detection import PreDetection
 from peopleboy.tracker.rgbd.v_disparity import HeightLine
@@ -82,7 +83,7 @@ def depth_features(depth: Depth, z_m: float, window: Box, kind: WindowRange) -> 
 
 def hog(patch: Image, kind: WindowRange) -> Features:
     """Return the histograms of oriented gradients (N,) of what was cut out."""
-    return np.asarray(_hog(kind).compute(patch), np.float32).ravel()
+    return np.asarray(hog_descriptor(SIZES[kind]).compute(patch), np.float32).ravel()
 
 
 def cut(image: Image, window: Box, kind: WindowRange) -> Image:
@@ -122,7 +123,18 @@ def _sized(inner: Image, borders: _Borders, kind: WindowRange) -> Image:
     return np.asarray(cv2.resize(inner, SIZES[kind], interpolation=way), np.uint8)
 
 
-@lru_cache(maxsize=2)
-def _hog(kind: WindowRange) -> cv2.HOGDescriptor:
-    """Nine directions in cells of 8 px, blocks of two by two cells."""
-    return cv2.HOGDescriptor(SIZES[kind], (16, 16), (8, 8), (8, 8), 9)
+@lru_cache(maxsize=4)
+def hog_descriptor(size: tuple[int, int]) -> Any:
+    """Return OpenCV's HOG of windows of a width and height [px].
+
+    It has nine directions in cells of 8 px, and blocks of two by two cells.
+
+    Raises:
+        BadInput: it is OpenCV 5, which has none.
+    """
+    if not hasattr(cv2, "HOGDescriptor"):
+        raise BadInput(
+            f"histograms of gradients need OpenCV 4, and {cv2.__version__} is installed: "
+            "pip install 'opencv-python-headless<5'"
+        )
+    return cv2.HOGDescriptor(size, (16, 16), (8, 8), (8, 8), 9)

@@ -8,7 +8,6 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
-import cv2
 import numpy as np
 
 from peopleboy.tracker.networks.weights_archive import SHIPPED, ArraySpec, WeightsArchive
@@ -20,6 +19,7 @@ from peopleboy.tracker.rgbd.human_windows import (
     WindowRange,
     depth_features,
     features,
+    hog_descriptor,
 )
 from peopleboy.tracker.track import Box
 
@@ -100,6 +100,6 @@ def shipped_windows(*, sees_depth: bool) -> WindowModel:
 
 def people_detector() -> WindowModel:
     """Take OpenCV's people detector for what is far, and the shipped one of colour for what is near."""
-    far = np.asarray(cv2.HOGDescriptor.getDefaultPeopleDetector(), np.float32)
+    far = np.asarray(hog_descriptor(SIZES[WindowRange.FAR]).getDefaultPeopleDetector(), np.float32)
     near = shipped_windows(sees_depth=False).weights[WindowRange.NEAR]
     return WindowModel({WindowRange.NEAR: near, WindowRange.FAR: far})

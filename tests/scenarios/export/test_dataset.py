@@ -147,5 +147,7 @@ def test_without_the_physics_that_it_asks_for_nothing_is_left(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
-    assert_names(refusal(capsys, "render", "crossing_2", "--seeds", 2), "pybullet", "3.11", "kinematic")
-    assert not list(tmp_path.iterdir())
+    own = "name: own\ndescription: With its physics.\nlike: crossing_2\nphysics: bullet\n"
+    Path("own.yaml").write_text(own, encoding="utf-8")
+    assert_names(refusal(capsys, "render", "own.yaml", "--seeds", 2), "PyBullet", "3.11", "kinematic")
+    assert [path.name for path in tmp_path.iterdir()] == ["own.yaml"]

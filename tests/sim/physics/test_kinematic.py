@@ -162,10 +162,11 @@ def test_a_world_with_people_needs_no_pybullet() -> None:
         "from peopleboy.scenarios.files.load import load_scenario\n"
         "from peopleboy.sim.world import World\n"
         "scenario = load_scenario('single_follow')\n"
-        "with World(scenario.moved_by('kinematic').world(0)) as world:\n"
+        "assert scenario.spec.physics == 'kinematic'\n"
+        "with World(scenario.world(0)) as world:\n"
         "    world.step(0.2, 0.1)\n"
         "    print(len(world.truth().people), world.sense().sonar_m.shape)\n"
-        "try: World(scenario.world(0))\n"
+        "try: World(scenario.moved_by('bullet').world(0))\n"
         "except Exception as error: print(error)\n"
     )
     done = subprocess.run([sys.executable, "-c", GONE + play], capture_output=True, text=True, check=False)
@@ -173,6 +174,7 @@ def test_a_world_with_people_needs_no_pybullet() -> None:
     first, second = done.stdout.splitlines()
     assert first.endswith("(16,)")
     assert "kinematic" in second
+    assert done.stderr.splitlines() == ["peopleboy: PyBullet is not installed; physics is kinematic"]
 
 
 def test_physics_that_there_is_not_or_that_cannot_draw_is_refused() -> None:

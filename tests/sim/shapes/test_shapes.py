@@ -1,10 +1,12 @@
 import re
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
 
+from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.physics.urdf import find_model
@@ -81,3 +83,11 @@ def test_a_mesh_in_centimetres_takes_up_the_room_that_it_is_drawn_with(tmp_path:
     )
     path.write_text(centimetres, encoding="utf-8")
     np.testing.assert_allclose(mesh_extent(path), [[-0.05, -0.1, -0.15], [0.05, 0.1, 0.15]])
+
+
+def test_without_trimesh_a_mesh_names_the_extra_that_brings_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "trimesh", None)
+    with pytest.raises(BadInput, match=r"peopleboy\[meshes\]"):
+        load_triangles(tmp_path / "box.stl")

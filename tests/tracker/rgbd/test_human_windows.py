@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from peopleboy.bad_input import BadInput
 from peopleboy.tracker.rgbd.human_windows import (
     SIZES,
     WindowRange,
@@ -14,6 +15,7 @@ from peopleboy.tracker.rgbd.human_windows import (
     cut_depth,
     depth_features,
     features,
+    hog_descriptor,
     range_of,
     window_of,
 )
@@ -95,3 +97,9 @@ def test_the_opening_angle_of_the_image_decides_with_the_height() -> None:
     farthest = 1.2 * math.tan(math.pi / 2 - half)
     assert range_of(farthest + 0.11, FLOOR, view, HEIGHT) is WindowRange.FAR
     assert range_of(farthest + 0.09, FLOOR, view, HEIGHT) is WindowRange.NEAR
+
+
+def test_without_hog_the_version_of_opencv_that_has_it_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr("cv2.HOGDescriptor")
+    with pytest.raises(BadInput, match="opencv-python-headless<5"):
+        hog_descriptor((8, 8))
