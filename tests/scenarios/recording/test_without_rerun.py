@@ -16,7 +16,7 @@ def test_runs_reports_and_environments_load_no_rerun() -> None:
     code = (
         "import sys\n"
         "import peopleboy.scenarios.cli, peopleboy.scenarios.running.run\n"
-        "import peopleboy.scenarios.environments.environment, peopleboy.scenarios.report.charts.stills\n"
+        "import peopleboy.scenarios.environments.environment, peopleboy.scenarios.report.pictures\n"
         "import peopleboy.scenarios.finished_runs.import_tracks\n"
         "import peopleboy.scenarios.finished_runs.run_scene_model\n"
         "print('rerun' in sys.modules)"
