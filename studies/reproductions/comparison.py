@@ -75,9 +75,12 @@ def judge(claim: Claim, samples: Samples) -> Iterator[Verdict]:
 def _verdict(claim: Claim, method: str, one: Values, other: Values) -> Verdict:
     if isinstance(one, ImageErrors) and isinstance(other, ImageErrors):
         difference = by_stretches(one, other)
-        return Verdict(
-            method, difference, _outcome(claim, difference, other.all.mean), tuple(_tests(one, other))
-        )
+        tests = {"as the source, all images of a film's splits unpaired": ("d", unpaired(one, other))}
+        paired_test = paired_by_blocks(one, other)
+        if paired_test is not None:
+            tests = {"paired by stretches of time": ("d_z", paired_test)} | tests
+        words = tuple(_in_words(name, *test) for name, test in tests.items())
+        return Verdict(method, difference, _outcome(claim, difference, other.all.mean), words)
     assert not isinstance(one, ImageErrors)
     assert not isinstance(other, ImageErrors)  # a column has values of one kind
     difference, second = paired(claim.metric, one, other), mean_of(other)
@@ -89,13 +92,6 @@ def _verdict(claim: Claim, method: str, one: Values, other: Values) -> Verdict:
         outcome = _outcome(claim, difference, second)
     times = None if claim.times is None else mean_of(one) / second
     return Verdict(method, difference, outcome, times=times)
-
-
-def _tests(one: ImageErrors, other: ImageErrors) -> Iterator[str]:
-    paired_test = paired_by_blocks(one, other)
-    if paired_test is not None:
-        yield _in_words("paired by stretches of time", "d_z", paired_test)
-    yield _in_words("as the source, all images of a film's splits unpaired", "d", unpaired(one, other))
 
 
 def _in_words(name: str, effect: str, test: TTest) -> str:
@@ -198,21 +194,18 @@ def _standing(column: str, away: ResultDifference, source: float) -> Standing:
 
 
 def effects_to_source(samples: Samples, experiment: Experiment) -> Iterator[str]:
-    """Write for each of our lines how far its errors are from the source's; empty where that is unknown."""
+    """Write for each of our lines Cohen's d to the source, and its 95 % interval for a split's images.
+
+    Empty where the errors of images are not known, or the source prints no deviation.
+    """
     printed = {line.group: line.values for line in experiment.values}
     for line, values in samples.items():
-        theirs = printed.get(line.group, {})
-        yield "".join(
-            _effect_to_source(errors, *theirs[name])
-            for name, errors in values.items()
-            if isinstance(errors, ImageErrors) and name in theirs
-        )
-
-
-def _effect_to_source(ours: ImageErrors, mean: float, deviation: float | None) -> str:
-    """Write Cohen's d to the source, and its 95 % interval for a split's images."""
-    if deviation is None:
-        return ""
-    count = ours.splits[0].images
-    d, (low, high) = cohens_d(ours.all, ErrorSummary(images=count, mean=mean, deviation=deviation), count)
-    return f"{d:+.2f} ({low:+.2f} to {high:+.2f})"
+        words = ""
+        for name, errors in values.items():
+            mean, deviation = printed.get(line.group, {}).get(name, (math.nan, None))
+            if isinstance(errors, ImageErrors) and deviation is not None:
+                count = errors.splits[0].images
+                source = ErrorSummary(images=count, mean=mean, deviation=deviation)
+                d, (low, high) = cohens_d(errors.all, source, count)
+                words += f"{d:+.2f} ({low:+.2f} to {high:+.2f})"
+        yield words

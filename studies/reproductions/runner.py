@@ -6,7 +6,7 @@ import json
 import math
 import shlex
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Annotated, Any, Final
@@ -23,9 +23,10 @@ from peopleboy.scenarios.running.engine.task import Failure, TasksFailed, Worker
 from peopleboy.scenarios.running.many_runs import films_of
 from peopleboy.scenarios.scores.suite_table import THESIS, Content, add_up, count
 from peopleboy.studies.reproductions.catalogue import choose
+from peopleboy.studies.reproductions.comparison import Compared
 from peopleboy.studies.reproductions.experiment import Experiment, ExperimentOutcome
 from peopleboy.studies.reproductions.plan import REPEATS, Plan, full_plan, quick_plan
-from peopleboy.studies.reproductions.source_page import Checked, Section, head_of, section, span, write_page
+from peopleboy.studies.reproductions.source_page import Checked, Section, head_of, page_text, section, span
 from peopleboy.studies.reproductions.statistics import mean_and_spread
 from peopleboy.studies.reproductions.units import Unfinished, Unit, open_store, run_units
 
@@ -51,35 +52,37 @@ class Means:
     command: str = "peopleboy reproduce"
 
 
-def reproduce(experiments: Sequence[Experiment], plan: Plan, means: Means) -> tuple[Path, list[Section]]:
+def reproduce(
+    experiments: Sequence[Experiment], plan: Plan, means: Means, *, so_far: bool = False
+) -> tuple[Path, list[Section]]:
     """Run what is missing, and write the page, and the means of all values beside it.
 
     A killed run resumes with the same folder: results that are there are taken from there. Experiments that
     cannot be finished, since units failed, are left off the page.
 
+    Args:
+        experiments: what is reproduced.
+        plan: how much of everything.
+        means: with what.
+        so_far: run nothing, and show what the folder has, each part with as many repeats as it has.
+
     Returns:
         The page, and what is on it.
 
     Raises:
-        BadInput: the folder or the cluster cannot be used.
+        BadInput: the folder or the cluster cannot be used, or nothing is finished there.
         TasksFailed: some units failed, after all else was done.
     """
     store = open_store(means.out / RESULTS)
-    outcomes, failures = work_off(experiments, plan, store, means.workers)
-    shown = _write(*finished(experiments, plan, store, outcomes), plan, means, store)
+    known, failures = ({}, []) if so_far else work_off(experiments, plan, store, means.workers)
+    outcomes, missing = finished(experiments, plan, store, known)
+    (means.out / MEANS).write_text(json.dumps(_mean_values(outcomes), indent=1) + "\n", encoding="utf-8")
+    sections, page = [section(one) for one in outcomes], means.out / PAGE
+    about = head_of(plan, outcomes, store, command=means.command, missing=missing)
+    page.write_text(page_text(sections, about), encoding="utf-8")
     if failures:
         raise TasksFailed("reproduce", failures, len(store) + len(failures))
-    return shown
-
-
-def show_so_far(experiments: Sequence[Experiment], plan: Plan, means: Means) -> tuple[Path, list[Section]]:
-    """Write the page of what the folder has, each part with as many repeats as it has, and run nothing.
-
-    Raises:
-        BadInput: nothing is finished there.
-    """
-    store = open_store(means.out / RESULTS)
-    return _write(*finished(experiments, plan, store), plan, means, store)
+    return page, sections
 
 
 def work_off(
@@ -114,7 +117,7 @@ def finished(
     experiments: Sequence[Experiment],
     plan: Plan,
     store: Store,
-    known: dict[str, ExperimentOutcome] | None = None,
+    known: Mapping[str, ExperimentOutcome] | None = None,
 ) -> tuple[list[ExperimentOutcome], list[str]]:
     """Return what is finished, each part with as many repeats as it has, and the ids of what is not.
 
@@ -128,15 +131,6 @@ def finished(
     if not outcomes:
         raise BadInput(f"{store.path}: no table or figure is finished there")
     return outcomes, [number for number, one in found.items() if one is None]
-
-
-def _write(
-    outcomes: Sequence[ExperimentOutcome], missing: Sequence[str], plan: Plan, means: Means, store: Store
-) -> tuple[Path, list[Section]]:
-    (means.out / MEANS).write_text(json.dumps(_mean_values(outcomes), indent=1) + "\n", encoding="utf-8")
-    sections, page = [section(one) for one in outcomes], means.out / PAGE
-    write_page(page, sections, head_of(plan, outcomes, store, command=means.command, missing=missing))
-    return page, sections
 
 
 def _mean_values(outcomes: Sequence[ExperimentOutcome]) -> dict[str, Any]:
@@ -229,17 +223,34 @@ def reproduce_named(names: Sequence[str], options: ReproduceOptions, workers: Wo
     fewer = [] if repeats == REPEATS else ["--quick"] if repeats is None else ["--repeats", str(repeats)]
     command = shlex.join(["peopleboy", "reproduce", *chosen, *fewer, *names])
     means = Means(out=options.folder, workers=workers, command=command)
-    page, sections = (show_so_far if options.so_far else reproduce)(experiments, plan, means)
+    page, sections = reproduce(experiments, plan, means, so_far=options.so_far)
     print_sections(sections)
     return page
 
 
 def list_experiments(names: Sequence[str], paper: str | None) -> None:
     """Print ids, where they are from, and what they are about."""
-    table = Table("id", "source", "what", box=None, header_style="bold")
-    for one in choose(names, paper):
-        table.add_row(one.id, one.source, one.title)
-    Console().print(table)
+    rows = [(one.id, one.source, one.title) for one in choose(names, paper)]
+    Console().print(rich_table(("id", "source", "what"), rows, pad_edge=True))
+
+
+def rich_table(
+    head: Sequence[str], rows: Iterable[Sequence[str]], *, left: int | None = None, **style: Any
+) -> Table:
+    """Lay out a table without lines.
+
+    Args:
+        head: names of the columns.
+        rows: their cells.
+        left: how many columns are words, on the left, before those that are numbers; None for all.
+        style: of the table.
+    """
+    table = Table(box=None, header_style="bold", **({"pad_edge": False} | style))
+    for number, name in enumerate(head):
+        table.add_column(Text(name), justify="left" if left is None or number < left else "right")
+    for row in rows:
+        table.add_row(*map(Text, row))
+    return table
 
 
 def print_sections(sections: Iterable[Section]) -> None:
@@ -250,9 +261,14 @@ def print_sections(sections: Iterable[Section]) -> None:
             f"[bold]{escape(part.id)}[/bold]: {escape(part.table.title)} ({escape(part.table.source)})"
         )
         if part.rows:
-            console.print(_table(part))
+            rows = [(row.group if row.is_first else "", row.method, *row.cells) for row in part.rows]
+            table = rich_table(("", "", *part.columns), rows, left=2)
+            for line, row in zip(table.rows, part.rows, strict=True):
+                line.style = "dim" if row.is_source else ""
+            console.print(table)
         if part.compared:
-            console.print(_comparison(part))
+            head = ("", "", "", "ours less the source's (95 %), effect size", "")
+            console.print(rich_table(head, map(_compared, part.compared)))
         if part.picture is not None:
             console.print("  a picture is on the page")
         for item in part.checked:
@@ -262,24 +278,8 @@ def print_sections(sections: Iterable[Section]) -> None:
         console.print()
 
 
-def _table(part: Section) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for number, name in enumerate(("", "", *part.columns)):
-        table.add_column(Text(name), justify="left" if number < 2 else "right")
-    for row in part.rows:
-        cells = (row.group if row.is_first else "", row.method, *row.cells)
-        table.add_row(*map(Text, cells), style="dim" if row.is_source else "")
-    return table
-
-
-def _comparison(part: Section) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for name in ("", "", "", "ours less the source's (95 %), effect size", ""):
-        table.add_column(name)
-    for one in part.compared:
-        cells = (one.group, one.column, one.method, span(one.difference, one.column), one.standing.value)
-        table.add_row(*map(Text, cells))
-    return table
+def _compared(one: Compared) -> tuple[str, ...]:
+    return one.group, one.column, one.method, span(one.difference, one.column), one.standing.value
 
 
 def _print_claim(console: Console, item: Checked) -> None:
@@ -300,15 +300,17 @@ def count_suite(name: str, films: Path) -> Content:
 
 def print_contents(names: Sequence[str], films: Path) -> None:
     """Print what data sets hold, each beside the thesis's of the same name."""
-    table = Table(title="thesis, table 3.1: ours (theirs)", title_justify="left", box=None, pad_edge=False)
-    table.add_column("")
-    for name in names:
-        table.add_column(name, justify="right")
     ours = [count_suite(name, films) for name in names]
-    for one in fields(Content):
-        cells = [
-            f"{getattr(content, one.name)} ({getattr(THESIS[name], one.name)})"
-            for name, content in zip(names, ours, strict=True)
-        ]
-        table.add_row(one.name.replace("_", " "), *cells)
+    rows = [
+        (
+            one.name.replace("_", " "),
+            *(
+                f"{getattr(content, one.name)} ({getattr(THESIS[name], one.name)})"
+                for name, content in zip(names, ours, strict=True)
+            ),
+        )
+        for one in fields(Content)
+    ]
+    title = {"title": "thesis, table 3.1: ours (theirs)", "title_justify": "left"}
+    table = rich_table(("", *names), rows, left=1, **title)
     (Console() if sys.stdout.isatty() else Console(width=120)).print(table)

@@ -137,12 +137,6 @@ class PageHead:
         return [*whole, *(("Parts", f"{fact} ({', '.join(parts)})") for fact, parts in alike.items())]
 
 
-def write_page(path: Path, sections: Sequence[Section], about: PageHead) -> None:
-    """Write the page."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page_text(sections, about), encoding="utf-8")
-
-
 def page_text(sections: Sequence[Section], about: PageHead) -> str:
     """Return the page as HTML."""
     papers = {paper_of(part.id) for part in sections}

@@ -55,11 +55,6 @@ class ResultDifference:
         """Whether there is an interval at all."""
         return not math.isnan(self.low + self.high)
 
-    @classmethod
-    def within(cls, by: float, half: float, effect: str) -> ResultDifference:
-        """Return a difference with an interval of so much on either side."""
-        return cls(by, by - half, by + half, effect)
-
 
 def margin(column: str, reference: float) -> float:
     """Return the difference up to which values of a column are called alike."""
@@ -87,36 +82,45 @@ def paired(column: str, one: Floats | Jackknife, other: Floats | Jackknife) -> R
     the generalization error", Machine Learning 52, 2003, which is wider for that.
     """
     means = mean_of(one), mean_of(other)
-    by = means[0] - means[1]
     if isinstance(one, Jackknife) and isinstance(other, Jackknife):
         parts = [one.by_sequence, other.by_sequence]
         # The same sequences are compared one by one, others as two samples.
         apart = [parts[0] - parts[1]] if one.suites == other.suites else parts
-        return ResultDifference.within(by, _welch(map(_variance_of_mean, apart)), _effect(column, *means, ()))
+        return _difference(column, *means, map(_variance_of_mean, apart))
     if isinstance(one, Jackknife) or isinstance(other, Jackknife) or one.size != other.size or one.size < 2:
-        return ResultDifference(by, effect=_effect(column, *means, ()))
-    away = one - other
-    spread = float(away.std(ddof=1)) * math.sqrt(1.0 / away.size + _RETESTED.get(column, 0.0))
-    return ResultDifference.within(by, _reach(away.size - 1) * spread, _effect(column, *means, (one, other)))
+        return _difference(column, *means)
+    return _difference(column, *means, [_variance_of_mean(one - other, column)], (one, other))
 
 
 def to_source(
     column: str, ours: Floats | Jackknife, source: float, deviation: float | None
 ) -> ResultDifference:
     """Compare values (R,) with a printed one; its deviation, if there is one, is that of ten repeats."""
-    mean = mean_of(ours)
-    by = mean - source
     if isinstance(ours, Jackknife):
-        half = _welch([_variance_of_mean(ours.by_sequence)])
-        return ResultDifference.within(by, half, _effect(column, mean, source, ()))
-    count = ours.size
-    if count < 2:
-        return ResultDifference(by, effect=_effect(column, mean, source, ()))
-    parts = [(float(ours.var(ddof=1)) * (1.0 / count + _RETESTED.get(column, 0.0)), count - 1)]
+        return _difference(column, ours.whole, source, [_variance_of_mean(ours.by_sequence)])
+    if ours.size < 2:
+        return _difference(column, mean_of(ours), source)
+    parts = [_variance_of_mean(ours, column)]
     if deviation is not None:
         theirs = deviation**2 * (1.0 / SOURCE_REPEATS + _RETESTED.get(column, 0.0))
         parts.append((theirs, SOURCE_REPEATS - 1))
-    return ResultDifference.within(by, _welch(parts), _effect(column, mean, source, (ours,), deviation))
+    return _difference(column, mean_of(ours), source, parts, (ours,), deviation)
+
+
+def _difference(
+    column: str,
+    one: float,
+    other: float,
+    variances: Iterable[tuple[float, int]] = (),
+    samples: tuple[Floats, ...] = (),
+    deviation: float | None = None,
+) -> ResultDifference:
+    """Return a difference of means with its effect size, and with its interval where variances are known."""
+    by, effect, parts = one - other, _effect(column, one, other, samples, deviation), list(variances)
+    if not parts:
+        return ResultDifference(by, effect=effect)
+    half = _welch(parts)
+    return ResultDifference(by, by - half, by + half, effect)
 
 
 def by_stretches(one: ImageErrors, other: ImageErrors) -> ResultDifference:
@@ -126,8 +130,7 @@ def by_stretches(one: ImageErrors, other: ImageErrors) -> ResultDifference:
     by = one.all.mean - other.all.mean
     if away.size < 2:
         return ResultDifference(by)
-    half = _reach(away.size - 1) * float(away.std(ddof=1)) / math.sqrt(away.size)
-    middle = float(away.mean())
+    middle, half = float(away.mean()), _welch([_variance_of_mean(away)])
     return ResultDifference(by, middle - half, middle + half)
 
 
@@ -176,7 +179,7 @@ def hedges_g(by: float, deviations: tuple[float, ...], count: int) -> float:
 
 
 def _effect(
-    column: str, one: float, other: float, samples: tuple[Floats, ...], deviation: float | None = None
+    column: str, one: float, other: float, samples: tuple[Floats, ...], deviation: float | None
 ) -> str:
     """Write Cohen's h of rates, and Hedges' g of all else."""
     if math.isnan(one + other):
@@ -189,9 +192,9 @@ def _effect(
     return "" if math.isnan(g) else f"g = {g:+.2f}"
 
 
-def _variance_of_mean(values: Floats) -> tuple[float, int]:
+def _variance_of_mean(values: Floats, column: str = "") -> tuple[float, int]:
     """Return the variance of the mean of values (F,), and its degrees of freedom."""
-    return float(values.var(ddof=1)) / values.size, values.size - 1
+    return float(values.var(ddof=1)) * (1.0 / values.size + _RETESTED.get(column, 0.0)), values.size - 1
 
 
 def _welch(parts: Iterable[tuple[float, int]]) -> float:
@@ -203,12 +206,8 @@ def _welch(parts: Iterable[tuple[float, int]]) -> float:
     total = sum(variance for variance, _ in known)
     if not total > 0:
         return total
-    return _reach(total**2 / sum(v**2 / df for v, df in known)) * math.sqrt(total)
-
-
-def _reach(freedom: float) -> float:
-    """Return the deviations that hold 95 % with so many degrees of freedom."""
-    return float(student.ppf(0.975, freedom))
+    freedom = total**2 / sum(v**2 / df for v, df in known)
+    return float(student.ppf(0.975, freedom)) * math.sqrt(total)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

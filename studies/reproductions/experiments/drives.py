@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from peopleboy.scenarios.running.engine.store import Result
-from peopleboy.studies.reproductions.experiment import Floats, Line, Row, Samples, as_columns
+from peopleboy.studies.reproductions.experiment import Floats, Line, Row, Samples, as_columns, mean
 from peopleboy.studies.reproductions.experiments.drive_scores import RADIUS_M, DriveRecord
 from peopleboy.studies.reproductions.experiments.drive_tracking import (
     CHOICES,
@@ -58,8 +58,8 @@ def compared(record: DriveRecord) -> Row:
         "rate": record.rate(),
         "FP per image": record.false_per_frame(),
         "switches": record.switches,
-        "mean [m]": _mean(record.error_m),
-        "median [m]": _median(record.error_m),
+        "mean [m]": mean(record.error_m),
+        "median [m]": median(record.error_m),
         "ms": record.ms,
     }
 
@@ -68,7 +68,7 @@ def errors_along(record: DriveRecord) -> Row:
     """Return table B.1's errors, sideways (x) and along the robot's axis (z), against the surface."""
     off = np.abs(record.hits[:, 5:7])
     z, x = off[np.isfinite(off).all(axis=1)].T
-    return {"x [m]": _mean(x), "z [m]": _mean(z), "sd x [m]": float(x.std()), "sd z [m]": float(z.std())}
+    return {"x [m]": mean(x), "z [m]": mean(z), "sd x [m]": float(x.std()), "sd z [m]": float(z.std())}
 
 
 def position(record: DriveRecord, *, place: str, radius_m: float) -> Row:
@@ -78,8 +78,8 @@ def position(record: DriveRecord, *, place: str, radius_m: float) -> Row:
     return {
         "rate": record.rate(radius_m),
         "FP per image": record.false_per_frame(radius_m),
-        "mean [m]": _mean(off),
-        "median [m]": _median(off),
+        "mean [m]": mean(off),
+        "median [m]": median(off),
     }
 
 
@@ -135,8 +135,8 @@ def drives(
 _WANTED: Final[Mapping[str, Value]] = {
     "rate": DriveRecord.rate,
     "FP per image": DriveRecord.false_per_frame,
-    "error, mean [m]": lambda record: _mean(record.error_m),
-    "error, median [m]": lambda record: _median(record.error_m),
+    "error, mean [m]": lambda record: mean(record.error_m),
+    "error, median [m]": lambda record: median(record.error_m),
     "recall of the pre-detection, hidden < .1": lambda record: float(record.size_recall[0]),
     "false sizes per image": lambda record: record.false_sizes / record.frames,
 }
@@ -201,7 +201,7 @@ def _found(
         any(np.hypot(x - row[2], y - row[3]) <= RADIUS_M for x, y in places.get(int(row[0]), []))
         for row in wanted
     ]
-    return float(np.mean(hits)) if hits else float("nan")
+    return mean(hits)
 
 
 def play_drives(using: Measurement, wanted: Mapping[str, tuple[str, float]]) -> dict[str, Drives]:
@@ -235,9 +235,6 @@ def by_seed(played: Drives, tracker: str) -> list[DriveRecord]:
     ]
 
 
-def _mean(errors: Floats) -> float:
-    return float(errors.mean()) if errors.size else float("nan")
-
-
-def _median(errors: Floats) -> float:
+def median(errors: Floats) -> float:
+    """Return the median (N,); NaN of nothing."""
     return float(np.median(errors)) if errors.size else float("nan")

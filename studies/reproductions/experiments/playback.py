@@ -5,9 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.scenario import Scenario
@@ -66,6 +67,11 @@ def play(
                 frame.images.get(name)
             yield Moment(number, frame, world.truth(camera), observation)
         before = observation.odometry
+
+
+def unbroken(numbers: NDArray[Any] | Sequence[int], gap: int = 1) -> list[NDArray[np.int64]]:
+    """Split ascending numbers (N,) where the step is larger than the gap; return the places in each part."""
+    return np.split(np.arange(len(numbers)), np.flatnonzero(np.diff(numbers) > gap) + 1)
 
 
 @dataclass(slots=True)

@@ -21,7 +21,7 @@ from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.events import ThingLog
 from peopleboy.sim.truth.truth import Backgrounds, Truth
-from peopleboy.studies.reproductions.experiment import Line, Row, Samples, as_columns, ratio
+from peopleboy.studies.reproductions.experiment import Line, Row, Samples, as_columns, mean, ratio
 from peopleboy.studies.reproductions.experiments.playback import Stopwatch, play
 from peopleboy.studies.reproductions.plan import PRESETS, SEQUENCES
 from peopleboy.studies.reproductions.units import Measurement, Unit
@@ -66,7 +66,7 @@ def static_scenes(using: Measurement) -> Samples:
     return {
         Line(group, model): as_columns(
             {
-                f"{kind} [mm]": _mean([run[model][CLEAN][kind] for run in runs])
+                f"{kind} [mm]": mean([run[model][CLEAN][kind] for run in runs])
                 for kind in ("mean", "deviation")
             }
             for runs in zip(*(found[name] for name in names), strict=True)
@@ -103,22 +103,18 @@ def _scene_scores(runs: Sequence[Result], model: str) -> Row:
     precision = ratio(events["right"], events["right"] + events["false"])
     recall = ratio(events["told"], events["events"])
     return {
-        "mean [mm]": _mean([run[EVER]["mean"] for run in own]),
-        "median pixel [mm]": _mean([run[EVER]["median"] for run in own]),
-        "known": _mean([run[EVER]["known"] for run in own]),
-        "better than MEAN": _mean([run[model][CLEAN]["mean"] < run[MEAN][CLEAN]["mean"] for run in runs]),
+        "mean [mm]": mean([run[EVER]["mean"] for run in own]),
+        "median pixel [mm]": mean([run[EVER]["median"] for run in own]),
+        "known": mean([run[EVER]["known"] for run in own]),
+        "better than MEAN": mean([run[model][CLEAN]["mean"] < run[MEAN][CLEAN]["mean"] for run in runs]),
         "events F1": ratio(2.0 * precision * recall, precision + recall),
         "moved by": ratio(events["named"], events["asked"]),
         "things P": ratio(things[0], things[0] + things[1]),
         "things R": ratio(things[0], things[0] + things[2]),
         "people P": ratio(people[0], people[0] + people[1]),
         "people R": ratio(people[0], people[0] + people[2]),
-        "ms": _mean([run["ms"] for run in own]),
+        "ms": mean([run["ms"] for run in own]),
     }
-
-
-def _mean(values: Sequence[float]) -> float:
-    return float(np.mean(values))
 
 
 def make_model(name: str) -> SceneModel | PrintedSceneModel:

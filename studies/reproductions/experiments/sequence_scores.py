@@ -18,6 +18,7 @@ from peopleboy.scenarios.running.frame_cache import Film, film, frames_of
 from peopleboy.scenarios.scores.suite_table import count
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import COUNTED_FARTHEST_M, COUNTED_NEAREST_M
+from peopleboy.studies.reproductions.experiments.playback import unbroken
 from peopleboy.studies.reproductions.tracker_settings import TrackerSetting
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.evaluation.area_metrics import PaperMetrics, ThesisMetrics
@@ -171,9 +172,8 @@ def not_yet_found(truth: TrueBoxes, found: TrackBoxes) -> Flags:
     for person in np.unique(targets.id):
         rows = np.flatnonzero(targets.id == person)
         rows = rows[np.argsort(targets.frame[rows])]
-        comes = np.flatnonzero(np.diff(targets.frame[rows]) > STRETCH) + 1
-        for stretch in np.split(rows, comes):
-            is_early[stretch] = np.cumsum(is_hit[stretch]) == 0
+        for stretch in unbroken(targets.frame[rows], STRETCH):
+            is_early[rows[stretch]] = np.cumsum(is_hit[rows[stretch]]) == 0
     early = np.zeros(len(truth), dtype=np.bool_)
     early[np.flatnonzero(truth.counted)] = is_early
     return early

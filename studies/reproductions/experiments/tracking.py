@@ -12,7 +12,7 @@ import numpy as np
 from peopleboy.scenarios.files.suite import SuiteRun
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.scores.suite_table import Content, add_up
-from peopleboy.studies.reproductions.experiment import Jackknife, Line, Samples, Values
+from peopleboy.studies.reproductions.experiment import Jackknife, Line, Samples, Values, mean
 from peopleboy.studies.reproductions.experiments import sequence_scores as scores
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.statistics import PAPER, THESIS
@@ -152,7 +152,7 @@ def delay(using: Measurement, **declared: Any) -> Samples:
     def row(results: Sequence[Result], _: str) -> list[float]:
         needed = [frames for result in results for frames in result["needed"]]
         starts = sum(result["starts"] for result in results)
-        frames = float(np.mean(needed)) if needed else float("nan")
+        frames = mean(needed)
         return [frames, frames / RATE_HZ, 100 * len(needed) / max(starts, 1)]
 
     return _measured(using, declared, scores.measure_delay, ("frames", "s", "found in 2 s [%]"), row)

@@ -38,7 +38,7 @@ from peopleboy.studies.reproductions.experiments.drive_tracking import (
     watch_drive,
 )
 from peopleboy.studies.reproductions.experiments.drives import MAIN, legs_run
-from peopleboy.studies.reproductions.experiments.playback import Moment
+from peopleboy.studies.reproductions.experiments.playback import Moment, unbroken
 from peopleboy.studies.reproductions.experiments.scenes import (
     ADAPT,
     CLEAN,
@@ -219,8 +219,7 @@ def _lines(
     """Draw the way of each id of rows (N, 4), frame, id, x, y; on a plan x is up and y to the left."""
     for number, identity in enumerate(np.unique(rows[:, 1])):
         own = rows[rows[:, 1] == identity]
-        breaks = np.flatnonzero(np.diff(own[:, 0]) > _GAP) + 1
-        for part in np.split(own, breaks):
+        for part in (own[frames] for frames in unbroken(own[:, 0], _GAP)):
             x, y = (part[:, 3], part[:, 2]) if as_plan else (part[:, 2], part[:, 3])
             axes.plot(x, y, color=colour or _IDS(number % 10), linewidth=width)
     if as_plan and not axes.xaxis_inverted():

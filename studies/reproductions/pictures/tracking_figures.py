@@ -26,7 +26,7 @@ from peopleboy.studies.reproductions.canvas import (
     label,
     single,
 )
-from peopleboy.studies.reproductions.experiments.playback import Moment, play
+from peopleboy.studies.reproductions.experiments.playback import Moment, play, unbroken
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
 from peopleboy.tracker.contour.explanation import Ellipse
 from peopleboy.tracker.contour.measurement.likelihood import ContourModel
@@ -329,15 +329,8 @@ def draw_time_ranges() -> Figure:
                 seen.setdefault(person.name, []).append(moment.number)
     page, axes = single(0.8 + 0.18 * len(seen))
     for row, frames in enumerate(seen.values(), 1):
-        spans = [(start, end + 1 - start) for start, end in stretches(frames)]
+        spans = [(frames[run[0]], len(run)) for run in unbroken(frames)]
         axes.broken_barh(spans, (row - 0.35, 0.7), color=BLUE)
     axes.set_yticks(range(1, len(seen) + 1), list(seen))
     label(axes, "", "image")
     return page
-
-
-def stretches(frames: Sequence[int]) -> Iterator[tuple[int, int]]:
-    """Return first and last of each unbroken run of ascending numbers."""
-    if frames:
-        for run in np.split(np.array(frames), np.flatnonzero(np.diff(frames) > 1) + 1):
-            yield int(run[0]), int(run[-1])

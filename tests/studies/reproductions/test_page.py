@@ -17,7 +17,7 @@ from peopleboy.studies.reproductions.experiments.sequence_scores import RECORDS
 from peopleboy.studies.reproductions.experiments.tracking import count_unit, sequence_units
 from peopleboy.studies.reproductions.plan import full_plan
 from peopleboy.studies.reproductions.runner import print_sections
-from peopleboy.studies.reproductions.source_page import PageHead, page_text, section, write_page
+from peopleboy.studies.reproductions.source_page import PageHead, page_text, section
 from peopleboy.studies.reproductions.units import Measurement
 from tests.helpers.made_up_results import made_up, trials_of
 from tests.helpers.visible_text import assert_reads_as
@@ -64,7 +64,7 @@ def test_the_page_holds_everything_and_fetches_nothing(tmp_path: Path) -> None:
         section(ExperimentOutcome(one, made_up(one), PICTURE.get(one.id))) for one in EXPERIMENTS.values()
     ]
     about = PageHead(command="peopleboy reproduce", is_quick=True, amount="Little.", facts={"Python": "3"})
-    write_page(tmp_path / "index.html", results, about)
+    (tmp_path / "index.html").write_text(page_text(results, about), encoding="utf-8")
     text, addresses = read(tmp_path / "index.html")
     assert addresses.ids >= set(EXPERIMENTS)
     charts = [one for one in EXPERIMENTS.values() if one.chart != "none"]
@@ -80,7 +80,7 @@ def test_a_page_of_four_sections_reads_as_it_did(tmp_path: Path) -> None:
     chosen = choose(["figure-4.8", "figure-4.9b", "panoramic-position", "panoramic-figure-1"])
     results = [section(ExperimentOutcome(one, made_up(one), PICTURE.get(one.id))) for one in chosen]
     about = PageHead(command="peopleboy reproduce", is_quick=True, amount="Little.", facts={"Python": "3"})
-    write_page(tmp_path / "page.html", results, about)
+    (tmp_path / "page.html").write_text(page_text(results, about), encoding="utf-8")
     assert_reads_as(tmp_path / "page.html", Path(__file__).with_name("page_of_four_sections.txt"))
 
 

@@ -16,7 +16,7 @@ from peopleboy.scenarios.running.engine.task import TasksFailed, Workers
 from peopleboy.studies.reproductions.catalogue import EXPERIMENTS, choose
 from peopleboy.studies.reproductions.experiment import Experiment, Line, Samples
 from peopleboy.studies.reproductions.plan import Plan
-from peopleboy.studies.reproductions.runner import MEANS, RESULTS, Means, reproduce, show_so_far
+from peopleboy.studies.reproductions.runner import MEANS, RESULTS, Means, reproduce
 from peopleboy.studies.reproductions.statistics import THESIS
 from peopleboy.studies.reproductions.units import Measurement, Unit, open_store, run_units
 from tests.studies.reproductions.test_page import read
@@ -52,7 +52,8 @@ def test_what_fails_costs_only_what_needs_it_and_the_page_names_that(tmp_path: P
     means = Means(out=tmp_path / "out")
     with pytest.raises(TasksFailed, match=r"(?s)reproduce: 1 of 6 failed.*thrown too far"):
         reproduce([SOUND, HALF], plan_of(tmp_path, 3), means)
-    sections = {part.id: part for part in show_so_far([SOUND, HALF, BROKEN], plan_of(tmp_path, 3), means)[1]}
+    _, shown = reproduce([SOUND, HALF, BROKEN], plan_of(tmp_path, 3), means, so_far=True)
+    sections = {part.id: part for part in shown}
     assert {number: part.outcome.repeats for number, part in sections.items()} == {
         "figure-4.8": 3,
         "figure-5.4": 2,
@@ -64,7 +65,7 @@ def test_what_fails_costs_only_what_needs_it_and_the_page_names_that(tmp_path: P
 
 def test_a_folder_without_anything_finished_is_refused(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match="no table or figure is finished there"):
-        show_so_far([SOUND], plan_of(tmp_path, 3), Means(out=tmp_path / "out"))
+        reproduce([SOUND], plan_of(tmp_path, 3), Means(out=tmp_path / "out"), so_far=True)
 
 
 def note(number: int, path: Path) -> Result:

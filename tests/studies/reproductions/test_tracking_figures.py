@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from peopleboy.studies.reproductions.experiments.playback import unbroken
 from peopleboy.studies.reproductions.pictures.tracking_figures import (
     CANDIDATES,
     MATCHES,
@@ -11,18 +12,22 @@ from peopleboy.studies.reproductions.pictures.tracking_figures import (
     score_error,
     score_example,
     shared,
-    stretches,
 )
 from peopleboy.tracker.contour.particles import draw_prior
 from peopleboy.tracker.contour.variants import THESIS
 
 
 @pytest.mark.parametrize(
-    ("frames", "found"),
-    [([], []), ([4], [(4, 4)]), ([1, 2, 3, 7, 8, 10], [(1, 3), (7, 8), (10, 10)])],
+    ("frames", "gap", "found"),
+    [
+        ([], 1, [[]]),
+        ([4], 1, [[4]]),
+        ([1, 2, 3, 7, 8, 10], 1, [[1, 2, 3], [7, 8], [10]]),
+        ([1, 2, 3, 7, 8, 10], 2, [[1, 2, 3], [7, 8, 10]]),
+    ],
 )
-def test_frames_fall_into_unbroken_stretches(frames: list[int], found: list[tuple[int, int]]) -> None:
-    assert list(stretches(frames)) == found
+def test_frames_fall_into_unbroken_stretches(frames: list[int], gap: int, found: list[list[int]]) -> None:
+    assert [[frames[k] for k in run] for run in unbroken(frames, gap)] == found
 
 
 def test_where_nothing_differs_nothing_fits_and_no_fit_is_beyond_the_cap() -> None:
