@@ -32,7 +32,7 @@ from peopleboy.studies.reproductions.experiments.distance_trials import (
     filtered,
     predicted_in_turn,
 )
-from peopleboy.studies.reproductions.experiments.panoramic_room import CUES, walks_of
+from peopleboy.studies.reproductions.experiments.panoramic_room import CUES, measure_walk, walks_of
 from peopleboy.studies.reproductions.experiments.webcam_positions import (
     HEADING,
     RANGE,
@@ -43,8 +43,8 @@ from peopleboy.studies.reproductions.experiments.webcam_positions import (
     true_webcams,
     webcam_names,
 )
-from peopleboy.studies.reproductions.units import Measurement
-from peopleboy.studies.training.distance import panoramas
+from peopleboy.studies.reproductions.units import Measurement, Unit
+from peopleboy.studies.training.distance import DistanceSamples, panoramas
 from peopleboy.tracker.panoramic.paper.depth_cues import (
     EMPTY_IMAGES,
     Background,
@@ -244,7 +244,8 @@ def draw_correlations(using: Measurement) -> Figure:
 
 def draw_path(using: Measurement) -> Figure:
     """Draw a piece of a path on the floor: true, by the model alone, and with the filter (figure 6)."""
-    run = walks_of(using)[ROOM][0]
+    (first,) = using.results([Unit.of(measure_walk, ROOM, 0)])
+    run = DistanceSamples.from_plain(first)
     measured = run.positions_at(predicted_in_turn(run, SplitTrial(split="blocks")))
     smooth = filtered(run, measured, PositionFilter(PRINTED, uses_velocity=True))
     figure, axes = single(4.6)
