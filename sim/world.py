@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.cameras.imaging.surfaces import MaterialTable, make_material_table
+from peopleboy.sim.cameras.imaging.camera_view import CameraView, MaterialTable, make_material_table
 from peopleboy.sim.cameras.kinds import flat_geometry, kind_of
 from peopleboy.sim.cameras.rig import Rig
-from peopleboy.sim.cameras.sensors import CameraView
 from peopleboy.sim.geometry.pinhole import CameraGeometry, Matrix, Pinhole
 from peopleboy.sim.observation import Observation, OnDemand, Senses
 from peopleboy.sim.people.crowd import Crowd, Handling

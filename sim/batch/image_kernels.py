@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.colour import encode, light_image
 from peopleboy.sim.cameras.imaging.blur import sweep_weights, weighted_sum
+from peopleboy.sim.cameras.imaging.camera_view import MaterialTable
 from peopleboy.sim.cameras.imaging.noise import look_up
-from peopleboy.sim.cameras.imaging.surfaces import MaterialTable, combine
+from peopleboy.sim.cameras.imaging.surfaces import combine
 from peopleboy.sim.cameras.thermal import radiance_image, to_apparent_c
 from peopleboy.sim.geometry.vectors import from_each, invert
 from peopleboy.sim.rendering.raycast import draw

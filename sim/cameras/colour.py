@@ -8,11 +8,10 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, LightConfig
 from peopleboy.sim.cameras.imaging.blur import rotation_blur
+from peopleboy.sim.cameras.imaging.camera_view import LIGHT_STEP, CameraView, MaterialTable
 from peopleboy.sim.cameras.imaging.lighting import add_contact_shadows, add_reflections
 from peopleboy.sim.cameras.imaging.noise import gaussian
 from peopleboy.sim.cameras.imaging.surfaces import (
-    LIGHT_STEP,
-    MaterialTable,
     finish_run,
     paint_run,
     part_from_pixel,
@@ -20,7 +19,6 @@ from peopleboy.sim.cameras.imaging.surfaces import (
     surface_point,
 )
 from peopleboy.sim.geometry.pinhole import Matrix
-from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.materials import TEXEL_STEP
 
@@ -226,46 +224,23 @@ def _gamma_table() -> NDArray[np.uint8]:
 GAMMA = _gamma_table()
 
 
-def colour_image(
-    view: View,
-    materials: MaterialTable,
-    config: ColourConfig | DepthConfig,
-    world_from_camera: Matrix,
-    world_from_part: Matrix,
-    light_level: float,
-    turned_rad: float,
-    full_detail: FullDetail | None = None,
-) -> NDArray[np.float32]:
-    """Form the noise-free colour image.
+def colour_image(seen: CameraView, config: ColourConfig | DepthConfig) -> NDArray[np.float32]:
+    """Form the noise-free image (H, W, 3) in linear light, 1 being full scale, by a camera and its gain.
 
-    Args:
-        view: what each pixel sees.
-        materials: of the P parts.
-        config: camera and gain.
-        world_from_camera: (4, 4).
-        world_from_part: (P, 4, 4).
-        light_level: 1 is the room's full light, 0 is dark; glowing surfaces stay bright.
-        turned_rad: [rad] turned about the vertical axis while the exposure lasted.
-        full_detail: adds shadows where things touch the floor, what shiny surfaces mirror, and smooth edges;
-            None leaves them out.
-
-    Returns:
-        (H, W, 3) linear light, 1 being full scale.
+    Full detail adds shadows where things touch the floor, what shiny surfaces mirror, and smooth edges.
     """
-    level, camera = light_level * config.gain, config.camera
+    level, camera, materials = seen.light_level * config.gain, config.camera, seen.materials
 
     def draw(one: View, matrices: Matrix) -> NDArray[np.float32]:
         return light_image(one.part, one.depth, one.normal, matrices, materials, LIGHT, level)
 
-    image = draw(view, part_from_pixel(camera, world_from_camera, world_from_part))
-    if full_detail is not None:
-        add_contact_shadows(image, view, camera, world_from_camera, full_detail.contacts)
-        add_reflections(
-            image, view, camera, world_from_part, full_detail.reflections,
-            np.full(len(materials.shine), _GLASS), materials.shine, np.full(3, _ROOM * level), draw,
-        )  # fmt: skip
-        full_detail.smooth(image, _CONTRAST * level)
-    return rotation_blur(image, config.camera, turned_rad)
+    image = draw(seen.view, part_from_pixel(camera, seen.world_from_camera, seen.world_from_part))
+    if seen.full_detail is not None:
+        add_contact_shadows(image, seen.view, camera, seen.world_from_camera, seen.full_detail.contacts)
+        reflectance, surroundings = np.full(len(materials.shine), _GLASS), np.full(3, _ROOM * level)
+        add_reflections(image, seen, camera, reflectance, surroundings, draw)
+        seen.full_detail.smooth(image, _CONTRAST * level)
+    return rotation_blur(image, camera, seen.turn_rad_s * config.exposure_s)
 
 
 def expose(linear: NDArray[np.float32], config: LightConfig, rng: np.random.Generator) -> NDArray[np.uint8]:

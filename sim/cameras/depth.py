@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 
 from peopleboy.sim.cameras.camera_config import DEPTH_BASELINE_M, DepthConfig
+from peopleboy.sim.cameras.imaging.camera_view import CameraView, MaterialTable
 from peopleboy.sim.cameras.imaging.noise import gaussian, skip_gaussian, skip_smooth_gaussian, smooth_gaussian
 from peopleboy.sim.cameras.imaging.surfaces import (
-    MaterialTable,
     part_from_pixel,
     pattern_value,
     surface_point,
@@ -199,14 +199,7 @@ def _from_disparity(
     return image
 
 
-def time_of_flight(
-    fine: View,
-    config: DepthConfig,
-    materials: MaterialTable,
-    world_from_camera: Matrix,
-    world_from_part: Matrix,
-    rng: np.random.Generator,
-) -> Millimetres:
+def time_of_flight(fine: CameraView, config: DepthConfig, rng: np.random.Generator) -> Millimetres:
     """Measure depth by how long light takes.
 
     Noise grows with the square of the depth and the darkness of the surface. A pixel whose rays meet several
@@ -215,28 +208,16 @@ def time_of_flight(
     Args:
         fine: what a camera of `rays_of` sees.
         config: of the camera.
-        materials: of the P parts.
-        world_from_camera: (4, 4).
-        world_from_part: (P, 4, 4).
         rng: of the noise.
     """
-    camera = config.camera
-    matrices = part_from_pixel(rays_of(camera), world_from_camera, world_from_part)
-    depth = _mean_of_rays(
-        fine.part, fine.depth, matrices, materials, gaussian((camera.height, camera.width), rng),
-        config.scale * TOF_SD_M,
-    )  # fmt: skip
+    camera, view = config.camera, fine.view
+    matrices = part_from_pixel(rays_of(camera), fine.world_from_camera, fine.world_from_part)
+    noise = gaussian((camera.height, camera.width), rng)
+    depth = _mean_of_rays(view.part, view.depth, matrices, fine.materials, noise, config.scale * TOF_SD_M)
     return to_millimetres(depth, config)
 
 
-def amplitude_of(
-    fine: View,
-    config: DepthConfig,
-    materials: MaterialTable,
-    world_from_camera: Matrix,
-    world_from_part: Matrix,
-    rng: np.random.Generator,
-) -> Amplitude:
+def amplitude_of(fine: CameraView, config: DepthConfig, rng: np.random.Generator) -> Amplitude:
     """Measure how much of a time-of-flight sensor's own light comes back: grey that darkens with distance.
 
     Arguments as of `time_of_flight`. Its noise is that of the depth: an error of the amplitude by a share
@@ -245,9 +226,9 @@ def amplitude_of(
     Returns:
         (H, W) uint16: 10000 for a white surface 1 m away.
     """
-    camera = config.camera
-    matrices = part_from_pixel(rays_of(camera), world_from_camera, world_from_part)
-    light = _light_of_rays(fine.part, fine.depth, matrices, materials, camera.height, camera.width)
+    camera, view = config.camera, fine.view
+    matrices = part_from_pixel(rays_of(camera), fine.world_from_camera, fine.world_from_part)
+    light = _light_of_rays(view.part, view.depth, matrices, fine.materials, camera.height, camera.width)
     noise = config.scale * AMPLITUDE_SD * gaussian(light.shape, rng)
     return np.clip(np.rint(AMPLITUDE_AT_1_M * light + noise), 0.0, 65535.0).astype(np.uint16)
 

@@ -10,52 +10,40 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.cameras.colour import LIGHT, shade_of
 from peopleboy.sim.cameras.imaging.blur import hat_integral
-from peopleboy.sim.cameras.imaging.surfaces import MaterialTable, finish_at, painted, pattern_value
+from peopleboy.sim.cameras.imaging.camera_view import CameraView, MaterialTable
+from peopleboy.sim.cameras.imaging.surfaces import finish_at, painted, pattern_value
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.vectors import map_point
-from peopleboy.sim.rendering.view import View
 
 Linear = NDArray[np.float32]
 
 _FINER = 2  # pixels of what the lens's image is made of for each of its own, in a row and in a column
 
 
-def panorama_image(
-    view: View,
-    materials: MaterialTable,
-    camera: Panorama,
-    world_from_camera: Matrix,
-    world_from_part: Matrix,
-    light: float,
-    turned_rad: float,
-) -> Linear:
-    """Form the noise-free panorama.
+def panorama_image(seen: CameraView, config: PanoramaConfig, camera: Panorama) -> Linear:
+    """Form the noise-free panorama (H, W, 3) in linear light, 1 being full scale.
 
     Args:
-        view: what each pixel sees, with depths as in `PanoramicRenderer`.
-        materials: of the P parts.
-        camera: the panorama.
-        world_from_camera: (4, 4).
-        world_from_part: (P, 4, 4).
-        light: what a white surface facing the light sends, share of full scale.
-        turned_rad: [rad] turned about the vertical axis while the exposure lasted.
-
-    Returns:
-        (H, W, 3) linear light, 1 being full scale.
+        seen: what each pixel sees, with depths as in `PanoramicRenderer`.
+        config: exposure and gain.
+        camera: the panorama, or a finer one.
     """
-    part_from_world = world_from_part[:, :3, :3].transpose(0, 2, 1)
-    part_from_camera = np.tile(np.eye(4), (len(world_from_part), 1, 1))
-    part_from_camera[:, :3, :3] = part_from_world @ world_from_camera[:3, :3]
-    offsets = world_from_camera[:3, 3] - world_from_part[:, :3, 3]
+    view, poses = seen.view, seen.world_from_part
+    part_from_world = poses[:, :3, :3].transpose(0, 2, 1)
+    part_from_camera = np.tile(np.eye(4), (len(poses), 1, 1))
+    part_from_camera[:, :3, :3] = part_from_world @ seen.world_from_camera[:3, :3]
+    offsets = seen.world_from_camera[:3, 3] - poses[:, :3, 3]
     part_from_camera[:, :3, 3] = (part_from_world @ offsets[:, :, None])[:, :, 0]
     directions, slopes = _lines(camera)
     image = _radiance_image(
         view.part, view.depth, view.normal, part_from_camera, directions, slopes,
-        camera.mirror.ring_radius_m, materials, LIGHT, light,
+        camera.mirror.ring_radius_m, seen.materials, LIGHT, seen.light_level * config.gain,
     )  # fmt: skip
+    turned_rad = seen.turn_rad_s * config.exposure_s
     return shift_blur(image, abs(turned_rad) / math.tau * camera.width)
 
 

@@ -7,8 +7,9 @@ from functools import partial
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.imaging.camera_view import CameraView
 from peopleboy.sim.cameras.kinds import image_names, kind_of, name_images
-from peopleboy.sim.cameras.sensors import CameraView, Image, Sensor
+from peopleboy.sim.cameras.sensors import Image, Sensor
 from peopleboy.sim.observation import OnDemand
 
 

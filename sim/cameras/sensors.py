@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -21,47 +20,14 @@ from peopleboy.sim.cameras.depth import (
     time_of_flight,
     to_millimetres,
 )
+from peopleboy.sim.cameras.imaging.camera_view import CameraView
 from peopleboy.sim.cameras.imaging.electronics import Gain, compress, sharpen
 from peopleboy.sim.cameras.imaging.noise import Drift, random_words, skip_gaussian
-from peopleboy.sim.cameras.imaging.surfaces import MaterialTable
 from peopleboy.sim.cameras.panoramic import finer, panorama_image, roll_up, unroll
 from peopleboy.sim.cameras.thermal import Detector, detect, make_detector, surface_image
-from peopleboy.sim.geometry.panorama import Panorama
-from peopleboy.sim.geometry.pinhole import CameraGeometry, Matrix
 from peopleboy.sim.random_streams import stream
-from peopleboy.sim.rendering.full_detail import FullDetail
-from peopleboy.sim.rendering.view import View
 
 Image = NDArray[Any]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class CameraView:
-    """What one camera sees at an instant, and all that forms its images from that.
-
-    Attributes:
-        view: what lies behind each pixel.
-        draw: draws the same by another geometry in the same place.
-        world_from_camera: (4, 4) optical frame to world.
-        world_from_part: (P, 4, 4).
-        materials: of the P parts.
-        surroundings_c: [degC] what surfaces mirror.
-        light_level: 1 is the place's full light.
-        turn_rad_s: [rad/s] of the robot about the vertical axis.
-        time_s: [s] since the start.
-        full_detail: what makes images of full detail; None in a world of plain detail.
-    """
-
-    view: View
-    draw: Callable[[CameraGeometry], View]
-    world_from_camera: Matrix
-    world_from_part: Matrix
-    materials: MaterialTable
-    surroundings_c: float
-    light_level: float
-    turn_rad_s: float
-    time_s: float
-    full_detail: FullDetail | None = None
 
 
 class Sensor(Protocol):
@@ -113,10 +79,7 @@ class ThermalSensor:
     def _read_out(self, seen: CameraView) -> NDArray[np.float32]:
         """Return what the detector makes of the scene [degC]."""
         config = self._config
-        apparent = surface_image(
-            seen.view, seen.materials, config, seen.world_from_camera, seen.world_from_part,
-            seen.surroundings_c, seen.turn_rad_s * config.exposure_s, seen.full_detail,
-        )  # fmt: skip
+        apparent = surface_image(seen, config)
         return detect(apparent, self._detector, config, self._noise, self._drift.offset_k(seen.time_s))
 
     def _grey(self, temperature_c: NDArray[np.float32], time_s: float) -> NDArray[np.uint8]:
@@ -139,12 +102,7 @@ class ColourSensor:
 
     def take(self, seen: CameraView) -> tuple[Image, ...]:
         """Take the (H, W, 3) uint8 image of an instant."""
-        config = self._config
-        linear = colour_image(
-            seen.view, seen.materials, config, seen.world_from_camera, seen.world_from_part,
-            seen.light_level, seen.turn_rad_s * config.exposure_s, seen.full_detail,
-        )  # fmt: skip
-        return (expose(linear, config, self._noise),)
+        return (expose(colour_image(seen, self._config), self._config, self._noise),)
 
     def skip(self) -> None:
         """Let the noise of an image go by."""
@@ -162,9 +120,9 @@ class PanoramaSensor:
         """Take the (H, W, 3), and the (2 H, 2 H, 3), uint8 images of an instant."""
         config, camera = self._config, self._config.camera
         if not config.raw:
-            return (expose(self._linear(seen, camera, seen.view), config, self._noise),)
+            return (expose(panorama_image(seen, config, camera), config, self._noise),)
         fine = finer(camera)
-        disc = roll_up(self._linear(seen, fine, seen.draw(fine)), camera)
+        disc = roll_up(panorama_image(replace(seen, view=seen.draw(fine)), config, fine), camera)
         raw = expose(disc, config, self._noise)
         return unroll(raw, camera), raw
 
@@ -173,13 +131,6 @@ class PanoramaSensor:
         height = self._config.camera.height
         size = (2 * height, 2 * height) if self._config.raw else (height, self._config.camera.width)
         skip_gaussian((*size, 3), self._noise)
-
-    def _linear(self, seen: CameraView, camera: Panorama, view: View) -> Image:
-        config = self._config
-        return panorama_image(
-            view, seen.materials, camera, seen.world_from_camera, seen.world_from_part,
-            seen.light_level * config.gain, seen.turn_rad_s * config.exposure_s,
-        )  # fmt: skip
 
 
 class DepthSensor:
@@ -198,7 +149,7 @@ class DepthSensor:
         depth, amplitude = self._measure(seen)
         return (
             depth if self._offsets is None else add_offsets(depth, self._offsets),
-            *((self._colour(seen),) if config.colour else ()),
+            *((expose(colour_image(seen, config), config, self._colour_noise),) if config.colour else ()),
             *((amplitude,) if amplitude is not None else ()),
         )
 
@@ -221,18 +172,9 @@ class DepthSensor:
             return structured_light(seen.view, config, self._noise), None
         if is_exact and not config.amplitude:
             return to_millimetres(seen.view.depth, config), None
-        fine = seen.draw(rays_of(config.camera))
-        around = (seen.materials, seen.world_from_camera, seen.world_from_part)
+        fine = replace(seen, view=seen.draw(rays_of(config.camera)))
         if is_exact:
             depth = to_millimetres(seen.view.depth, config)
         else:
-            depth = time_of_flight(fine, config, *around, self._noise)
-        return depth, amplitude_of(fine, config, *around, self._amplitude_noise) if config.amplitude else None
-
-    def _colour(self, seen: CameraView) -> Image:
-        config = self._config
-        linear = colour_image(
-            seen.view, seen.materials, config, seen.world_from_camera, seen.world_from_part,
-            seen.light_level, seen.turn_rad_s * config.exposure_s, seen.full_detail,
-        )  # fmt: skip
-        return expose(linear, config, self._colour_noise)
+            depth = time_of_flight(fine, config, self._noise)
+        return depth, amplitude_of(fine, config, self._amplitude_noise) if config.amplitude else None

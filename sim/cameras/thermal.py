@@ -16,11 +16,10 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.imaging.blur import optics_blur, rotation_blur
+from peopleboy.sim.cameras.imaging.camera_view import KELVIN_STEP, CameraView, MaterialTable
 from peopleboy.sim.cameras.imaging.lighting import add_reflections
 from peopleboy.sim.cameras.imaging.noise import gaussian
 from peopleboy.sim.cameras.imaging.surfaces import (
-    KELVIN_STEP,
-    MaterialTable,
     finish_run,
     paint_run,
     part_from_pixel,
@@ -29,7 +28,6 @@ from peopleboy.sim.cameras.imaging.surfaces import (
     surface_point,
 )
 from peopleboy.sim.geometry.pinhole import Matrix
-from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.materials import TEXEL_STEP
 
@@ -273,49 +271,27 @@ def _corners(config: ThermalConfig) -> NDArray[np.float32]:
     return np.asarray(config.vignetting_k * (v[:, None] ** 2 + u**2) / 2.0, np.float32)
 
 
-def surface_image(
-    view: View,
-    materials: MaterialTable,
-    config: ThermalConfig,
-    world_from_camera: Matrix,
-    world_from_part: Matrix,
-    surroundings_c: float,
-    turned_rad: float,
-    full_detail: FullDetail | None = None,
-) -> NDArray[np.float32]:
-    """Form the noise-free image of apparent temperature.
+def surface_image(seen: CameraView, config: ThermalConfig) -> NDArray[np.float32]:
+    """Form the noise-free image (H, W) of apparent temperature [degC], by a camera and its optics.
 
     A surface of emissivity e at temperature T sends e B(T) + (1 - e) B(surroundings), B being the radiance of
     a black body; blur acts on that radiance. In a world of one temperature the image has one value.
-
-    Args:
-        view: what each pixel sees.
-        materials: of the P parts.
-        config: camera and optics.
-        world_from_camera: (4, 4).
-        world_from_part: (P, 4, 4).
-        surroundings_c: [degC] what surfaces mirror, and what is seen where nothing is.
-        turned_rad: [rad] turned about the vertical axis while the exposure lasted.
-        full_detail: adds what shiny surfaces mirror, and smooth edges; None leaves both out.
-
-    Returns:
-        (H, W) [degC].
     """
-    surroundings = mirrored(surroundings_c)
+    materials, surroundings = seen.materials, mirrored(seen.surroundings_c)
 
     def draw(one: View, matrices: Matrix) -> NDArray[np.float32]:
         return radiance_image(
             one.part, one.depth, matrices, materials, RADIANCE, surroundings, (LOWEST_C, HIGHEST_C)
         )
 
-    radiance = draw(view, part_from_pixel(config.camera, world_from_camera, world_from_part))
-    if full_detail is not None:
+    radiance = draw(seen.view, part_from_pixel(config.camera, seen.world_from_camera, seen.world_from_part))
+    if seen.full_detail is not None:
         add_reflections(
-            radiance[..., None], view, config.camera, world_from_part, full_detail.reflections,
-            1.0 - materials.thermal[:, 1], materials.shine, np.array([surroundings]),
+            radiance[..., None], seen, config.camera, 1.0 - materials.thermal[:, 1], np.array([surroundings]),
             lambda one, matrices: draw(one, matrices)[..., None],
         )  # fmt: skip
-        full_detail.smooth(radiance[..., None], _CONTRAST)
+        seen.full_detail.smooth(radiance[..., None], _CONTRAST)
+    turned_rad = seen.turn_rad_s * config.exposure_s
     radiance = rotation_blur(optics_blur(radiance, config.blur_px), config.camera, turned_rad)
     radiance = np.ascontiguousarray(radiance)
     to_apparent_c(radiance, TEMPERATURE, DIMMEST, BRIGHTEST)

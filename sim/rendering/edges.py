@@ -12,10 +12,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.pinhole import Matrix, Pinhole, invert_pose
+from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose
 from peopleboy.sim.geometry.vectors import compose
 from peopleboy.sim.rendering.render_canvas import Lens
-from peopleboy.sim.rendering.view import View
+from peopleboy.sim.rendering.renderer import RenderPass
 from peopleboy.sim.shapes.rays import hit_shape
 from peopleboy.sim.shapes.shape_table import ShapeTable
 from peopleboy.sim.shapes.shapes import ShapeKind
@@ -37,31 +37,21 @@ _NONE = -1
 _BEHIND = 1.03  # what is farther than this many times another's depth is behind it all over a pixel
 
 
-def smooth(
-    image: NDArray[np.float32],
-    contrast: float,
-    view: View,
-    table: ShapeTable,
-    camera: Pinhole,
-    world_from_camera: Matrix,
-    world_from_part: Matrix,
-) -> None:
+def smooth(image: NDArray[np.float32], contrast: float, seen: RenderPass, camera: Pinhole) -> None:
     """Give each edge of an image the mean of what fills it, in place; a view without surfaces keeps its own.
 
     Args:
         image: (H, W, C) linear in light or radiance, C-contiguous.
         contrast: least difference of any channel between two pixels that makes an edge.
-        view: what each pixel sees.
-        table: the world's shapes.
-        camera: the pinhole camera.
-        world_from_camera: (4, 4).
-        world_from_part: (P, 4, 4).
+        seen: by a pinhole camera.
+        camera: the same.
     """
+    view, scene = seen.view, seen.scene
     if view.surface is None:
         return
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
-    camera_from_part = invert_pose(world_from_camera) @ world_from_part
-    _smooth(image, np.float32(contrast), view.part, view.surface, view.depth, table, camera_from_part, lens)
+    poses = invert_pose(seen.world_from_camera) @ scene.world_from_part
+    _smooth(image, np.float32(contrast), view.part, view.surface, view.depth, scene.table, poses, lens)
 
 
 @njit(cache=True)

@@ -133,11 +133,7 @@ class FullDetail:
 
     def smooth(self, image: NDArray[np.float32], contrast: float) -> None:
         """Return the edges of an (H, W, C) image of this view no stairs, in place; see `edges.smooth`."""
-        seen = self._seen
-        smooth(
-            image, contrast, seen.view, seen.scene.table, self._camera, seen.world_from_camera,
-            seen.scene.world_from_part,
-        )  # fmt: skip
+        smooth(image, contrast, self._seen, self._camera)
 
     @cached_property
     def reflections(self) -> tuple[Reflection, ...]:

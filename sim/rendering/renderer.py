@@ -81,42 +81,22 @@ def _step(here: Point, before: Point, after: Point) -> Point:
 _MOST_PEOPLE = 64
 
 
-def render(
-    name: str,
-    physics: Physics,
-    table: ShapeTable,
-    camera: Pinhole,
-    world_from_camera: Matrix,
-    world_from_part: Matrix,
-    person_of_part: NDArray[np.int64],
-    hidden: NDArray[np.bool_],
-) -> View:
-    """Draw the world by the renderer of that name.
-
-    Args:
-        name: "raycast", exact and quick, or "bullet", PyBullet's TinyRenderer, an independent reference.
-        physics: the world.
-        table: its visible shapes.
-        camera: the pinhole camera.
-        world_from_camera: (4, 4) optical frame to world.
-        world_from_part: (P, 4, 4), used by "raycast".
-        person_of_part: (P,) number of the person that a part belongs to, 0..63, -1 for none.
-        hidden: (P,) parts that are not there.
+def render(scene: Scene, camera: Pinhole, world_from_camera: Matrix) -> View:
+    """Draw a scene by its renderer: "raycast", exact and quick, or "bullet", an independent reference.
 
     Raises:
         BadInput: no renderer has that name, or it cannot draw this world; or a person's number is above 63.
     """
-    if person_of_part.max(initial=0) >= _MOST_PEOPLE:
-        raise BadInput(
-            f"person number {person_of_part.max()}: a view tells at most {_MOST_PEOPLE} people apart"
-        )
-    if name == "raycast":
-        return cast(table, camera, world_from_camera, world_from_part, person_of_part, hidden)
-    if name == "bullet":
-        if not isinstance(physics, Rasteriser):
+    persons, hidden = scene.person_of_part, scene.hidden
+    if persons.max(initial=0) >= _MOST_PEOPLE:
+        raise BadInput(f"person number {persons.max()}: a view tells at most {_MOST_PEOPLE} people apart")
+    if scene.renderer == "raycast":
+        return cast(scene.table, camera, world_from_camera, scene.world_from_part, persons, hidden)
+    if scene.renderer == "bullet":
+        if not isinstance(scene.physics, Rasteriser):
             raise BadInput("renderer 'bullet': draws worlds of PyBullet only; choose raycast")
-        return rasterise(physics, camera, world_from_camera, np.where(hidden, NOBODY, person_of_part))
-    raise BadInput(f"renderer {name!r}: there is none of that name; choose raycast or bullet")
+        return rasterise(scene.physics, camera, world_from_camera, np.where(hidden, NOBODY, persons))
+    raise BadInput(f"renderer {scene.renderer!r}: there is none of that name; choose raycast or bullet")
 
 
 def cast(
@@ -127,24 +107,8 @@ def cast(
     person_of_part: NDArray[np.int64],
     hidden: NDArray[np.bool_],
 ) -> View:
-    """Draw by the ray caster; arguments as in `render`."""
+    """Draw by the ray caster; arguments as the attributes of `Scene`."""
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
-    return cast_window(table, lens, world_from_camera, world_from_part, person_of_part, hidden)
-
-
-def cast_window(
-    table: ShapeTable,
-    lens: Lens,
-    world_from_camera: Matrix,
-    world_from_part: Matrix,
-    person_of_part: NDArray[np.int64],
-    hidden: NDArray[np.bool_],
-) -> View:
-    """Draw by the ray caster what a lens sees, which need not look from its image's middle.
-
-    The pose may be that of a camera in a mirror, which turns left and right round: meshes are
-    inside out then.
-    """
     canvas = make_canvas(lens, len(table.surface_part))
     camera_from_part = from_each(invert_pose(world_from_camera), world_from_part)
     draw(table, camera_from_part, hidden, person_bits(person_of_part), lens, canvas)
@@ -320,10 +284,7 @@ class PinholeRenderer(Renderer):
 
     def view(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix) -> View:
         """Draw by the scene's renderer."""
-        return render(
-            scene.renderer, scene.physics, scene.table, camera, world_from_camera, scene.world_from_part,
-            scene.person_of_part, scene.hidden,
-        )  # fmt: skip
+        return render(scene, camera, world_from_camera)
 
     def bounds(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix, parts: Mask) -> Matrix:
         """See `silhouette_bounds`."""

@@ -23,8 +23,8 @@ from rerun.chunk import RrdReader
 from peopleboy.scenarios.drawing.contact_sheet import read_tiles
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.imaging.camera_view import CameraView
 from peopleboy.sim.cameras.kinds import KINDS, CameraKind
-from peopleboy.sim.cameras.sensors import CameraView
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.rendering.renderer import PINHOLE_RENDERER, Renderer, Scene
 from peopleboy.sim.rendering.view import View

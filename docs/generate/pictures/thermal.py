@@ -61,12 +61,11 @@ def steps() -> Figure:
         # The surfaces alone: what every part would look like if it were black and the lens perfect.
         config = world.config.robot.cameras["thermal"]
         assert isinstance(config, ThermalConfig)
-        seen = world._see(config)
-        black = world._materials._replace(thermal=world._materials.thermal.copy())
+        seen = replace(world._camera_view(config), turn_rad_s=0.0)
+        black = seen.materials._replace(thermal=seen.materials.thermal.copy())
         black.thermal[:, 1] = 1.0
-        place = (seen.world_from_camera, seen.scene.world_from_part, world.config.place.surroundings_c, 0.0)
-        surface = surface_image(seen.view, black, replace(config, blur_px=0.0), *place)
-        apparent = surface_image(seen.view, world._materials, config, *place)
+        surface = surface_image(replace(seen, materials=black), replace(config, blur_px=0.0))
+        apparent = surface_image(seen, config)
     rng = np.random.default_rng(0)
     noisy = detect(apparent, make_detector(config, rng), config, rng)
     for panel, image in zip(axes, (surface, apparent, noisy), strict=False):
@@ -205,11 +204,7 @@ def _camera() -> Callable[..., Grey]:
     with world_at("crossing_2", 0, 3.0) as world:
         config = world.config.robot.cameras["thermal"]
         assert isinstance(config, ThermalConfig)
-        seen = world._see(config)
-        apparent = surface_image(
-            seen.view, world._materials, config, seen.world_from_camera, seen.scene.world_from_part,
-            world.config.place.surroundings_c, 0.0,
-        )  # fmt: skip
+        apparent = surface_image(replace(world._camera_view(config), turn_rad_s=0.0), config)
 
     def take(settings: ThermalConfig, encode: Callable[[NDArray[np.float32]], Grey] | None = None) -> Grey:
         detector = make_detector(settings, stream(0, "thermal.detector"))

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.sim.cameras.imaging.camera_view import CameraView
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.rendering.full_detail import REACH_M, Contacts, gap
-from peopleboy.sim.rendering.reflections import EVERY, Reflection
+from peopleboy.sim.rendering.reflections import EVERY
 from peopleboy.sim.rendering.render_canvas import Lens, Rectangle
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.bounds import NEAR_M
@@ -21,12 +22,9 @@ Image = NDArray[np.float32]
 
 def add_reflections(
     image: Image,
-    view: View,
+    seen: CameraView,
     camera: Pinhole,
-    world_from_part: Matrix,
-    reflections: Sequence[Reflection],
     reflectance: NDArray[np.float64],
-    shine: NDArray[np.float64],
     surroundings: NDArray[np.float64],
     draw: Callable[[View, Matrix], Image],
 ) -> None:
@@ -39,24 +37,27 @@ def add_reflections(
 
     Args:
         image: (H, W, C).
-        view: what each pixel sees.
+        seen: in full detail.
         camera: the pinhole camera.
-        world_from_part: (P, 4, 4).
-        reflections: found in the same view.
         reflectance: (P,) of each part for rays along its normal.
-        shine: (P,) of each part, 0..1.
         surroundings: (C,) what is mirrored otherwise.
         draw: gives the (h, w, C) image of a view by its part_from_pixel (P, 3, 4).
     """
-    if view.surface is None:
+    view = seen.view
+    if view.surface is None or seen.full_detail is None:
         return
-    for one in reflections:
+    for one in seen.full_detail.reflections:
         matrices = _part_from_pixel(
-            camera.focal_px, camera.centre_px, one.left, one.top, one.world_from_camera, world_from_part
+            camera.focal_px,
+            camera.centre_px,
+            one.left,
+            one.top,
+            one.world_from_camera,
+            seen.world_from_part,
         )
         _mix(
             image, view.part, view.surface, one.is_surface, draw(one.view, matrices), one.view.part,
-            one.cosine, one.left, one.top, reflectance, shine, surroundings,
+            one.cosine, one.left, one.top, reflectance, seen.materials.shine, surroundings,
         )  # fmt: skip
 
 

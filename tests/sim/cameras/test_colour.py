@@ -3,11 +3,12 @@ import pytest
 
 from peopleboy.sim.cameras.camera_config import ColourConfig
 from peopleboy.sim.cameras.colour import colour_image, expose
-from peopleboy.sim.cameras.imaging.surfaces import make_material_table
+from peopleboy.sim.cameras.imaging.camera_view import make_material_table
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.materials import Material, Pattern, PatternKind
+from tests.helpers.images.camera_view import camera_view
 
 CONFIG = ColourConfig(camera=Pinhole(width=60, height=40))
 WHITE = (1.0, 1.0, 1.0)
@@ -22,7 +23,7 @@ def image_of(
         np.zeros(shape, np.int32), np.full(shape, 2.0, np.float32), normals, np.zeros(shape, np.uint64)
     )
     table = make_material_table([material], stream(0, "surface.variation"))
-    return colour_image(view, table, CONFIG, np.eye(4), np.eye(4)[None], light, 0.0)
+    return colour_image(camera_view(view, table, light_level=light), CONFIG)
 
 
 def test_brightness_is_proportional_to_light_and_reflectance() -> None:

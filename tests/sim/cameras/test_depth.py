@@ -22,13 +22,14 @@ from peopleboy.sim.cameras.depth import (
     structured_light,
     time_of_flight,
 )
+from peopleboy.sim.cameras.imaging.camera_view import make_material_table
 from peopleboy.sim.cameras.imaging.noise import smooth_gaussian
-from peopleboy.sim.cameras.imaging.surfaces import make_material_table
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.world import World
+from tests.helpers.images.camera_view import camera_view
 from tests.helpers.worlds.small_worlds import config, person
 
 USUAL = DepthConfig()
@@ -162,12 +163,10 @@ def test_time_of_flight_has_noise_by_depth_and_darkness_and_reads_between_surfac
         [Material(temperature_c=20.0, rgb=(grey, grey, grey)) for grey in (0.5, 0.2)],
         np.random.default_rng(0),
     )
-    poses = np.stack([np.eye(4)] * 2)
 
     def read(depth: np.ndarray, part: np.ndarray) -> np.ndarray:
-        fine = view_of(depth, part)
-        rng = np.random.default_rng(9)
-        return time_of_flight(fine, config, materials, np.eye(4), poses, rng) / 1000.0
+        fine = camera_view(view_of(depth, part), materials)
+        return time_of_flight(fine, config, np.random.default_rng(9)) / 1000.0
 
     shape = rays_of(camera).height, rays_of(camera).width
     for depth_m, part, sd_m in ((2.0, 0, 0.005), (6.0, 0, 0.045), (2.0, 1, 0.0125)):

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import COLOUR_BASELINE_M, CameraConfig, ColourConfig, ThermalConfig
+from peopleboy.sim.cameras.imaging.camera_view import CameraView
 from peopleboy.sim.cameras.imaging.noise import gaussian, skip_gaussian
 from peopleboy.sim.cameras.kinds import KINDS, CameraKind, affine_between, image_folders
-from peopleboy.sim.cameras.sensors import CameraView
 from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose, transform
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World

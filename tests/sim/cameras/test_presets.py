@@ -19,7 +19,7 @@ from peopleboy.sim.cameras.depth import (
     show_amplitude,
     structured_light,
 )
-from peopleboy.sim.cameras.imaging.surfaces import make_material_table
+from peopleboy.sim.cameras.imaging.camera_view import make_material_table
 from peopleboy.sim.cameras.kinds import DEPTH_PRESETS, image_names
 from peopleboy.sim.places.make_place import build_place
 from peopleboy.sim.places.place_config import straight_corridor
@@ -28,6 +28,7 @@ from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.world import World
 from peopleboy.sim.world_config import WorldConfig
+from tests.helpers.images.camera_view import camera_view
 
 
 def flat(depth_m: float, shape: tuple[int, int]) -> View:
@@ -46,7 +47,7 @@ def amplitude(depth_m: float, grey: float) -> np.ndarray:
         [Material(temperature_c=20.0, rgb=(grey, grey, grey))], np.random.default_rng(0)
     )
     view = flat(depth_m, (fine.height, fine.width))
-    return amplitude_of(view, config, materials, np.eye(4), np.eye(4)[None], np.random.default_rng(1))
+    return amplitude_of(camera_view(view, materials), config, np.random.default_rng(1))
 
 
 def test_amplitude_is_grey_over_the_square_of_the_depth_with_the_noise_of_the_depth() -> None:

@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from peopleboy.sim.cameras.camera_config import ThermalConfig
+from peopleboy.sim.cameras.imaging.camera_view import make_material_table
 from peopleboy.sim.cameras.imaging.electronics import encode_8bit
-from peopleboy.sim.cameras.imaging.surfaces import make_material_table
 from peopleboy.sim.cameras.thermal import (
     band_radiance,
     detect,
@@ -17,6 +17,7 @@ from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.materials import Material
+from tests.helpers.images.camera_view import camera_view
 
 CONFIG = ThermalConfig(camera=Pinhole(width=40, height=30))
 
@@ -31,8 +32,9 @@ def image_of(
     part: np.ndarray, materials: list[Material], surroundings_c: float, turned_rad: float = 0.0
 ) -> np.ndarray:
     table = make_material_table(materials, stream(0, "surface.variation"))
-    poses = np.tile(np.eye(4), (len(materials), 1, 1))
-    return surface_image(view_of(part), table, CONFIG, np.eye(4), poses, surroundings_c, turned_rad)
+    turn_rad_s = turned_rad / CONFIG.exposure_s
+    seen = camera_view(view_of(part), table, surroundings_c=surroundings_c, turn_rad_s=turn_rad_s)
+    return surface_image(seen, CONFIG)
 
 
 @given(

@@ -48,10 +48,10 @@ def draw(*shapes: tuple[ShapeKind, tuple[float, float, float], np.ndarray]) -> t
     ), table
 
 
-def smoothed(seen: RenderPass, table: ShapeTable, values: tuple[float, ...]) -> np.ndarray:
+def smoothed(seen: RenderPass, values: tuple[float, ...]) -> np.ndarray:
     """The smoothed image of parts of these values, 0 where nothing is."""
     image = np.array([*values, 0.0], np.float32)[seen.view.part][..., None]
-    smooth(image, 1e-3, seen.view, table, CAMERA, POSE, seen.scene.world_from_part)
+    smooth(image, 1e-3, seen, CAMERA)
     return image[..., 0]
 
 
@@ -62,7 +62,7 @@ FLOOR = (ShapeKind.PLANE, (0.0, 0.0, 0.0), np.eye(4))
 @given(x=st.floats(2.0, 6.0), y=st.floats(-0.5, 0.5), radius=st.floats(0.2, 0.6))
 def test_a_ball_fills_its_edge_pixels_by_the_share_of_their_area(x: float, y: float, radius: float) -> None:
     seen, table = draw((ShapeKind.SPHERE, (radius, 0.0, 0.0), at(x, y, 1.2)))
-    found = smoothed(seen, table, (1.0,))
+    found = smoothed(seen, (1.0,))
     fine = Pinhole(width=16 * CAMERA.width, height=16 * CAMERA.height)
     parts = cast(
         table, fine, POSE, seen.scene.world_from_part, np.zeros(1, np.int64), np.zeros(1, np.bool_)
@@ -81,8 +81,8 @@ def test_a_ball_fills_its_edge_pixels_by_the_share_of_their_area(x: float, y: fl
 
 
 def test_where_box_and_floor_meet_both_have_their_share_and_all_else_keeps_its_value() -> None:
-    seen, table = draw(FLOOR, (ShapeKind.BOX, (1.0, 1.0, 1.0), at(3.0, 0.2, 0.5)))
-    found, part = smoothed(seen, table, (1.0, 3.0)), seen.view.part
+    seen, _ = draw(FLOOR, (ShapeKind.BOX, (1.0, 1.0, 1.0), at(3.0, 0.2, 0.5)))
+    found, part = smoothed(seen, (1.0, 3.0)), seen.view.part
     same = np.ones(part.shape, np.bool_)
     for axis in (0, 1):
         for shift in (-1, 1):
@@ -94,10 +94,10 @@ def test_where_box_and_floor_meet_both_have_their_share_and_all_else_keeps_its_v
 
 
 def test_faint_edges_are_left_as_they_are() -> None:
-    seen, table = draw(FLOOR, (ShapeKind.BOX, (1.0, 1.0, 1.0), at(3.0, 0.2, 0.5)))
+    seen, _ = draw(FLOOR, (ShapeKind.BOX, (1.0, 1.0, 1.0), at(3.0, 0.2, 0.5)))
     image = np.array([1.0, 1.0005, 1.0], np.float32)[seen.view.part][..., None]
     before = image.copy()
-    smooth(image, 1e-3, seen.view, table, CAMERA, POSE, seen.scene.world_from_part)
+    smooth(image, 1e-3, seen, CAMERA)
     assert np.array_equal(image, before)
 
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.physics.bullet import Bullet
-from peopleboy.sim.rendering.renderer import cast, render, silhouette_area, silhouette_bounds
+from peopleboy.sim.rendering.renderer import Scene, cast, render, silhouette_area, silhouette_bounds
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.shape_table import ShapeTable, VisualShape, make_shape_table
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind
@@ -50,13 +50,20 @@ MODELS = [
 ]
 
 
-def both(bullet: Bullet, camera: Pinhole, people: NDArray[np.int64]) -> tuple[View, View]:
-    table = make_shape_table(bullet.visual_shapes())
-    poses, hidden = bullet.part_poses(), bullet.hidden_parts()
-    pose = camera.robot_from_camera
-    cast, drawn = (
-        render(name, bullet, table, camera, pose, poses, people, hidden) for name in ("raycast", "bullet")
+def drawn_by(name: str, bullet: Bullet, camera: Pinhole, people: NDArray[np.int64]) -> View:
+    scene = Scene(
+        renderer=name,
+        physics=bullet,
+        table=make_shape_table(bullet.visual_shapes()),
+        world_from_part=bullet.part_poses(),
+        person_of_part=people,
+        hidden=bullet.hidden_parts(),
     )
+    return render(scene, camera, camera.robot_from_camera)
+
+
+def both(bullet: Bullet, camera: Pinhole, people: NDArray[np.int64]) -> tuple[View, View]:
+    cast, drawn = (drawn_by(name, bullet, camera, people) for name in ("raycast", "bullet"))
     return cast, drawn
 
 
@@ -184,11 +191,8 @@ def test_an_unknown_renderer_and_too_many_people_are_refused(
 ) -> None:
     with Bullet() as bullet:
         bullet.add_part("ball", [Shape(kind=ShapeKind.SPHERE, size=(0.5, 0.0, 0.0))])
-        table = make_shape_table(bullet.visual_shapes())
-        camera, people = Pinhole(), np.array([person])
-        pose, poses, hidden = camera.robot_from_camera, bullet.part_poses(), bullet.hidden_parts()
         with refused(*named):
-            render(name, bullet, table, camera, pose, poses, people, hidden)
+            drawn_by(name, bullet, Pinhole(), np.array([person]))
 
 
 KINDS = [ShapeKind.SPHERE, ShapeKind.CAPSULE, ShapeKind.CYLINDER, ShapeKind.BOX]

@@ -1,5 +1,6 @@
 import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.physics.urdf import find_model
 from peopleboy.sim.places.extent import mesh_extent
-from peopleboy.sim.rendering.renderer import render
+from peopleboy.sim.rendering.renderer import Scene, render
 from peopleboy.sim.shapes.shape_table import make_shape_table
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind, load_triangles
 from tests.helpers.calls.refused import refused
@@ -56,18 +57,16 @@ def test_dae_files_have_the_size_that_tinyrenderer_gives_them(model: str) -> Non
     camera = Pinhole(position_m=(-4.0, 0.5, 1.5), pitch_rad=0.35)
     with Bullet() as bullet:
         bullet.add_part("mesh", [shape], solid=False)
-        table = make_shape_table(bullet.visual_shapes())
+        scene = Scene(
+            renderer="raycast",
+            physics=bullet,
+            table=make_shape_table(bullet.visual_shapes()),
+            world_from_part=bullet.part_poses(),
+            person_of_part=np.array([-1]),
+            hidden=bullet.hidden_parts(),
+        )
         cast, drawn = (
-            render(
-                name,
-                bullet,
-                table,
-                camera,
-                camera.robot_from_camera,
-                bullet.part_poses(),
-                np.array([-1]),
-                bullet.hidden_parts(),
-            )
+            render(replace(scene, renderer=name), camera, camera.robot_from_camera)
             for name in ("raycast", "bullet")
         )
     assert np.mean(cast.part == 0) > 0.01

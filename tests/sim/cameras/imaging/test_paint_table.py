@@ -5,10 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from peopleboy.sim.cameras.imaging.camera_view import KELVIN_STEP, LIGHT_STEP, make_paint_table
 from peopleboy.sim.cameras.imaging.surfaces import (
-    KELVIN_STEP,
-    LIGHT_STEP,
-    make_paint_table,
     paint_run,
     painted,
 )

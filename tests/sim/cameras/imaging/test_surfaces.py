@@ -6,10 +6,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from peopleboy.sim.cameras.imaging.camera_view import make_material_table
 from peopleboy.sim.cameras.imaging.surfaces import (
     finish_at,
     finish_run,
-    make_material_table,
     part_from_pixel,
     pattern_value,
     smooth_variation,
