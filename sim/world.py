@@ -19,7 +19,8 @@ from peopleboy.sim.geometry.pinhole import CameraGeometry, Matrix, Pinhole
 from peopleboy.sim.observation import Observation, OnDemand, Senses
 from peopleboy.sim.people.crowd import Crowd, Handling
 from peopleboy.sim.people.walking.social_force import PlanarState
-from peopleboy.sim.physics.physics_engine import Physics, open_physics
+from peopleboy.sim.physics.kinematic import Kinematic
+from peopleboy.sim.physics.physics_engine import Physics
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.places.textures.texture_place import paint_place
 from peopleboy.sim.random_streams import stream
@@ -55,7 +56,7 @@ class World:
         self._tick = 0
         self._touching: set[str] = set()
         _check_names(config)
-        self._physics = open_physics(config.physics, config.physics_hz)
+        self._physics = _open_physics(config)
         try:
             self._build()
         except BaseException:
@@ -402,6 +403,19 @@ class World:
 def light_level(place: Place, time_s: float) -> float:
     """Return the level of a place's light at a time: that of the last switch so far, full before any."""
     return [1.0, *(level for start, level in place.light if start <= time_s + 1e-9)][-1]
+
+
+def _open_physics(config: WorldConfig) -> Physics:
+    """Open an empty world.
+
+    Raises:
+        BadInput: PyBullet is asked for and not installed.
+    """
+    if config.physics == "kinematic":
+        return Kinematic(physics_hz=config.physics_hz)
+    from peopleboy.sim.physics.bullet import Bullet  # here, as the other one does without PyBullet
+
+    return Bullet(physics_hz=config.physics_hz)
 
 
 def _check_names(config: WorldConfig) -> None:

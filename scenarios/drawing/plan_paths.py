@@ -16,7 +16,7 @@ from peopleboy.scenarios.files.check import ROBOT_M
 from peopleboy.scenarios.files.robot import CommandSpec
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.sim.cameras.kinds import flat_geometry
-from peopleboy.sim.people.person import PersonConfig
+from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.people.walking.walker import ALONE, Walker
 from peopleboy.sim.places.moving import ActionKind, Mover, Stance
 from peopleboy.sim.places.place import Fixture, Place

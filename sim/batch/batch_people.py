@@ -112,7 +112,7 @@ class BatchLimbs:
 
 def _number_of(world: World, person: Person, part: str) -> int:
     assert isinstance(world.physics, Kinematic)
-    return world.physics.number_of(f"{person.name}/{part}")
+    return world.physics.numbers[f"{person.name}/{part}"]
 
 
 @njit(cache=True, nogil=True)

@@ -361,4 +361,4 @@ def _capsules(worlds: Sequence[World], walks: BatchWalks) -> BatchCapsules:
 
 def _capsule_numbers(world: World) -> list[int]:
     assert isinstance(world.physics, Kinematic)
-    return [world.physics.number_of(name) for name in world.crowd.capsules]
+    return [world.physics.numbers[name] for name in world.crowd.capsules]

@@ -17,7 +17,7 @@ from peopleboy.sim.cameras.imaging.surfaces import combine
 from peopleboy.sim.cameras.thermal import radiance_image, to_apparent_c
 from peopleboy.sim.geometry.vectors import from_each, invert
 from peopleboy.sim.rendering.raycast import draw
-from peopleboy.sim.rendering.render_canvas import Canvas, Lens, locate, shade
+from peopleboy.sim.rendering.render_canvas import Canvas, Lens, locate, make_canvas, shade
 from peopleboy.sim.shapes.shape_table import JoinedTables, Numbers, ShapeTable, ends, join_tables, table_of
 
 Array = NDArray[np.float64]
@@ -130,15 +130,7 @@ def make_buffers(lens: Lens, scene: JoinedScene) -> tuple[Canvas, Buffers]:
     shape, surfaces, first = (lens.height, lens.width), 0, scene.tables.surface
     for world in range(len(first) - 1):
         surfaces = max(surfaces, first[world + 1] - first[world])
-    canvas = Canvas(
-        np.zeros(shape),
-        np.empty(shape, np.int32),
-        np.zeros(shape, np.uint64),
-        np.empty((surfaces, 7)),
-        np.empty((6, 3)),
-        np.empty((3, 4)),
-    )
-    return canvas, Buffers(
+    return make_canvas(lens, surfaces), Buffers(
         np.empty(shape, np.int32), np.empty(shape, np.float32), np.empty((*shape, 3), np.float32)
     )
 

@@ -24,7 +24,7 @@ from peopleboy.sim.cameras.imaging.camera_view import CameraView
 from peopleboy.sim.cameras.imaging.electronics import Gain, compress, sharpen
 from peopleboy.sim.cameras.imaging.noise import Drift, random_words, skip_gaussian
 from peopleboy.sim.cameras.panoramic import finer, panorama_image, roll_up, unroll
-from peopleboy.sim.cameras.thermal import Detector, detect, make_detector, surface_image
+from peopleboy.sim.cameras.thermal import detect, make_detector, surface_image
 from peopleboy.sim.random_streams import stream
 
 Image = NDArray[Any]
@@ -46,24 +46,22 @@ class ThermalSensor:
     """Gives 8-bit grey, and the same in float32 [degC] before it is encoded.
 
     While the shutter is closed, it gives the last images again. Drift and shutter go by the time.
+
+    Attributes:
+        detector: what it does wrong in the same way all through a run.
     """
 
     def __init__(self, config: ThermalConfig, name: str, seed: int) -> None:
         self._config = config
-        self._detector = make_detector(config, stream(seed, f"{name}.detector"))
+        self.detector = make_detector(config, stream(seed, f"{name}.detector"))
         self._noise = stream(seed, f"{name}.noise")
         self._drift = Drift(config, name, seed)
         self._gain = Gain(config)
         self._last: tuple[Image, ...] = ()
 
-    @property
-    def detector(self) -> Detector:
-        """What it does wrong in the same way all through a run."""
-        return self._detector
-
     def draw_noise(self) -> NDArray[np.uint64]:
         """Random words of the noise of one image."""
-        return random_words(self._detector.dead.shape, self._noise)
+        return random_words(self.detector.dead.shape, self._noise)
 
     def take(self, seen: CameraView) -> tuple[Image, ...]:
         """Take the (H, W) images of an instant: uint8, float32."""
@@ -74,13 +72,13 @@ class ThermalSensor:
 
     def skip(self) -> None:
         """Let the noise of an image go by."""
-        skip_gaussian(self._detector.dead.shape, self._noise)
+        skip_gaussian(self.detector.dead.shape, self._noise)
 
     def _read_out(self, seen: CameraView) -> NDArray[np.float32]:
         """Return what the detector makes of the scene [degC]."""
         config = self._config
         apparent = surface_image(seen, config)
-        return detect(apparent, self._detector, config, self._noise, self._drift.offset_k(seen.time_s))
+        return detect(apparent, self.detector, config, self._noise, self._drift.offset_k(seen.time_s))
 
     def _grey(self, temperature_c: NDArray[np.float32], time_s: float) -> NDArray[np.uint8]:
         config = self._config

@@ -65,6 +65,17 @@ def map_point(pose: Array, x: float, y: float, z: float) -> Point:
 
 
 @njit(cache=True, fastmath=False)
+def map_corner(pose: Array, low: Array, high: Array, corner: int) -> Point:
+    """Map one of the eight corners of the box between two of its own frame by a pose."""
+    return map_point(
+        pose,
+        high[0] if corner & 1 else low[0],
+        high[1] if corner & 2 else low[1],
+        high[2] if corner & 4 else low[2],
+    )
+
+
+@njit(cache=True, fastmath=False)
 def turn_back(pose: Array, x: float, y: float, z: float) -> Point:
     """Turn a vector of the frame that a pose leads to into the frame that it comes from."""
     return (

@@ -44,6 +44,10 @@ class Crowd:
     upright capsule per person instead, which moves in every physics step. Who appears where the robot stands
     is passed through until they are apart, as physics would throw the robot away. Where nobody looks, people
     are made of that capsule alone.
+
+    Attributes:
+        is_scripted: whether scripts and who is in the way alone guide all, among walls that stand still.
+        walks: (N,) records WALK of where all are on their ways.
     """
 
     def __init__(
@@ -63,7 +67,7 @@ class Crowd:
         self.people = tuple(self._make(config, seed) for config in configs)
         self.materials: dict[str, Material] = {}
         stands_still = not (place.movers and any(config.yields for config in configs))
-        self._is_scripted = stands_still and all(map(is_scripted, configs))
+        self.is_scripted = stands_still and all(map(is_scripted, configs))
         self._scripts = join_scripts(self.scripts)
         self.rebind(join_records([person.walker.walks for person in self.people], WALK))
         self._is_shown = dict.fromkeys((person.name for person in self.people), True)
@@ -77,16 +81,6 @@ class Crowd:
             self._add(person)
 
     @property
-    def is_scripted(self) -> bool:
-        """Whether scripts and who is in the way alone guide everybody, among walls that stand still."""
-        return self._is_scripted
-
-    @property
-    def walks(self) -> Records:
-        """(N,) records WALK of where all are on their ways."""
-        return self._walks
-
-    @property
     def scripts(self) -> tuple[Script, ...]:
         """What all are to do."""
         return tuple(person.walker.script for person in self.people)
@@ -98,14 +92,9 @@ class Crowd:
 
     def rebind(self, walks: Records) -> None:
         """Keep the records of where all are in another array from now on, which holds the same already."""
-        self._walks = walks
+        self.walks = walks
         for k, person in enumerate(self.people):
             person.walker.rebind(walks[k : k + 1])
-
-    @property
-    def are_shown(self) -> bool:
-        """Whether cameras see them."""
-        return self._is_visible
 
     def step(self, time_s: float, dt_s: float, robot: PlanarState) -> None:
         """Let everybody walk on for dt_s from time_s, knowing where the others and the robot are now."""
@@ -113,9 +102,9 @@ class Crowd:
         for person in self.people:
             if person.name in self._solid and math.dist(person.position, robot.position) < _OUT_OF_REACH_M:
                 self._before[person.name] = person.position
-        if self._is_scripted:
+        if self.is_scripted:
             count, walls = len(self.people), self._place.obstacles
-            walk_on(0, count, self._walks, self._scripts, time_s, dt_s, robot_motion(robot), walls, _TWO)
+            walk_on(0, count, self.walks, self._scripts, time_s, dt_s, robot_motion(robot), walls, _TWO)
             for person in self.people:
                 person.move_limbs(dt_s)
         else:

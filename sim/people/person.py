@@ -24,7 +24,6 @@ from peopleboy.sim.people.body.body_shapes import ARM_PARTS as _LIMBS
 from peopleboy.sim.people.body.body_shapes import (
     BAG_PART,
     BODY_PARTS,
-    TORSO_PARTS,
     PartGeometry,
     bag,
     bone_index,
@@ -35,13 +34,12 @@ from peopleboy.sim.people.body.clothes import dress
 from peopleboy.sim.people.body.gait import Gait
 from peopleboy.sim.people.body.manner import USUAL, held_arms
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, put_on
-from peopleboy.sim.people.body.postures import Posture
-from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, joint_offsets, joint_points
+from peopleboy.sim.people.body.skeleton import BONE_INDEX, BONES, Posture, joint_offsets, joint_points
 from peopleboy.sim.people.body.stance import POSTURES, STANCE, Builds, Gaze, Stances, hold, move_limbs
 from peopleboy.sim.people.conducts import ConductSituation, Mind
-from peopleboy.sim.people.person_config import Arms, PersonConfig, Waypoint
+from peopleboy.sim.people.person_config import Arms, PersonConfig
 from peopleboy.sim.people.walking.social_force import PlanarState
-from peopleboy.sim.people.walking.walker import AS_PLANNED, Present, Surroundings, Walker, Wish, timetable
+from peopleboy.sim.people.walking.walker import AS_PLANNED, Present, Surroundings, Walker, Wish
 from peopleboy.sim.shapes.materials import Material
 from peopleboy.sim.shapes.shapes import Part
 
@@ -49,11 +47,6 @@ Array = NDArray[np.float64]
 
 ARM_PARTS = (*_LIMBS, BAG_PART)
 PART_CLASSES = {name: i for i, name in enumerate((*BODY_PARTS, BAG_PART), start=1)}
-
-__all__ = [
-    "ARM_PARTS", "PART_CLASSES", "TORSO_PARTS", "Arms", "Person", "PersonConfig", "PlanarState", "Posture",
-    "Waypoint", "timetable",
-]  # fmt: skip
 
 _ARM_POSTURES: dict[Arms, Posture | None] = {
     "swinging": None,
@@ -86,6 +79,8 @@ class Person:
         name: as configured.
         parts: what it is made of, fixed for life; `poses` is in their order.
         stance: (1,) records STANCE, how it holds itself now.
+        walker: where it goes, and how.
+        gait: how it walks.
     """
 
     def __init__(
@@ -105,54 +100,49 @@ class Person:
         self._offsets = joint_offsets(self._size)
         self._soles = sole_points(config.height_m)
         self._manner = USUAL if finisher is None else finisher.manner
-        self._gait = Gait(self._offsets, config.height_m, self._manner)
+        self.gait = Gait(self._offsets, config.height_m, self._manner)
         leave_s = math.inf if config.leave_s is None else config.leave_s
-        self._walker = Walker(config.path, config.yields, self.radius_m, (config.enter_s, leave_s))
+        self.walker = Walker(config.path, config.yields, self.radius_m, (config.enter_s, leave_s))
         self._mind = Mind([waypoint.at_m for waypoint in config.path], config.reacts, config.leads)
         self._wish = AS_PLANNED
         self._gaze = Gaze()
         self.stance = np.zeros(1, STANCE)
         self.stance["phase"], self.stance["sway_phase"] = rng.uniform(), rng.uniform()
-        self.stance["blend"][0, POSTURES[self._walker.posture]] = 1.0
+        self.stance["blend"][0, POSTURES[self.walker.posture]] = 1.0
         self._build: Builds | None = None
         self._bones: Array | None = None
         self._bones_s = 0.0
         self._grasp: _Grasp | None = None
 
     @property
-    def walker(self) -> Walker:
-        """Where it goes, and how."""
-        return self._walker
-
-    @property
     def present(self) -> bool:
         """Whether it is in the world now."""
-        return self._walker.present
+        return self.walker.present
 
     @property
     def position(self) -> Array:
         """(2,) [m] in the world frame."""
-        return self._walker.position
+        return self.walker.position
 
     @property
     def heading(self) -> float:
         """[rad] the direction that the body faces."""
-        return self._walker.heading
+        return self.walker.heading
 
     @property
     def velocity(self) -> Array:
         """(2,) [m/s] in the world frame."""
-        return self._walker.velocity
+        return self.walker.velocity
 
     @property
     def posture(self) -> Posture:
         """The posture that it has or is about to take up."""
-        return Posture.CALLING if self._wish.calls else self._walker.posture
+        return Posture.CALLING if self._wish.calls else self.walker.posture
 
     @property
     def progress(self) -> float:
         """How far along its path it is: waypoints reached, and the share of the way to the next one."""
-        return self._walker.progress
+        return self.walker.progress
 
     @property
     def radius_m(self) -> float:
@@ -180,17 +170,17 @@ class Person:
             company: progress of the others of its group who are present.
         """
         around = Surroundings(people=people, walker=people.rows.get(self.name, -1), robot=robot, walls=walls)
-        if self._walker.come_or_go(time_s + dt_s):
+        if self.walker.come_or_go(time_s + dt_s):
             self._wish = self._make_up_mind(dt_s, around, company)
-            self._walker.step(dt_s, around, self._wish)
+            self.walker.step(dt_s, around, self._wish)
             self._look(dt_s, robot)
         elif self.present:
-            self._walker.enter(around)
+            self.walker.enter(around)
         self.move_limbs(dt_s)
 
     def move_limbs(self, dt_s: float) -> None:
         """Advance gait and postures by a time step, in which it has walked on."""
-        walker, gait = self._walker, self._gait
+        walker, gait = self.walker, self.gait
         self.stance["time_s"] = walker.now_s
         if walker.has_moved:
             pace, turn_rate = pace_m_s(walker.velocity.tolist(), walker.turn_rate), walker.turn_rate
@@ -201,7 +191,7 @@ class Person:
 
     def _make_up_mind(self, dt_s: float, around: Surroundings, company: Iterable[float]) -> Wish:
         """Decide how to change the script, if at all."""
-        walker, now = self._walker, None
+        walker, now = self.walker, None
         if around.robot is not None and (self.config.reacts or self.config.leads):
             now = ConductSituation(
                 at=walker.position,
@@ -217,7 +207,7 @@ class Person:
     def _look(self, dt_s: float, robot: PlanarState | None) -> None:
         """Turn the head towards what is to be looked at, else back to the front."""
         target = self._wish.gaze_at
-        if target is None and robot is not None and self._walker.is_awaiting(robot):
+        if target is None and robot is not None and self.walker.is_awaiting(robot):
             target = robot.position
         bearing = None
         if target is not None:
@@ -254,11 +244,6 @@ class Person:
         return "left" if self.config.bag or aside > _AHEAD_M else "right"
 
     @property
-    def gait(self) -> Gait:
-        """How it walks."""
-        return self._gait
-
-    @property
     def frame(self) -> BodyFrame:
         """How its parts hang together."""
         return BodyFrame(self._offsets, self._soles, self._part_bone, self._part_offset)
@@ -278,15 +263,15 @@ class Person:
     def rebind(self, stance: Stances, builds: Builds) -> None:
         """Keep its stance and its build in other arrays from now on, which hold the same already."""
         self.stance, self._build = stance, builds
-        self._gait.rebind(builds.rotations[0], builds.sway[0])
+        self.gait.rebind(builds.rotations[0], builds.sway[0])
 
     def _know_build(self) -> Builds:
         held, is_held = held_arms(self._manner.holds)
-        (rotations, sway), arms = self._gait.tables, _ARM_POSTURES[self.config.arms]
+        (rotations, sway), arms = self.gait.tables, _ARM_POSTURES[self.config.arms]
         return Builds(
             rotations=rotations[None],
             sway=sway[None],
-            root_scale=np.array([self._gait.root_scale]),
+            root_scale=np.array([self.gait.root_scale]),
             height_m=np.array([self.config.height_m]),
             held=held[None],
             is_held=is_held[None],
@@ -309,8 +294,8 @@ class Person:
 
     def _world_bones(self) -> Array:
         """(17, 4, 4) world from bone."""
-        if self._bones is None or self._bones_s != self._walker.now_s:
-            self._bones, self._bones_s = self._place(), self._walker.now_s
+        if self._bones is None or self._bones_s != self.walker.now_s:
+            self._bones, self._bones_s = self._place(), self.walker.now_s
         return self._bones
 
     def _place(self) -> Array:
@@ -322,8 +307,8 @@ class Person:
 
     def _on_the_floor(self, rotations: Array, shift: tuple[float, float]) -> Array:
         bones = np.empty((len(BONES), 4, 4))
-        x, y = self._walker.position.tolist()
-        put_on_floor(rotations, self._offsets, self._soles, shift, (x, y, self._walker.heading), bones)
+        x, y = self.walker.position.tolist()
+        put_on_floor(rotations, self._offsets, self._soles, shift, (x, y, self.walker.heading), bones)
         return bones
 
     def _reach(

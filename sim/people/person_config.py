@@ -14,7 +14,7 @@ from peopleboy.bad_input import BadInput, found_in
 from peopleboy.settings import Name, Point, Seconds, check_limits, word_or_list
 from peopleboy.sim.people.body.anthropometry import Build, Sex
 from peopleboy.sim.people.body.clothes import Clothes
-from peopleboy.sim.people.body.postures import Posture
+from peopleboy.sim.people.body.skeleton import Posture
 
 Way = Literal["ignores", "makes_way", "curious", "wary", "blocks", "surprised"]
 Meeting = Annotated[float, Field(ge=0.8, le=20.0)]

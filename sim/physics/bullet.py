@@ -6,7 +6,6 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -32,11 +31,11 @@ from peopleboy.sim.physics.bullet_io import (
     view_matrix,
     visual_shape,
 )
-from peopleboy.sim.physics.solid_shapes import PartKey
+from peopleboy.sim.physics.physics_engine import Physics
 from peopleboy.sim.physics.urdf import MISSING_PHYSICS, find_model
 from peopleboy.sim.shapes.bounds import FAR_M, NEAR_M
 from peopleboy.sim.shapes.shape_table import VisualShape, as_given
-from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector, load_triangles
+from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, Vector
 
 try:
     with quiet():
@@ -88,18 +87,17 @@ class _Client:
             self._number = None
 
 
-class Bullet:
+class Bullet(Physics):
     """A PyBullet world of its own, in which bodies go by name.
 
-    Parts are numbered in the order in which they were created; the number never changes. The frame of a
-    part is the frame in which its shapes were given: for a link of a URDF the link's own frame, not that
-    of its centre of mass. Use it as a context manager; several may be open at once. Every method that takes
-    a name raises BadInput if no body has it.
+    The frame of a link of a URDF is the link's own, not that of its centre of mass. Shapes beyond the 16 that
+    a PyBullet body holds go into further bodies under the same name. Several worlds may be open at once.
     """
 
     def __init__(self, *, physics_hz: int = 240, gravity: bool = True) -> None:
+        super().__init__()
         self._client = _Client()
-        self._bodies = BulletBodies()
+        self._bodies = BulletBodies(self._parts)
         self._poses = np.zeros((0, 4, 4))
         self._hidden = np.zeros(0, np.bool_)
         self._moved: dict[str, BulletBody] = {}
@@ -114,56 +112,9 @@ class Bullet:
         )
         self._client.setGravity(0.0, 0.0, -GRAVITY_M_S2 if gravity else 0.0)
 
-    def __enter__(self) -> Bullet:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
-
     def close(self) -> None:
         """Free the world; closing twice is harmless."""
         self._client.close()
-
-    def add_part(
-        self,
-        name: str,
-        shapes: Sequence[Shape],
-        *,
-        position: Vector = (0.0, 0.0, 0.0),
-        orientation: Quaternion = UPRIGHT,
-        visible: bool = True,
-        solid: bool = True,
-    ) -> None:
-        """Add a body of one part that stays where it is put, however hard it is hit.
-
-        An invisible part is drawn by no renderer; one that is not solid is passed by rays and bodies. Shapes
-        beyond the 16 that a PyBullet body holds go into further bodies under the same name.
-
-        Raises:
-            BadInput: the name is taken, there are no shapes, or a mesh is missing or cannot be read.
-        """
-        self._bodies.check_new(name)
-        if not shapes:
-            raise BadInput(f"body {name!r}: it has no shapes; give at least one")
-        for shape in shapes:
-            if shape.kind == ShapeKind.MESH and not (shape.mesh and shape.mesh.is_file()):
-                raise BadInput(f"body {name!r}: there is no mesh {shape.mesh}; give an OBJ, STL or DAE file")
-            if shape.mesh is not None:
-                load_triangles(shape.mesh)
-        part = len(self._bodies.parts)
-        body = BulletBody(name=name, parts=range(part, part + 1), is_given=True)
-        if solid:
-            self._make(body, shapes, visible=visible, solid=True)
-        else:
-            self._only_seen.add(name)
-        if visible and not solid:
-            self._unmade.append((body, shapes))
-        self._add(body, [_LINK])
-        self._given.add(name, part, shapes if solid else ())
-        self._visible[name] = [as_given(shape, part) for shape in shapes] if visible else []
-        self.set_pose(name, position, orientation)
 
     def add_urdf(
         self,
@@ -175,20 +126,8 @@ class Bullet:
         fixed: bool = True,
         scale: float = 1.0,
     ) -> None:
-        """Add the robot or thing of a URDF file, or the first model of an SDF file.
-
-        Args:
-            name: what to call it.
-            path: the file; a relative one that does not exist is looked up in pybullet_data.
-            position: [m] of the base link's frame in the world.
-            orientation: of the base link's frame, world from base.
-            fixed: held in place for good.
-            scale: factor on all lengths.
-
-        Raises:
-            BadInput: the name is taken, or the file is missing or broken.
-        """
-        self._bodies.check_new(name)
+        """See `Physics.add_urdf`; of an SDF file the first model is added."""
+        self._bodies.by_name.check_new(name)
         file = find_model(path)
         load = self._load_sdf if file.suffix == ".sdf" else self._load_urdf
         try:
@@ -200,7 +139,7 @@ class Bullet:
         self.set_pose(name, position, orientation)
 
     def set_pose(self, name: str, position: Vector, orientation: Quaternion) -> None:
-        """Put a body's base frame at `position` [m] and `orientation` in the world, at rest."""
+        """See `Physics.set_pose`."""
         body = self._bodies[name]
         if body.hidden_at is not None:
             body.hidden_at = (position, orientation)
@@ -209,7 +148,7 @@ class Bullet:
             self._put(body, (position, orientation))
 
     def set_poses(self, names: Sequence[str], positions: ArrayLike, orientations: ArrayLike) -> None:
-        """Put base frames of N bodies at positions (N, 3) [m] and orientations (N, 4), as `set_pose` does."""
+        """See `Physics.set_poses`."""
         if self._only_seen.issuperset(names):
             self._given.put_all(names, positions, orientations)
             return
@@ -218,11 +157,7 @@ class Bullet:
             self.set_pose(name, position, orientation)
 
     def set_hidden(self, name: str, hidden: bool) -> None:
-        """Take a body out of images, rays and contacts, or put it back where it was last placed.
-
-        Raises:
-            BadInput: physics moves the body, so that there is no place to put it back to.
-        """
+        """See `Physics.set_hidden`."""
         body = self._bodies[name]
         if body.moves_by_itself:
             raise BadInput(f"body {name!r} is not fixed: it cannot be hidden")
@@ -242,19 +177,13 @@ class Bullet:
         return self._hidden.copy()
 
     def step(self) -> None:
-        """Advance the world by one physics step."""
+        """See `Physics.step`."""
         self._client.stepSimulation()
         for body in self._bodies.moving:
             self._note_move(body)
 
     def set_joint_speeds(self, name: str, speeds: Mapping[str, float], max_torque_nm: float) -> None:
-        """Drive joints at speeds [rad/s, or m/s if they slide] with at most this torque [N m, or N] each.
-
-        Zero torque lets the joints run free.
-
-        Raises:
-            BadInput: the body has no such joint.
-        """
+        """See `Physics.set_joint_speeds`; [m/s], [N] of joints that slide. At no torque joints run free."""
         body = self._bodies[name]
         self._client.setJointMotorControlArray(
             body.ids[0],
@@ -265,11 +194,7 @@ class Bullet:
         )
 
     def joint_states(self, name: str, joints: Sequence[str]) -> tuple[Matrix, Matrix]:
-        """Positions (J,) [rad or m] and speeds (J,) [rad/s or m/s] of the named joints.
-
-        Raises:
-            BadInput: the body has no such joint.
-        """
+        """See `Physics.joint_states`; [m] and [m/s] of joints that slide."""
         body = self._bodies[name]
         states = self._client.getJointStates(body.ids[0], body.links_of(joints))
         return np.array([state[0] for state in states]), np.array([state[1] for state in states])
@@ -279,12 +204,8 @@ class Bullet:
         linear, angular = self._client.getBaseVelocity(self._bodies[name].ids[0])
         return np.array(linear), np.array(angular)
 
-    def parts(self) -> tuple[PartKey, ...]:
-        """All parts, in the order of their numbers."""
-        return tuple(self._bodies.parts)
-
     def pose(self, name: str) -> Matrix:
-        """(4, 4) world from the frame of the body's base, a copy; where it will reappear if it is hidden."""
+        """See `Physics.pose`."""
         body = self._bodies[name]
         if body.is_given:
             return pose_matrices(*(body.hidden_at or self._base_place(body)))
@@ -293,7 +214,7 @@ class Bullet:
         return self._known[name].copy()
 
     def part_poses(self) -> Matrix:
-        """(P, 4, 4) world from part, a copy; hidden parts are far below the floor."""
+        """See `Physics.part_poses`."""
         moved = list(self._moved.values())
         if moved:
             places = []
@@ -315,19 +236,10 @@ class Bullet:
     def cast_rays(
         self, from_m: ArrayLike, to_m: ArrayLike, ignore: str | None = None
     ) -> tuple[Matrix, NDArray[np.int64]]:
-        """Find the nearest solid along rays, which pass through the body called `ignore`.
+        """See `Physics.cast_rays`.
 
         Bodies of given shapes are met where they are, those of files where PyBullet says, which finds round
         things by steps: within 1 mm mostly, within 2 cm where a ray grazes them.
-
-        Args:
-            from_m: (R, 3) [m] where rays start, world frame.
-            to_m: (R, 3) [m] where they end, world frame.
-            ignore: a body that the rays do not see, such as the one that sends them out.
-
-        Returns:
-            fraction: (R,) of the way at which a ray hits, 1 where it hits nothing.
-            part: (R,) part that is hit, -1 where none.
         """
         starts, ends = np.asarray(from_m, np.float64), np.asarray(to_m, np.float64)
         fraction, part = self._given.cast_rays(starts, ends, ignore)
@@ -349,7 +261,7 @@ class Bullet:
         return [contact for contact in contacts if contact.other != name]
 
     def touching(self, name: str) -> set[str]:
-        """Names of all that the body touched during the last step."""
+        """See `Physics.touching`."""
         rows = [row for id_ in self._bodies[name].ids for row in self._client.getContactPoints(bodyA=id_)]
         return {self._bodies.name_of(number) for number in {row[2] for row in rows}} - {name}
 
@@ -382,6 +294,22 @@ class Bullet:
         part = self._bodies.parts_of(np.reshape(image[4], shape))
         depth = metric_depth(np.reshape(image[3], shape), NEAR_M, FAR_M)
         return part, np.where(part >= 0, depth, np.inf).astype(np.float32)
+
+    def _check_new(self, name: str) -> None:
+        self._bodies.by_name.check_new(name)
+
+    def _add_shapes(self, name: str, shapes: Sequence[Shape], visible: bool, solid: bool) -> None:
+        part = len(self._parts)
+        body = BulletBody(name=name, parts=range(part, part + 1), is_given=True)
+        if solid:
+            self._make(body, shapes, visible=visible, solid=True)
+        else:
+            self._only_seen.add(name)
+        if visible and not solid:
+            self._unmade.append((body, shapes))
+        self._add(body, [_LINK])
+        self._given.add(name, part, shapes if solid else ())
+        self._visible[name] = [as_given(shape, part) for shape in shapes] if visible else []
 
     def _show_all(self) -> None:
         """Let PyBullet have all that is to be seen where it is, even what nothing can touch."""
@@ -439,7 +367,7 @@ class Bullet:
         ]
         links = [(number, link) for link in range(_BASE, len(joints))]
         names = [self._client.getBodyInfo(number)[0].decode(), *(joint[12].decode() for joint in joints)]
-        first = len(self._bodies.parts)
+        first = len(self._parts)
         body = BulletBody(
             name=name,
             ids=(number,),

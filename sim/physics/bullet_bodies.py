@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.poses import pose_matrices
+from peopleboy.sim.physics.physics_engine import ByName
 from peopleboy.sim.physics.solid_shapes import (
     Array,
     PartKey,
@@ -86,41 +87,32 @@ class BulletBody:
 class BulletBodies:
     """All bodies of one world, by name, and their parts in the order of creation.
 
+    Args:
+        parts: what each part is; those of new bodies are added to them.
+
     Attributes:
-        parts: what each part is.
+        parts: as given.
+        by_name: the bodies.
         moving: the bodies that physics moves.
     """
 
-    def __init__(self) -> None:
-        self.parts: list[PartKey] = []
+    def __init__(self, parts: list[PartKey]) -> None:
+        self.parts = parts
+        self.by_name = ByName[BulletBody]()
         self.moving: list[BulletBody] = []
-        self._bodies: dict[str, BulletBody] = {}
         self._body_of_id: dict[int, BulletBody] = {}
         self._part_of_link: dict[tuple[int, int], int] = {}
         self._groups = 0
 
     def __iter__(self) -> Iterator[BulletBody]:
-        return iter(self._bodies.values())
+        return iter(self.by_name.values())
 
     def __getitem__(self, name: str) -> BulletBody:
-        try:
-            return self._bodies[name]
-        except KeyError:
-            known = ", ".join(self._bodies) or "none"
-            raise BadInput(f"no body is called {name!r}; there are: {known}") from None
-
-    def check_new(self, name: str) -> None:
-        """Refuse a name that is taken.
-
-        Raises:
-            BadInput: it is.
-        """
-        if name in self._bodies:
-            raise BadInput(f"body {name!r}: there is one already; choose another name")
+        return self.by_name[name]
 
     def add(self, body: BulletBody, link_names: Sequence[str]) -> None:
         """Take in a body whose base and links have these names."""
-        self._bodies[body.name] = body
+        self.by_name[body.name] = body
         if body.moves_by_itself:
             self.moving.append(body)
         self.parts.extend(PartKey(body.name, link - 1, name) for link, name in enumerate(link_names))

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.vectors import map_point
+from peopleboy.sim.geometry.vectors import map_corner, map_point
 from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.shapes.shapes import ShapeKind
 
@@ -121,10 +121,7 @@ def _prism(size: Array, pose: Array) -> Array:
 def _box_corners(size: Array, pose: Array) -> Array:
     corners = np.empty((8, 3))
     for k in range(8):
-        x = 0.5 * size[0] if k & 1 else -0.5 * size[0]
-        y = 0.5 * size[1] if k & 2 else -0.5 * size[1]
-        z = 0.5 * size[2] if k & 4 else -0.5 * size[2]
-        corners[k, 0], corners[k, 1], corners[k, 2] = map_point(pose, x, y, z)
+        corners[k, 0], corners[k, 1], corners[k, 2] = map_corner(pose, -0.5 * size, 0.5 * size, k)
     return corners
 
 

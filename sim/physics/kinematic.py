@@ -15,6 +15,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.geometry.vectors import multiply
+from peopleboy.sim.physics.physics_engine import ByName, Physics
 from peopleboy.sim.physics.solid_shapes import PartKey, Placements, Solids, cast, make_solids, refresh
 from peopleboy.sim.physics.urdf import find_model, read_links
 from peopleboy.sim.physics.vehicle import (
@@ -27,7 +28,7 @@ from peopleboy.sim.physics.vehicle import (
     wheels_of,
 )
 from peopleboy.sim.shapes.shape_table import VisualShape, as_given
-from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
+from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, Vector
 
 _LINK = "link0"  # as PyBullet calls it
 
@@ -51,18 +52,21 @@ class _Rolling:
     motion: VehicleMotion
 
 
-class Kinematic:
-    """A world in which bodies go by name, after the seam `Physics`.
+class Kinematic(Physics):
+    """A world in which bodies go by name.
 
     The vehicle, of which there may be one, stays upright on z = 0 and moves at once as its wheels turn,
     without slip, whatever torque they have. At the end of a step it is pushed out of whatever it is in;
     then its wheels slip. It pushes nothing, and passes over planes and all that is lower than its boxes.
+
+    Attributes:
+        numbers: of the bodies by name, in the order of creation.
     """
 
     def __init__(self, *, physics_hz: int = 240) -> None:
+        super().__init__()
         self._dt_s = 1.0 / physics_hz
-        self._numbers: dict[str, int] = {}
-        self._parts: list[PartKey] = []
+        self.numbers = ByName[int]()
         self._of_part: list[int] = []
         self._base_from_part: list[Matrix] = []
         self._visible: list[VisualShape] = []
@@ -78,26 +82,6 @@ class Kinematic:
     def close(self) -> None:
         """Nothing is held that would have to be freed."""
 
-    def add_part(
-        self,
-        name: str,
-        shapes: Sequence[Shape],
-        *,
-        position: Vector = (0.0, 0.0, 0.0),
-        orientation: Quaternion = UPRIGHT,
-        visible: bool = True,
-        solid: bool = True,
-    ) -> None:
-        """See `Physics.add_part`."""
-        self._check_new(name)
-        if not shapes:
-            raise BadInput(f"body {name!r}: it has no shapes; give at least one")
-        for shape in shapes:
-            if shape.kind == ShapeKind.MESH and not (shape.mesh and shape.mesh.is_file()):
-                raise BadInput(f"body {name!r}: there is no mesh {shape.mesh}; give an OBJ, STL or DAE file")
-        self._add_body(name, position, orientation)
-        self._add_link(name, _LINK, np.eye(4), shapes if visible else (), shapes if solid else ())
-
     def add_urdf(
         self,
         name: str,
@@ -109,7 +93,7 @@ class Kinematic:
         scale: float = 1.0,
     ) -> None:
         """See `Physics.add_urdf`; what is not held in place must be a vehicle, and the only one."""
-        self._check_new(name)
+        self.numbers.check_new(name)
         links = read_links(find_model(path), scale)
         first = len(self._parts)
         if not fixed:
@@ -117,20 +101,20 @@ class Kinematic:
                 raise BadInput(f"body {name!r}: kinematic physics moves one body, and there is one already")
             left, right = wheels_of(name, links)
             self._rolling = _Rolling(
-                body=len(self._numbers),
+                body=len(self.numbers),
                 vehicle=make_vehicle(name, links),
                 joints=(links[left].joint, links[right].joint),
                 wheels=(first + left, first + right),
                 motion=VehicleMotion(np.zeros(3), np.zeros(2), np.zeros(2), np.zeros(3)),
             )
-        self._add_body(name, position, orientation)
+        self._add_body(name)
         for link in links:
             self._add_link(name, link.name, link.base_from_link, link.visible, link.solid)
         self.set_pose(name, position, orientation)
 
     def set_pose(self, name: str, position: Vector, orientation: Quaternion) -> None:
         """See `Physics.set_pose`; of the vehicle only place and heading on the floor count."""
-        number = self.number_of(name)
+        number = self.numbers[name]
         rolling = self._rolling
         if rolling is not None and rolling.body == number:
             x, y, z, w = orientation
@@ -145,13 +129,13 @@ class Kinematic:
 
     def set_poses(self, names: Sequence[str], positions: ArrayLike, orientations: ArrayLike) -> None:
         """See `Physics.set_poses`; not of the vehicle."""
-        numbers = [self.number_of(name) for name in names]
+        numbers = [self.numbers[name] for name in names]
         self._places[numbers, :3], self._places[numbers, 3:] = positions, orientations
         self._stale[numbers] = self._is_stale = True
 
     def set_hidden(self, name: str, hidden: bool) -> None:
         """See `Physics.set_hidden`."""
-        number = self.number_of(name)
+        number = self.numbers[name]
         if self._rolling is not None and self._rolling.body == number:
             raise BadInput(f"body {name!r} is not fixed: it cannot be hidden")
         if self._hidden[number] != hidden:
@@ -190,13 +174,9 @@ class Kinematic:
         x, y, turn = self._vehicle_called(name, ()).motion.velocity.tolist()
         return np.array([x, y, 0.0]), np.array([0.0, 0.0, turn])
 
-    def parts(self) -> tuple[PartKey, ...]:
-        """All parts, in the order of their numbers."""
-        return tuple(self._parts)
-
     def pose(self, name: str) -> Matrix:
         """See `Physics.pose`."""
-        place = self._places[self.number_of(name)]
+        place = self._places[self.numbers[name]]
         return pose_matrices(place[:3], place[3:])
 
     def part_poses(self) -> Matrix:
@@ -224,7 +204,7 @@ class Kinematic:
         bodies, solids = self._up_to_date()
         starts, ends = np.asarray(from_m, np.float64), np.asarray(to_m, np.float64)
         found: tuple[Matrix, NDArray[np.int64]] = cast(
-            starts, ends, bodies, solids, -1 if ignore is None else self.number_of(ignore)
+            starts, ends, bodies, solids, -1 if ignore is None else self.numbers[ignore]
         )
         return found
 
@@ -235,21 +215,9 @@ class Kinematic:
             return set()
         return self.names_of(self._touched)
 
-    def number_of(self, name: str) -> int:
-        """Number of the body of that name, in the order of creation.
-
-        Raises:
-            BadInput: there is none.
-        """
-        try:
-            return self._numbers[name]
-        except KeyError:
-            known = ", ".join(self._numbers) or "none"
-            raise BadInput(f"no body is called {name!r}; there are: {known}") from None
-
     def names_of(self, flags: NDArray[np.bool_]) -> set[str]:
         """Names of the bodies that have a flag, (B,) in the order of creation."""
-        return {name for name, number in self._numbers.items() if flags[number]}
+        return {name for name, number in self.numbers.items() if flags[number]}
 
     def state(self) -> VehicleState:
         """All that is in the world now, none of it copied; there must be a vehicle."""
@@ -267,12 +235,15 @@ class Kinematic:
         self._rolling.motion = state.motion
 
     def _check_new(self, name: str) -> None:
-        if name in self._numbers:
-            raise BadInput(f"body {name!r}: there is one already; choose another name")
+        self.numbers.check_new(name)
 
-    def _add_body(self, name: str, position: Vector, orientation: Quaternion) -> None:
-        self._numbers[name] = len(self._numbers)
-        self._places = np.concatenate([self._places, [(*position, *orientation)]])
+    def _add_shapes(self, name: str, shapes: Sequence[Shape], visible: bool, solid: bool) -> None:
+        self._add_body(name)
+        self._add_link(name, _LINK, np.eye(4), shapes if visible else (), shapes if solid else ())
+
+    def _add_body(self, name: str) -> None:
+        self.numbers[name] = len(self.numbers)
+        self._places = np.concatenate([self._places, np.zeros((1, 7))])
         self._hidden, self._stale, self._touched = (
             np.append(flags, False) for flags in (self._hidden, self._stale, self._touched)
         )
@@ -281,7 +252,7 @@ class Kinematic:
     def _add_link(
         self, name: str, link: str, pose: Matrix, visible: Sequence[Shape], solid: Sequence[Shape]
     ) -> None:
-        number, part = self._numbers[name], len(self._parts)
+        number, part = self.numbers[name], len(self._parts)
         before = self._of_part.count(number)
         self._parts.append(PartKey(name, before - 1, link))
         self._of_part.append(number)
@@ -315,7 +286,7 @@ class Kinematic:
 
     def _vehicle_called(self, name: str, joints: Sequence[str] | Mapping[str, float]) -> _Rolling:
         """The vehicle, if it goes by that name and has these joints."""
-        number, rolling = self.number_of(name), self._rolling
+        number, rolling = self.numbers[name], self._rolling
         if rolling is None or rolling.body != number:
             raise BadInput(f"body {name!r} stands still: kinematic physics moves vehicles only")
         for joint in joints:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import functools
 import importlib.util
 import logging
+from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
-from typing import Final, Literal, Protocol, get_args, runtime_checkable
+from types import TracebackType
+from typing import Final, Literal, Protocol, Self, TypeVar, get_args, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,23 +19,58 @@ from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.physics.solid_shapes import PartKey
 from peopleboy.sim.physics.urdf import MISSING_PHYSICS
 from peopleboy.sim.shapes.shape_table import VisualShape
-from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, Vector
+from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector, load_triangles
 
 PhysicsName = Literal["bullet", "kinematic"]
 PHYSICS: Final[tuple[PhysicsName, ...]] = get_args(PhysicsName)
 
 
-class Physics(Protocol):
-    """Bodies by name, of which one may drive, and what they hit.
+B = TypeVar("B")
+
+
+class ByName(dict[str, B]):
+    """Bodies by name.
+
+    Raises:
+        BadInput: none has a name that is looked up.
+    """
+
+    def __missing__(self, name: str) -> B:
+        known = ", ".join(self) or "none"
+        raise BadInput(f"no body is called {name!r}; there are: {known}")
+
+    def check_new(self, name: str) -> None:
+        """Refuse a name that is taken.
+
+        Raises:
+            BadInput: it is.
+        """
+        if name in self:
+            raise BadInput(f"body {name!r}: there is one already; choose another name")
+
+
+class Physics(ABC):
+    """Bodies by name, of which one may drive, and what they hit; use it as a context manager, or close it.
 
     Parts are numbered in the order in which they were created; the number never changes. The frame of a
     part is the frame in which its shapes were given. Every method that takes a name raises BadInput if no
     body has it.
     """
 
+    def __init__(self) -> None:
+        self._parts: list[PartKey] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    @abstractmethod
     def close(self) -> None:
         """Free the world; closing twice is harmless."""
-        ...
 
     def add_part(
         self,
@@ -52,8 +89,25 @@ class Physics(Protocol):
         Raises:
             BadInput: the name is taken, there are no shapes, or a mesh is missing or cannot be read.
         """
-        ...
+        self._check_new(name)
+        if not shapes:
+            raise BadInput(f"body {name!r}: it has no shapes; give at least one")
+        for shape in shapes:
+            if shape.kind == ShapeKind.MESH and not (shape.mesh and shape.mesh.is_file()):
+                raise BadInput(f"body {name!r}: there is no mesh {shape.mesh}; give an OBJ, STL or DAE file")
+            if shape.mesh is not None:
+                load_triangles(shape.mesh)
+        self._add_shapes(name, shapes, visible, solid)
+        self.set_pose(name, position, orientation)
 
+    @abstractmethod
+    def _check_new(self, name: str) -> None: ...
+
+    @abstractmethod
+    def _add_shapes(self, name: str, shapes: Sequence[Shape], visible: bool, solid: bool) -> None:
+        """Take in a body of one part, of shapes that are there."""
+
+    @abstractmethod
     def add_urdf(
         self,
         name: str,
@@ -77,68 +131,68 @@ class Physics(Protocol):
         Raises:
             BadInput: the name is taken, or the file is missing or broken.
         """
-        ...
 
+    @abstractmethod
     def set_pose(self, name: str, position: Vector, orientation: Quaternion) -> None:
         """Put a body's base frame at `position` [m] and `orientation` in the world, at rest."""
-        ...
 
+    @abstractmethod
     def set_poses(self, names: Sequence[str], positions: ArrayLike, orientations: ArrayLike) -> None:
         """Put base frames of N bodies at positions (N, 3) [m] and orientations (N, 4), as `set_pose` does."""
-        ...
 
+    @abstractmethod
     def set_hidden(self, name: str, hidden: bool) -> None:
         """Take a body out of images, rays and contacts, or put it back where it was last placed.
 
         Raises:
             BadInput: physics moves the body, so that there is no place to put it back to.
         """
-        ...
 
+    @abstractmethod
     def hidden_parts(self) -> NDArray[np.bool_]:
         """(P,) which parts are hidden now."""
-        ...
 
+    @abstractmethod
     def step(self) -> None:
         """Advance the world by one physics step."""
-        ...
 
+    @abstractmethod
     def set_joint_speeds(self, name: str, speeds: Mapping[str, float], max_torque_nm: float) -> None:
         """Drive joints at speeds [rad/s] with at most this torque [N m] each.
 
         Raises:
             BadInput: the body has no such joint.
         """
-        ...
 
+    @abstractmethod
     def joint_states(self, name: str, joints: Sequence[str]) -> tuple[Matrix, Matrix]:
         """Positions (J,) [rad] and speeds (J,) [rad/s] of the named joints.
 
         Raises:
             BadInput: the body has no such joint.
         """
-        ...
 
+    @abstractmethod
     def velocity(self, name: str) -> tuple[Matrix, Matrix]:
         """Linear (3,) [m/s] and angular (3,) [rad/s] velocity of a body that moves by itself, world frame."""
-        ...
 
     def parts(self) -> tuple[PartKey, ...]:
         """All parts, in the order of their numbers."""
-        ...
+        return tuple(self._parts)
 
+    @abstractmethod
     def pose(self, name: str) -> Matrix:
         """(4, 4) world from the frame of the body's base, a copy; where it will reappear if it is hidden."""
-        ...
 
+    @abstractmethod
     def part_poses(self) -> Matrix:
         """(P, 4, 4) world from part, a copy; hidden parts are far below the floor."""
-        ...
 
+    @abstractmethod
     def visual_shapes(self) -> list[VisualShape]:
         """Every shape that a renderer should draw, in the order of the parts."""
-        ...
 
+    @abstractmethod
     def cast_rays(
         self, from_m: ArrayLike, to_m: ArrayLike, ignore: str | None = None
     ) -> tuple[Matrix, NDArray[np.int64]]:
@@ -153,11 +207,10 @@ class Physics(Protocol):
             fraction: (R,) of the way at which a ray hits, 1 where it hits nothing.
             part: (R,) part that is hit, -1 where none.
         """
-        ...
 
+    @abstractmethod
     def touching(self, name: str) -> set[str]:
         """Names of all that a body touched during the last step."""
-        ...
 
 
 @runtime_checkable
@@ -192,18 +245,3 @@ def check_physics(name: PhysicsName) -> None:
     """
     if name == "bullet" and importlib.util.find_spec("pybullet") is None:
         raise BadInput(MISSING_PHYSICS)
-
-
-def open_physics(name: PhysicsName, physics_hz: int) -> Physics:
-    """Open an empty world.
-
-    Raises:
-        BadInput: PyBullet is asked for and not installed.
-    """
-    if name == "kinematic":
-        from peopleboy.sim.physics.kinematic import Kinematic
-
-        return Kinematic(physics_hz=physics_hz)
-    from peopleboy.sim.physics.bullet import Bullet  # here, as the other one does without PyBullet
-
-    return Bullet(physics_hz=physics_hz)

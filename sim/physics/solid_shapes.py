@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.sim.geometry.vectors import Point, compose, cross, dot, map_point, minus, turn_back
+from peopleboy.sim.geometry.vectors import Point, compose, cross, dot, map_corner, minus, turn_back
 from peopleboy.sim.shapes.rays import hit_shape
 from peopleboy.sim.shapes.shape_table import ShapeTable, VisualShape, make_shape_table
 from peopleboy.sim.shapes.shapes import ShapeKind
@@ -126,12 +126,7 @@ def _box_around(kind: int, size: Array, extent: Array, pose: Array, box: Array) 
         low[k], high[k] = -half, half
     box[0], box[1] = math.inf, -math.inf
     for corner in range(8):
-        point = map_point(
-            pose,
-            high[0] if corner & 1 else low[0],
-            high[1] if corner & 2 else low[1],
-            high[2] if corner & 4 else low[2],
-        )
+        point = map_corner(pose, low, high, corner)
         for axis in range(3):
             box[0, axis], box[1, axis] = min(box[0, axis], point[axis]), max(box[1, axis], point[axis])
 

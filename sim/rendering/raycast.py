@@ -60,10 +60,12 @@ def draw(
         lens: where pixels look.
         canvas: what to draw on.
     """
-    borders = _borders(lens)
+    borders = borders_of(lens)
     for shape in range(len(table.kind)):
         part = table.part[shape]
-        if skip[part] or _is_outside(table, shape, camera_from_part[part], lens.focal, borders):
+        origin = table.part_from_shape[shape]
+        middle = map_point(camera_from_part[part], origin[0, 3], origin[1, 3], origin[2, 3])
+        if skip[part] or is_outside(middle, table.reach[shape], lens.focal, borders):
             continue
         compose(camera_from_part[part], table.part_from_shape[shape], canvas.pose)
         bounds = quick_bounds(table, shape, canvas.pose)
@@ -73,7 +75,7 @@ def draw(
 
 
 @njit(cache=True, error_model="numpy")
-def _borders(lens: Lens) -> Borders:
+def borders_of(lens: Lens) -> Borders:
     """The planes through the borders of an image that is a pixel larger on every side: left, right, up, down.
 
     Each as (slope, length): f x - slope z is the length times the distance of a point (x, z) from the plane.
@@ -90,21 +92,18 @@ def _borders(lens: Lens) -> Borders:
 
 
 @njit(cache=True, error_model="numpy")
-def _is_outside(
-    table: ShapeTable, shape: int, camera_from_part: Array, focal: float, borders: Borders
-) -> bool:
-    """Whether a ball around a shape lies wholly outside the image or behind the camera."""
-    origin, reach = table.part_from_shape[shape], table.reach[shape]
-    x, y, z = map_point(camera_from_part, origin[0, 3], origin[1, 3], origin[2, 3])
+def is_outside(middle: Point, reach: float, focal: float, borders: Borders) -> bool:
+    """Whether a ball about a point lies wholly outside the image or behind the camera."""
+    x, y, z = middle
     left, right, up, down = borders
-    is_outside: bool = (
+    is_out: bool = (
         (z < -reach)
         | (focal * x - left[0] * z < -reach * left[1])
         | (focal * x - right[0] * z > reach * right[1])
         | (focal * y - up[0] * z < -reach * up[1])
         | (focal * y - down[0] * z > reach * down[1])
     )
-    return is_outside
+    return is_out
 
 
 @njit(cache=True, error_model="numpy")

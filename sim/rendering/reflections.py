@@ -17,8 +17,16 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.vectors import Point, compose, dot, map_point, minus, plus, scaled, turn_back
-from peopleboy.sim.rendering.raycast import draw_shape, quick_bounds
-from peopleboy.sim.rendering.render_canvas import Canvas, Lens, Rectangle, pixels, set_shading, shade
+from peopleboy.sim.rendering.raycast import borders_of, draw_shape, is_outside, quick_bounds
+from peopleboy.sim.rendering.render_canvas import (
+    Canvas,
+    Lens,
+    Rectangle,
+    make_canvas,
+    pixels,
+    set_shading,
+    shade,
+)
 from peopleboy.sim.rendering.renderer import RenderPass
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.bounds import EMPTY, EVERYTHING, FAR_M, NEAR_M, Bounds, unite
@@ -186,15 +194,7 @@ def _look_into(
         world_from_camera[i, 3] += 2.0 * away * mirror[i]
     plane, left, top = (up[0], up[1], up[2], away), window[0], window[1]
     lens = _every(lens, left, top, window[2], window[3])
-    shape = (lens.height, lens.width)
-    canvas = Canvas(
-        np.zeros(shape),
-        np.empty(shape, np.int32),
-        np.zeros(shape, np.uint64),
-        np.empty((len(table.surface_part), 7)),
-        np.empty((6, 3)),
-        np.empty((3, 4)),
-    )
+    canvas = make_canvas(lens, len(table.surface_part))
     camera_from_part = _seen_from(world_from_camera, world_from_part)
     box = _draw_beyond(table, camera_from_part, hidden, is_mirrored, plane, lens, canvas)
     # A pixel more all round, for what is mirrored ends between pixels.
@@ -259,7 +259,7 @@ def _draw_beyond(
     for `is_mirrored` (P,), what is wanted, and the mirror's plane as in `_keep`.
     """
     left, top, right, bottom = lens.width, lens.height, -1, -1
-    pose, sides, farthest = canvas.pose, _sides(lens), 0.0
+    pose, borders, farthest = canvas.pose, borders_of(lens), 0.0
     least, most = np.full(3, math.inf), np.full(3, -math.inf)
     bounds = (0, 0, lens.width - 1, lens.height - 1)
     for is_wanted in (True, False):
@@ -271,8 +271,10 @@ def _draw_beyond(
             x, y, z = map_point(to_camera, middle[0, 3], middle[1, 3], middle[2, 3])
             if plane[0] * x + plane[1] * y + plane[2] * z >= plane[3]:
                 continue
-            radius = _radius(table.kind[shape], table.size[shape])
-            if _is_outside(x, y, z, radius, sides) or (not is_wanted and z - radius > farthest):
+            radius = table.reach[shape]
+            if is_outside((x, y, z), radius, lens.focal, borders) or (
+                not is_wanted and z - radius > farthest
+            ):
                 continue
             compose(to_camera, middle, pose)
             kind, size = table.kind[shape], table.size[shape]
@@ -300,7 +302,7 @@ def _draw_beyond(
             break
         # What hides something must be nearer than that, and within its bounds.
         bounds = (left, top, right, bottom)
-        sides = _sides(
+        borders = borders_of(
             Lens(lens.focal, lens.centre_u - left, lens.centre_v - top, right - left + 1, bottom - top + 1)
         )
     return left, top, right, bottom
@@ -356,42 +358,11 @@ def _around_balls(size: Array, pose: Array) -> Bounds:
     return bounds
 
 
-@njit(cache=True, error_model="numpy")
-def _radius(kind: int, size: Array) -> float:
-    """Radius [m] of a ball about a shape's middle that it does not leave; infinite if that is not known."""
-    if kind == _BOX:
-        return 0.5 * math.sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2])
-    if kind in (_CAPSULE, _CYLINDER):
-        return 0.5 * float(size[0]) + float(size[1])
-    return float(size[0]) if kind == _SPHERE else math.inf
-
-
 @njit(cache=True)
 def _depth_of(size: Array, pose: Array) -> float:
     """How far [m] a box reaches from its middle towards the camera."""
     depth: float = 0.5 * (abs(pose[2, 0]) * size[0] + abs(pose[2, 1]) * size[1] + abs(pose[2, 2]) * size[2])
     return depth
-
-
-@njit(cache=True, error_model="numpy")
-def _sides(lens: Lens) -> Array:
-    """(4, 3) the sides of what a lens sees, left, right, top and bottom: unit normals that point inwards."""
-    sides = np.zeros((4, 3))
-    ends = (lens.centre_u + 1.0, lens.width - lens.centre_u, lens.centre_v + 1.0, lens.height - lens.centre_v)
-    for i in range(4):
-        length = math.sqrt(lens.focal * lens.focal + ends[i] * ends[i])
-        sides[i, i // 2] = (lens.focal if i % 2 == 0 else -lens.focal) / length
-        sides[i, 2] = ends[i] / length
-    return sides
-
-
-@njit(cache=True, error_model="numpy")
-def _is_outside(x: float, y: float, z: float, radius: float, sides: Array) -> bool:
-    """Whether a ball lies wholly beyond one of the four sides of what a lens sees, or behind it."""
-    is_outside = z < -radius
-    for i in range(4):
-        is_outside |= sides[i, 0] * x + sides[i, 1] * y + sides[i, 2] * z < -radius
-    return is_outside
 
 
 @njit(cache=True)

@@ -61,17 +61,12 @@ class Canvas(NamedTuple):
     pose: Array
 
 
+@njit(cache=True, nogil=True)
 def make_canvas(lens: Lens, surfaces: int) -> Canvas:
     """Return an empty canvas for a table of so many surfaces."""
     shape = (lens.height, lens.width)
-    return Canvas(
-        nearness=np.zeros(shape),
-        surface=np.empty(shape, np.int32),
-        cover=np.zeros(shape, np.uint64),
-        shading=np.empty((surfaces, 7)),
-        edges=np.empty((6, 3)),
-        pose=np.empty((3, 4)),
-    )
+    nearness, surface, cover = np.zeros(shape), np.empty(shape, np.int32), np.zeros(shape, np.uint64)
+    return Canvas(nearness, surface, cover, np.empty((surfaces, 7)), np.empty((6, 3)), np.empty((3, 4)))
 
 
 @njit(cache=True, error_model="numpy")

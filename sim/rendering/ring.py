@@ -14,7 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.panorama import Panorama
-from peopleboy.sim.geometry.vectors import compose, map_point
+from peopleboy.sim.geometry.vectors import compose, map_corner, map_point
 from peopleboy.sim.rendering.raycast import draw_face, draw_shape, quick_bounds
 from peopleboy.sim.rendering.render_canvas import Canvas, Lens, pixels, shade
 from peopleboy.sim.shapes.bounds import FAR_M
@@ -312,12 +312,7 @@ def _is_out_of_sight(pose: Array, low: Array, high: Array, ring: Ring, radius: f
     nearest = max(math.hypot(x, z) - math.sqrt(((high - low) ** 2).sum()) / 2.0, 0.0)
     is_above, is_below = highest > 0.0, slope > 0.0
     for corner in range(8):
-        x, y, z = map_point(
-            pose,
-            high[0] if corner & 1 else low[0],
-            high[1] if corner & 2 else low[1],
-            high[2] if corner & 4 else low[2],
-        )
+        x, y, z = map_corner(pose, low, high, corner)
         is_above &= y < math.tan(highest) * nearest
         is_below &= y > slope * (math.hypot(x, z) + radius)
     return bool(is_above or is_below)
@@ -350,12 +345,7 @@ def _box_span(pose: Array, low: Array, high: Array, width: int) -> tuple[int, in
     x, _, z = map_point(pose, (low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, (low[2] + high[2]) / 2.0)
     middle, least, most = math.atan2(x, z), 0.0, 0.0
     for corner in range(8):
-        x, _, z = map_point(
-            pose,
-            high[0] if corner & 1 else low[0],
-            high[1] if corner & 2 else low[1],
-            high[2] if corner & 4 else low[2],
-        )
+        x, _, z = map_corner(pose, low, high, corner)
         away = math.atan2(x, z) - middle
         away -= math.tau * math.floor(away / math.tau + 0.5)
         least, most = min(least, away), max(most, away)

@@ -60,15 +60,20 @@ class PeopleBot:
 
     Its wheels turn at controlled speeds and its acceleration is limited; grip, bumps and walls are left to
     the physics engine. Odometry integrates what the encoders count, noise included, from the start pose.
+
+    Attributes:
+        gears: what its wheels are to do and have done.
+        limits: what it can do.
+        ring: its sonars.
     """
 
     def __init__(self, physics: Physics, config: RobotConfig, seed: int) -> None:
         self._physics = physics
-        self._limits = config.drive
+        self.limits = config.drive
         self._encoder_noise = stream(seed, "odometry.noise")
         x, y = config.at_m
-        self._gears = Gears(
-            command=np.zeros(2), target=np.zeros(2), rise=np.array(self._limits.rise), turned=np.zeros(2),
+        self.gears = Gears(
+            command=np.zeros(2), target=np.zeros(2), rise=np.array(self.limits.rise), turned=np.zeros(2),
             odometry=np.array([x, y, config.heading_rad]),
         )  # fmt: skip
         half = config.heading_rad / 2.0
@@ -81,7 +86,7 @@ class PeopleBot:
         )
         self._turn_wheels()
         self.ring = SonarRing(physics, config.sonar, stream(seed, "sonar.noise"), NAME)
-        self._gears.turned[:] = self._wheel_angles()
+        self.gears.turned[:] = self._wheel_angles()
 
     def command(self, linear: float, angular: float, *, is_emergency: bool = False) -> None:
         """Ask for a velocity [m/s, rad/s], clipped to the robot's limits; it is approached, not jumped to.
@@ -93,43 +98,33 @@ class PeopleBot:
         """
         if not (math.isfinite(linear) and math.isfinite(angular)):
             raise BadInput(f"velocity command ({linear}, {angular}) must be finite")
-        limits, gears = self._limits, self._gears
+        limits, gears = self.limits, self.gears
         gears.target[:] = limit_command(linear, angular, limits)
         gears.rise[:] = limits.emergency_rise if is_emergency else limits.rise
 
     def drive(self, dt_s: float) -> None:
         """Move the wheel speeds towards the command, as far as the acceleration limits allow in dt_s."""
-        if approach_target(self._gears, dt_s):
+        if approach_target(self.gears, dt_s):
             self._turn_wheels()
 
     def update_odometry(self) -> None:
         """Integrate what the wheel encoders counted since the last call, with their noise."""
         noise = np.empty(2)
         self.draw_noise(noise)
-        count_travel(self._gears, self._wheel_angles(), noise * self._limits.encoder_noise_m)
+        count_travel(self.gears, self._wheel_angles(), noise * self.limits.encoder_noise_m)
 
     def draw_noise(self, noise: NDArray[np.float64]) -> None:
         """Fill (2,) with standard normal noise, of which the encoders' is made in the next control step."""
         self._encoder_noise.standard_normal(out=noise)
 
-    @property
-    def gears(self) -> Gears:
-        """What its wheels are to do and have done."""
-        return self._gears
-
     def rebind(self, gears: Gears) -> None:
         """Keep all that in other arrays from now on, which hold the same already."""
-        self._gears = gears
-
-    @property
-    def limits(self) -> DriveConfig:
-        """What it can do."""
-        return self._limits
+        self.gears = gears
 
     @property
     def odometry(self) -> Pose2:
         """Pose that the wheels' encoders add up to, world frame, exact at the start."""
-        return Pose2(*self._gears.odometry.tolist())
+        return Pose2(*self.gears.odometry.tolist())
 
     def sonar(self) -> NDArray[np.float64]:
         """Read the ring once: (16,) [m]."""
@@ -164,7 +159,7 @@ class PeopleBot:
 
     def _turn_wheels(self) -> None:
         """Set the motors to the speeds that give the present command."""
-        speeds = [speed / WHEEL_RADIUS_M for speed in wheel_speeds(*self._gears.command.tolist())]
+        speeds = [speed / WHEEL_RADIUS_M for speed in wheel_speeds(*self.gears.command.tolist())]
         self._physics.set_joint_speeds(NAME, dict(zip(_JOINTS, speeds, strict=True)), _MOTOR_TORQUE_NM)
 
     def _wheel_angles(self) -> NDArray[np.float64]:

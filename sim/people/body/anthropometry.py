@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 Sex = Literal["female", "male"]
@@ -52,45 +52,29 @@ class Girths:
 
 # Rounded means over rounded mean stature (1756 mm men, 1629 mm women), after ANSUR II, the 2012
 # anthropometric survey of US Army personnel: Gordon et al. (2014), NATICK/TR-15/007.
+# The word names the factor by which builds differ.
+_SURVEY: dict[str, tuple[float, float, str]] = {
+    "bideltoid_breadth": (0.290, 0.276, "bideltoid"),
+    "chest_breadth": (0.165, 0.164, "chest"),
+    "chest_depth": (0.145, 0.151, "chest"),
+    "waist_breadth": (0.186, 0.185, "waist"),
+    "waist_depth": (0.137, 0.133, "waist"),
+    "hip_breadth": (0.197, 0.213, "hip"),
+    "buttock_depth": (0.142, 0.142, "buttock"),
+    "head_breadth": (0.088, 0.090, "bone"),
+    "head_length": (0.113, 0.115, "bone"),
+    "neck_circumference": (0.226, 0.203, "joint"),
+    "biceps_circumference": (0.204, 0.188, "limb"),
+    "forearm_circumference": (0.176, 0.162, "limb"),
+    "wrist_circumference": (0.100, 0.095, "bone"),
+    "thigh_circumference": (0.356, 0.379, "limb"),
+    "lower_thigh_circumference": (0.234, 0.240, "limb"),
+    "calf_circumference": (0.223, 0.230, "limb"),
+    "ankle_circumference": (0.130, 0.132, "joint"),
+}
 MEAN_GIRTHS: dict[Sex, Girths] = {
-    "male": Girths(
-        bideltoid_breadth=0.290,
-        chest_breadth=0.165,
-        chest_depth=0.145,
-        waist_breadth=0.186,
-        waist_depth=0.137,
-        hip_breadth=0.197,
-        buttock_depth=0.142,
-        head_breadth=0.088,
-        head_length=0.113,
-        neck_circumference=0.226,
-        biceps_circumference=0.204,
-        forearm_circumference=0.176,
-        wrist_circumference=0.100,
-        thigh_circumference=0.356,
-        lower_thigh_circumference=0.234,
-        calf_circumference=0.223,
-        ankle_circumference=0.130,
-    ),
-    "female": Girths(
-        bideltoid_breadth=0.276,
-        chest_breadth=0.164,
-        chest_depth=0.151,
-        waist_breadth=0.185,
-        waist_depth=0.133,
-        hip_breadth=0.213,
-        buttock_depth=0.142,
-        head_breadth=0.090,
-        head_length=0.115,
-        neck_circumference=0.203,
-        biceps_circumference=0.188,
-        forearm_circumference=0.162,
-        wrist_circumference=0.095,
-        thigh_circumference=0.379,
-        lower_thigh_circumference=0.240,
-        calf_circumference=0.230,
-        ankle_circumference=0.132,
-    ),
+    "male": Girths(**{name: male for name, (male, _, _) in _SURVEY.items()}),
+    "female": Girths(**{name: female for name, (_, female, _) in _SURVEY.items()}),
 }
 
 # Factors on the means. Fat goes to the waist first; bones, and with them head and wrists, hardly change.
@@ -120,23 +104,7 @@ def measure(stature_m: float, sex: Sex, build: Build) -> BodySize:
     Our addition to the survey's means: builds are factors on them, chosen so that the waist spans what the
     survey's 5th to 95th percentiles span.
     """
-    mean, factor = MEAN_GIRTHS[sex], _BUILD_FACTORS[build]
-    limb = factor["limb"]
-    girths = replace(
-        mean,
-        bideltoid_breadth=mean.bideltoid_breadth * factor["bideltoid"],
-        chest_breadth=mean.chest_breadth * factor["chest"],
-        chest_depth=mean.chest_depth * factor["chest"],
-        waist_breadth=mean.waist_breadth * factor["waist"],
-        waist_depth=mean.waist_depth * factor["waist"],
-        hip_breadth=mean.hip_breadth * factor["hip"],
-        buttock_depth=mean.buttock_depth * factor["buttock"],
-        neck_circumference=mean.neck_circumference * math.sqrt(limb),
-        biceps_circumference=mean.biceps_circumference * limb,
-        forearm_circumference=mean.forearm_circumference * limb,
-        thigh_circumference=mean.thigh_circumference * limb,
-        lower_thigh_circumference=mean.lower_thigh_circumference * limb,
-        calf_circumference=mean.calf_circumference * limb,
-        ankle_circumference=mean.ankle_circumference * math.sqrt(limb),
-    )
-    return BodySize(stature_m=stature_m, sex=sex, girths=girths)
+    factor = {"bone": 1.0, **_BUILD_FACTORS[build]}
+    factor["joint"] = math.sqrt(factor["limb"])
+    girths = {name: getattr(MEAN_GIRTHS[sex], name) * factor[kind] for name, (_, _, kind) in _SURVEY.items()}
+    return BodySize(stature_m=stature_m, sex=sex, girths=Girths(**girths))

@@ -17,8 +17,7 @@ from scipy.spatial.transform import Rotation
 
 from peopleboy.sim.people.body.body_shapes import SIDES, sole_points
 from peopleboy.sim.people.body.manner import USUAL, Manner, bearing
-from peopleboy.sim.people.body.postures import standing_rotations
-from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, BONES, lateral
+from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, BONES, lateral, standing_rotations
 
 PHASES: Final = 48
 AMPLITUDES: Final = np.array([0.0, 0.15, 0.3, 0.5, 0.75, 1.0, 1.2, 1.4])

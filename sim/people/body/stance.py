@@ -11,7 +11,10 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.gait import amplitude_of, gait_pose
-from peopleboy.sim.people.body.postures import (
+from peopleboy.sim.people.body.skeleton import (
+    ARM_BONES,
+    BONE_INDEX,
+    BONES,
     RISE_S,
     WAVE_HZ,
     WAVE_RAD,
@@ -19,7 +22,6 @@ from peopleboy.sim.people.body.postures import (
     pelvis_shift,
     posture_rotations,
 )
-from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, BONES
 
 # How far the head turns against the body, how fast, and which bone turns by what share of it: our choice.
 _FARTHEST_RAD: Final = math.radians(100.0)

@@ -13,7 +13,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.vectors import fma, remainder
-from peopleboy.sim.people.body.postures import RISE_S, Posture
+from peopleboy.sim.people.body.skeleton import RISE_S, Posture
 from peopleboy.sim.people.body.stance import POSTURES
 from peopleboy.sim.people.walking.script import (
     ABSENT,

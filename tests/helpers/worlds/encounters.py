@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.sim.people.body.skeleton import JOINT_NAMES
-from peopleboy.sim.people.person import Person, PlanarState
+from peopleboy.sim.people.person import Person
+from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.people.walking.walker import NOBODY
 from tests.helpers.worlds.walkers import NO_WALLS
 

@@ -3,7 +3,8 @@
 from dataclasses import replace
 
 from peopleboy.sim.people.appearance.finisher import Finisher
-from peopleboy.sim.people.person import Person, PersonConfig, Waypoint
+from peopleboy.sim.people.person import Person
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.random_streams import stream
 
 

@@ -3,7 +3,8 @@
 import numpy as np
 
 from peopleboy.sim.people.crowd import those_present
-from peopleboy.sim.people.person import Person, PersonConfig, Waypoint
+from peopleboy.sim.people.person import Person
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.people.walking.walker import NOBODY
 
 NO_WALLS = np.empty((0, 4))

@@ -15,8 +15,7 @@ from peopleboy.scenarios.drawing.draw_plan import draw_plan
 from peopleboy.scenarios.drawing.plan_paths import draw_person
 from peopleboy.scenarios.drawing.plan_sheet import MARGIN_M, Labels, lay_out, sections
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.sim.people.person import PersonConfig
-from peopleboy.sim.people.walking.walker import Waypoint
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 
 
 @given(st.floats(2.0, 100.0), st.floats(2.0, 20.0))

@@ -3,7 +3,7 @@ import pytest
 
 from peopleboy.sim.people.conducts import pace_among
 from peopleboy.sim.people.crowd import those_present
-from peopleboy.sim.people.person import Waypoint
+from peopleboy.sim.people.person_config import Waypoint
 from tests.helpers.worlds.walkers import NO_WALLS, make_person
 
 WAY = ((0.0, 0.0), (4.0, 0.0), (4.0, 2.0))

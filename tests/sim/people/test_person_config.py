@@ -12,7 +12,8 @@ from peopleboy.sim.people.body.clothes import (
     dress,
     random_clothes,
 )
-from peopleboy.sim.people.person import PersonConfig, Posture, Waypoint
+from peopleboy.sim.people.body.skeleton import Posture
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import COLOURS, PatternKind
 from tests.helpers.calls.refused import refused

@@ -3,7 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from peopleboy.sim.people.person import Person, PersonConfig, Waypoint
+from peopleboy.sim.people.person import Person
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 
 
 def standing(height_m: float = 1.75, **more: bool) -> Person:

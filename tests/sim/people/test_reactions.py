@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.people.person import Person, Waypoint
-from peopleboy.sim.people.person_config import USUAL, Lead, Reaction, Way
+from peopleboy.sim.people.person import Person
+from peopleboy.sim.people.person_config import USUAL, Lead, Reaction, Way, Waypoint
 from tests.helpers.worlds.encounters import RATE_HZ, Meeting, drive, meet
 from tests.helpers.worlds.walkers import make_person
 

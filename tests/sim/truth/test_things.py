@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from peopleboy.sim.people.person import PersonConfig, Waypoint
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.furniture.build_thing import build_thing
 from peopleboy.sim.places.furniture.thing_config import ThingConfig
 from peopleboy.sim.places.make_place import build_place

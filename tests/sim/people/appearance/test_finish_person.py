@@ -5,7 +5,8 @@ import pytest
 
 from peopleboy.sim.people.appearance.finisher import Finisher
 from peopleboy.sim.people.body.clothes import Clothes
-from peopleboy.sim.people.person import Person, PersonConfig, Waypoint
+from peopleboy.sim.people.person import Person
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import Finish, Material
 

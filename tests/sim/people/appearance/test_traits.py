@@ -3,7 +3,7 @@ import pytest
 
 from peopleboy.sim.people.appearance.traits import Traits, draw_traits
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit
-from peopleboy.sim.people.person import PersonConfig, Waypoint
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.random_streams import stream
 
 

@@ -5,8 +5,8 @@ import pytest
 
 from peopleboy.sim.people.body.body_shapes import sole_points
 from peopleboy.sim.people.body.gait import fourier_basis, load_walking_clip
-from peopleboy.sim.people.body.skeleton import mirror
-from peopleboy.sim.people.person import Posture, Waypoint
+from peopleboy.sim.people.body.skeleton import Posture, mirror
+from peopleboy.sim.people.person_config import Waypoint
 from tests.helpers.worlds.walkers import make_person, settle, walk
 
 FOOT_PARTS = ("left_foot", "right_foot")

@@ -6,8 +6,16 @@ from peopleboy.sim.people.body.anthropometry import measure
 from peopleboy.sim.people.body.body_shapes import sole_points
 from peopleboy.sim.people.body.gait import Gait, amplitude_of
 from peopleboy.sim.people.body.manner import Manner, draw_manner
-from peopleboy.sim.people.body.skeleton import BONE_INDEX, JOINT_NAMES, joint_offsets, mirror, place_bones
-from peopleboy.sim.people.person import Person, PersonConfig, Waypoint
+from peopleboy.sim.people.body.skeleton import (
+    BONE_INDEX,
+    JOINT_NAMES,
+    PARENT_INDEX,
+    chain,
+    joint_offsets,
+    mirror,
+)
+from peopleboy.sim.people.person import Person
+from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.random_streams import stream
 from tests.helpers.worlds.individuals import make_individual
 from tests.helpers.worlds.person_shapes import person_depth
@@ -119,7 +127,7 @@ def test_arms_swing_by_their_own_amplitude() -> None:
         own = gait(Manner(arm_swing=factor))
         offsets = joint_offsets(measure(1.75, "male", "average"))
         hand = [
-            place_bones(own.pose(p, 1.0)[0], offsets)[BONE_INDEX["left_hand"], 0, 3]
+            chain(own.pose(p, 1.0)[0], offsets, PARENT_INDEX)[BONE_INDEX["left_hand"], 0, 3]
             for p in np.linspace(0, 1, 24)
         ]
         return float(np.ptp(hand))

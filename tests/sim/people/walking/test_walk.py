@@ -6,11 +6,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from peopleboy.sim.people.person import PlanarState, Posture, Waypoint, timetable
+from peopleboy.sim.people.body.skeleton import Posture
+from peopleboy.sim.people.person_config import Waypoint
 from peopleboy.sim.people.walking.path import CORNER_CUT_M, abreast, route
 from peopleboy.sim.people.walking.script import TURN_RATE_RAD_S
+from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.people.walking.walk_kernels import ACCELERATION_M_S2
-from peopleboy.sim.people.walking.walker import ALONE, Present, Walker, Wish
+from peopleboy.sim.people.walking.walker import ALONE, Present, Walker, Wish, timetable
 from tests.helpers.worlds.walkers import make_person, settle, walk, walk_together
 
 

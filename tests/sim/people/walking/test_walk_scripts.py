@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from peopleboy.sim.geometry.vectors import remainder
-from peopleboy.sim.people.body.postures import Posture
+from peopleboy.sim.people.body.skeleton import Posture
 from peopleboy.sim.people.crowd import those_present
-from peopleboy.sim.people.person import PlanarState, Waypoint
-from peopleboy.sim.people.person_config import Reaction
+from peopleboy.sim.people.person_config import Reaction, Waypoint
 from peopleboy.sim.people.walking.script import WALK, is_scripted, join_records, join_scripts
+from peopleboy.sim.people.walking.social_force import PlanarState
 from peopleboy.sim.people.walking.walk_kernels import _hypot, walk_on
 from peopleboy.sim.people.walking.walker import NOBODY
 from tests.helpers.worlds.walkers import NO_WALLS, make_person
