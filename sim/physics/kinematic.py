@@ -16,7 +16,7 @@ from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.geometry.vectors import multiply
 from peopleboy.sim.physics.physics_engine import ByName, Physics
-from peopleboy.sim.physics.solid_shapes import PartKey, Placements, Solids, cast, make_solids, refresh
+from peopleboy.sim.physics.solid_shapes import PartKey, PlacedBodies, cast
 from peopleboy.sim.physics.urdf import find_model, read_links
 from peopleboy.sim.physics.vehicle import (
     Vehicle,
@@ -67,16 +67,9 @@ class Kinematic(Physics):
         super().__init__()
         self._dt_s = 1.0 / physics_hz
         self.numbers = ByName[int]()
-        self._of_part: list[int] = []
-        self._base_from_part: list[Matrix] = []
+        self._bodies = PlacedBodies()
         self._visible: list[VisualShape] = []
-        self._solid: list[VisualShape] = []
-        self._places = np.zeros((0, 7))
-        self._hidden = np.zeros(0, np.bool_)
-        self._stale = np.zeros(0, np.bool_)
         self._touched = np.zeros(0, np.bool_)
-        self._packed: tuple[Placements, Solids] | None = None
-        self._is_stale = False
         self._rolling: _Rolling | None = None
 
     def close(self) -> None:
@@ -107,9 +100,11 @@ class Kinematic(Physics):
                 wheels=(first + left, first + right),
                 motion=VehicleMotion(np.zeros(3), np.zeros(2), np.zeros(2), np.zeros(3)),
             )
-        self._add_body(name)
-        for link in links:
-            self._add_link(name, link.name, link.base_from_link, link.visible, link.solid)
+        number = self._add_body(name)
+        for k, link in enumerate(links):
+            self._add_link(
+                number, PartKey(name, k - 1, link.name), link.base_from_link, link.visible, link.solid
+            )
         self.set_pose(name, position, orientation)
 
     def set_pose(self, name: str, position: Vector, orientation: Quaternion) -> None:
@@ -121,41 +116,38 @@ class Kinematic(Physics):
             heading = math.atan2(2.0 * (x * y + z * w), 1.0 - 2.0 * (y * y + z * z))
             rolling.motion.pose[:] = position[0], position[1], heading
             rolling.motion.velocity[:] = 0.0
-            place_on_floor(rolling.motion.pose, self._places[number])
-            self._mark(number)
+            place_on_floor(rolling.motion.pose, self._bodies.places[number])
+            self._bodies.stale[number] = True
             return
-        self._places[number] = (*position, *orientation)
-        self._mark(number)
+        self._bodies.put(number, position, orientation)
 
     def set_poses(self, names: Sequence[str], positions: ArrayLike, orientations: ArrayLike) -> None:
         """See `Physics.set_poses`; not of the vehicle."""
-        numbers = [self.numbers[name] for name in names]
-        self._places[numbers, :3], self._places[numbers, 3:] = positions, orientations
-        self._stale[numbers] = self._is_stale = True
+        self._bodies.put([self.numbers[name] for name in names], positions, orientations)
 
     def set_hidden(self, name: str, hidden: bool) -> None:
         """See `Physics.set_hidden`."""
         number = self.numbers[name]
         if self._rolling is not None and self._rolling.body == number:
             raise BadInput(f"body {name!r} is not fixed: it cannot be hidden")
-        if self._hidden[number] != hidden:
-            self._hidden[number] = hidden
-            self._mark(number)
+        if self._bodies.hidden[number] != hidden:
+            self._bodies.hidden[number], self._bodies.stale[number] = hidden, True
 
     def hidden_parts(self) -> NDArray[np.bool_]:
         """(P,) which parts are hidden now."""
-        return self._hidden[self._of_part]
+        bodies, _ = self._bodies.now()
+        return bodies.hidden[bodies.of_part]
 
     def step(self) -> None:
         """Let the vehicle roll for one physics step, and push it out of what it is in."""
-        bodies, solids = self._up_to_date()
-        self._touched[:] = False
+        bodies, solids = self._bodies.now()
+        self._touched = np.zeros(len(bodies.places), np.bool_)
         rolling = self._rolling
         if rolling is None:
             return
         own = rolling.body
         if advance(rolling.vehicle, rolling.motion, bodies, solids, own, self._dt_s, self._touched):
-            self._mark(own)
+            bodies.stale[own] = True
 
     def set_joint_speeds(self, name: str, speeds: Mapping[str, float], max_torque_nm: float) -> None:
         """Let wheels turn at speeds [rad/s] from the next step on, at any positive torque."""
@@ -176,12 +168,12 @@ class Kinematic(Physics):
 
     def pose(self, name: str) -> Matrix:
         """See `Physics.pose`."""
-        place = self._places[self.numbers[name]]
+        place = self._bodies.places[self.numbers[name]]
         return pose_matrices(place[:3], place[3:])
 
     def part_poses(self) -> Matrix:
         """See `Physics.part_poses`."""
-        bodies, _ = self._up_to_date()
+        bodies, _ = self._bodies.now()
         poses = bodies.poses.copy()
         if self._rolling is not None:
             turn_wheels(poses, np.array(self._rolling.wheels, np.int64), self._rolling.motion.angles)
@@ -201,7 +193,7 @@ class Kinematic(Physics):
         self, from_m: ArrayLike, to_m: ArrayLike, ignore: str | None = None
     ) -> tuple[Matrix, NDArray[np.int64]]:
         """See `Physics.cast_rays`; exact, and to the outside of shapes only."""
-        bodies, solids = self._up_to_date()
+        bodies, solids = self._bodies.now()
         starts, ends = np.asarray(from_m, np.float64), np.asarray(to_m, np.float64)
         found: tuple[Matrix, NDArray[np.int64]] = cast(
             starts, ends, bodies, solids, -1 if ignore is None else self.numbers[ignore]
@@ -222,67 +214,35 @@ class Kinematic(Physics):
     def state(self) -> VehicleState:
         """All that is in the world now, none of it copied; there must be a vehicle."""
         assert self._rolling is not None
-        bodies, solids = self._up_to_date()
+        bodies, solids = self._bodies.now()
         rolling = self._rolling
         return VehicleState(bodies, solids, rolling.motion, rolling.vehicle, rolling.body)
 
     def rebind(self, state: VehicleState) -> None:
         """Keep all that is in the world in other arrays from now on, which hold the same already."""
         assert self._rolling is not None
-        bodies = state.bodies
-        self._packed = bodies, state.solids
-        self._places, self._hidden, self._stale = bodies.places, bodies.hidden, bodies.stale
+        self._bodies.rebind(state.bodies, state.solids)
         self._rolling.motion = state.motion
 
     def _check_new(self, name: str) -> None:
         self.numbers.check_new(name)
 
     def _add_shapes(self, name: str, shapes: Sequence[Shape], visible: bool, solid: bool) -> None:
-        self._add_body(name)
-        self._add_link(name, _LINK, np.eye(4), shapes if visible else (), shapes if solid else ())
-
-    def _add_body(self, name: str) -> None:
-        self.numbers[name] = len(self.numbers)
-        self._places = np.concatenate([self._places, np.zeros((1, 7))])
-        self._hidden, self._stale, self._touched = (
-            np.append(flags, False) for flags in (self._hidden, self._stale, self._touched)
+        key = PartKey(name, -1, _LINK)
+        self._add_link(
+            self._add_body(name), key, np.eye(4), shapes if visible else (), shapes if solid else ()
         )
-        self._packed = None
+
+    def _add_body(self, name: str) -> int:
+        number = self.numbers[name] = self._bodies.add()
+        return number
 
     def _add_link(
-        self, name: str, link: str, pose: Matrix, visible: Sequence[Shape], solid: Sequence[Shape]
+        self, number: int, key: PartKey, pose: Matrix, visible: Sequence[Shape], solid: Sequence[Shape]
     ) -> None:
-        number, part = self.numbers[name], len(self._parts)
-        before = self._of_part.count(number)
-        self._parts.append(PartKey(name, before - 1, link))
-        self._of_part.append(number)
-        self._base_from_part.append(pose)
-        self._visible += [as_given(shape, part) for shape in visible]
-        self._solid += [as_given(shape, part) for shape in solid]
-
-    def _up_to_date(self) -> tuple[Placements, Solids]:
-        """All bodies and solids as they are now."""
-        if self._packed is None:
-            self._packed = self._pack()
-            self._stale[:] = self._is_stale = True
-        if self._is_stale:
-            refresh(*self._packed)
-            self._is_stale = False
-        return self._packed
-
-    def _pack(self) -> tuple[Placements, Solids]:
-        bodies = Placements(
-            places=self._places,
-            hidden=self._hidden,
-            stale=self._stale,
-            of_part=np.array(self._of_part, np.int64),
-            base_from_part=np.array(self._base_from_part).reshape(-1, 4, 4),
-            poses=np.zeros((len(self._parts), 4, 4)),
-        )
-        return bodies, make_solids(self._solid)
-
-    def _mark(self, number: int) -> None:
-        self._stale[number] = self._is_stale = True
+        self._visible += [as_given(shape, len(self._parts)) for shape in visible]
+        self._bodies.add_part(number, pose, solid)
+        self._parts.append(key)
 
     def _vehicle_called(self, name: str, joints: Sequence[str] | Mapping[str, float]) -> _Rolling:
         """The vehicle, if it goes by that name and has these joints."""

@@ -9,12 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from peopleboy.sim.geometry.vectors import Point, compose, cross, dot, map_corner, minus, turn_back
 from peopleboy.sim.shapes.rays import hit_shape
-from peopleboy.sim.shapes.shape_table import ShapeTable, VisualShape, make_shape_table
-from peopleboy.sim.shapes.shapes import ShapeKind
+from peopleboy.sim.shapes.shape_table import ShapeTable, VisualShape, as_given, make_shape_table
+from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
 Array = NDArray[np.float64]
 
@@ -92,6 +92,65 @@ def refresh(bodies: Placements, solids: Solids) -> None:
             solids.poses[k, 3, 3] = 1.0
             _box_around(table.kind[k], table.size[k], table.extent[k], solids.poses[k], solids.boxes[k])
     bodies.stale[:] = False
+
+
+class PlacedBodies:
+    """Bodies by number, which are put somewhere from outside, and whose solids rays meet there.
+
+    Attributes:
+        places, hidden, stale: (B, 7), (B,) and (B,) as in `Placements`.
+    """
+
+    def __init__(self) -> None:
+        self.places, self.hidden, self.stale = np.zeros((0, 7)), np.zeros(0, np.bool_), np.zeros(0, np.bool_)
+        self._of_part: list[int] = []
+        self._base_from_part: list[Array] = []
+        self._solid: list[VisualShape] = []
+        self._packed: tuple[Placements, Solids] | None = None
+
+    def add(self) -> int:
+        """Take in a body that has no parts yet, and return its number."""
+        self.places = np.concatenate([self.places, np.zeros((1, 7))])
+        self.hidden, self.stale = (np.append(flags, False) for flags in (self.hidden, self.stale))
+        self._packed = None
+        return len(self.places) - 1
+
+    def add_part(self, body: int, base_from_part: Array, solid: Sequence[Shape]) -> None:
+        """Give a body a part at a pose (4, 4) in its base's frame, and solids in the part's."""
+        self._solid += [as_given(shape, len(self._of_part)) for shape in solid]
+        self._of_part.append(body)
+        self._base_from_part.append(base_from_part)
+        self._packed = None
+
+    def put(self, body: int | Sequence[int], positions: ArrayLike, orientations: ArrayLike) -> None:
+        """Put one body, or N, at (3,) or (N, 3) [m] and unit quaternions (4,) or (N, 4)."""
+        self.places[body, :3], self.places[body, 3:] = positions, orientations
+        self.stale[body] = True
+
+    def now(self) -> tuple[Placements, Solids]:
+        """All bodies and solids as they are now."""
+        if self._packed is None:
+            self.stale[:] = True
+            count = len(self._of_part)
+            self._packed = (
+                Placements(
+                    places=self.places,
+                    hidden=self.hidden,
+                    stale=self.stale,
+                    of_part=np.array(self._of_part, np.int64),
+                    base_from_part=np.array(self._base_from_part).reshape(-1, 4, 4),
+                    poses=np.zeros((count, 4, 4)),
+                ),
+                make_solids(self._solid),
+            )
+        if self.stale.any():
+            refresh(*self._packed)
+        return self._packed
+
+    def rebind(self, bodies: Placements, solids: Solids) -> None:
+        """Keep all that in other arrays from now on, which hold the same already."""
+        self._packed = bodies, solids
+        self.places, self.hidden, self.stale = bodies.places, bodies.hidden, bodies.stale
 
 
 @njit(cache=True)
