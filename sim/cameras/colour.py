@@ -12,6 +12,7 @@ from peopleboy.sim.cameras.imaging.camera_view import LIGHT_STEP, CameraView, Ma
 from peopleboy.sim.cameras.imaging.lighting import add_contact_shadows, add_reflections
 from peopleboy.sim.cameras.imaging.noise import gaussian
 from peopleboy.sim.cameras.imaging.surfaces import (
+    PixelRun,
     finish_run,
     paint_run,
     part_from_pixel,
@@ -106,9 +107,10 @@ def _light_row(
             end += 1
         if p < 0:
             continue
+        run = PixelRun(first, end, p, v, depths, matrices)
         around, factor[first:end] = np.float32(level * _AMBIENT + colour[p, 6]), np.float32(1.0)
         if has_paint and paint[p, 0] >= 0.0:
-            paint_run(factor, first, end, v, p, depths, matrices, paint, paint_texels[1], LIGHT_STEP)
+            paint_run(factor, run, paint, paint_texels[1], LIGHT_STEP)
         for u in range(first, end):
             i = three * np.uint64(u)
             facing = max(normal[i] * x + normal[i + one] * y + normal[i + two] * z, none)
@@ -118,7 +120,7 @@ def _light_row(
             for u in range(first, end):
                 is_second[u] = _is_second(v, u, p, depths, matrices, materials)
         if has_finish and finish[p, 0] >= 0.0:
-            finish_run(places, first, end, v, p, depths, matrices, finish)
+            finish_run(places, run, finish)
             _cover_run(image, factor, is_second, places, first, end, colour[p], finish[p, 5:], texels)
             continue
         red, green, blue = np.float32(colour[p, 0]), np.float32(colour[p, 1]), np.float32(colour[p, 2])

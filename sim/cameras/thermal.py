@@ -20,6 +20,7 @@ from peopleboy.sim.cameras.imaging.camera_view import KELVIN_STEP, CameraView, M
 from peopleboy.sim.cameras.imaging.lighting import add_reflections
 from peopleboy.sim.cameras.imaging.noise import gaussian
 from peopleboy.sim.cameras.imaging.surfaces import (
+    PixelRun,
     finish_run,
     paint_run,
     part_from_pixel,
@@ -95,17 +96,9 @@ def _look_up(table: NDArray[np.float64], low: float, high: float, value: float) 
 
 
 @njit(cache=True, fastmath=True, forceinline=True)
-def _vary_run(
-    warmer_k: NDArray[np.float32],
-    first: int,
-    end: int,
-    v: int,
-    p: int,
-    depths: NDArray[np.float32],
-    matrices: NDArray[np.float64],
-    materials: MaterialTable,
-) -> None:
-    """Add what variation and pattern of a part add [K] to neighbouring pixels of it, first..end-1 of (W,)."""
+def _vary_run(warmer_k: NDArray[np.float32], run: PixelRun, materials: MaterialTable) -> None:
+    """Add what variation and pattern of a part add [K] to pixels of it among (W,)."""
+    first, end, p, v, depths, matrices = run
     thermal, phase = materials.thermal, materials.phase
     kind, period = materials.kind, materials.period
     if thermal[p, 2] != 0.0:
@@ -144,14 +137,14 @@ def _radiate_row(
         if p < 0:
             image[first:end] = np.float32(surroundings)
             continue
-        warmer_k[first:end] = np.float32(0.0)
+        warmer_k[first:end], run = np.float32(0.0), PixelRun(first, end, p, v, depths, matrices)
         if has_paint and paint[p, 0] >= 0.0:
-            paint_run(warmer_k, first, end, v, p, depths, matrices, paint, paint_texels[0], KELVIN_STEP)
+            paint_run(warmer_k, run, paint, paint_texels[0], KELVIN_STEP)
         if has_finish and finish[p, 0] >= 0.0:
-            finish_run(places, first, end, v, p, depths, matrices, finish)
+            finish_run(places, run, finish)
             for u in range(first, end):
                 warmer_k[u] += np.float32(TEXEL_STEP) * np.float32(texels[places[u], 0])
-        _vary_run(warmer_k, first, end, v, p, depths, matrices, materials)
+        _vary_run(warmer_k, run, materials)
         base, emissivity = np.float32((thermal[p, 0] - _MIDDLE_C) / _HALF_K), np.float32(thermal[p, 1])
         rest = np.float32((1.0 - thermal[p, 1]) * surroundings)
         for u in range(first, end):

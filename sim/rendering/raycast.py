@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.geometry.vectors import Point, compose, cross, dot, map_point, minus, plus, scaled
 from peopleboy.sim.rendering.render_canvas import (
+    Brush,
     Canvas,
     Lens,
     Rectangle,
@@ -71,7 +72,7 @@ def draw(
         bounds = quick_bounds(table, shape, canvas.pose)
         area = pixels(lens, bounds)
         if area[0] <= area[2] and area[1] <= area[3]:
-            draw_shape(table, shape, bits[part], lens, area, canvas)
+            draw_shape(table, shape, Brush(bits[part], lens, area, canvas))
 
 
 @njit(cache=True, error_model="numpy")
@@ -116,75 +117,59 @@ def quick_bounds(table: ShapeTable, shape: int, pose: Array) -> Bounds:
 
 
 @njit(cache=True, error_model="numpy")
-def draw_shape(
-    table: ShapeTable, shape: int, bit: np.uint64, lens: Lens, area: Rectangle, canvas: Canvas
-) -> None:
-    """Draw one shape at the canvas's pose; arguments as in `draw`, but for its own number and bit."""
+def draw_shape(table: ShapeTable, shape: int, brush: Brush) -> None:
+    """Draw the shape of some number at the canvas's pose."""
     kind, size, surface = table.kind[shape], table.size[shape], table.first_surface[shape]
-    pose = canvas.pose
+    pose = brush.canvas.pose
     if kind == _SPHERE:
-        _draw_ball(map_point(pose, 0.0, 0.0, 0.0), size[0], surface, bit, lens, area, canvas)
+        _draw_ball(map_point(pose, 0.0, 0.0, 0.0), size[0], surface, brush)
     elif kind == _CAPSULE:
-        _draw_tube(size[0] / 2.0, size[1], surface, bit, lens, area, canvas)
+        _draw_tube(size[0] / 2.0, size[1], surface, brush)
         for i in range(2):
             end = map_point(pose, 0.0, 0.0, (i - 0.5) * size[0])
-            _draw_ball(end, size[1], surface + 1 + i, bit, lens, area, canvas)
+            _draw_ball(end, size[1], surface + 1 + i, brush)
     elif kind == _CYLINDER:
-        _draw_tube(size[0] / 2.0, size[1], surface, bit, lens, area, canvas)
+        _draw_tube(size[0] / 2.0, size[1], surface, brush)
         for i in range(2):
-            _draw_lid((i - 0.5) * size[0], size[1], surface + 1 + i, bit, lens, area, canvas)
+            _draw_lid((i - 0.5) * size[0], size[1], surface + 1 + i, brush)
     elif kind == _BOX:
         for i in range(6):
-            draw_face(size, i % 3, 1.0 if i < 3 else -1.0, surface + i, bit, lens, area, canvas)
+            draw_face(size, i % 3, 1.0 if i < 3 else -1.0, surface + i, brush)
     elif kind == _PLANE:
         normal = (pose[0, 2], pose[1, 2], pose[2, 2])
-        _draw_flat(normal, map_point(pose, 0.0, 0.0, 0.0), np.int64(0), surface, bit, lens, area, canvas)
+        _draw_flat(normal, map_point(pose, 0.0, 0.0, 0.0), np.int64(0), surface, brush)
     else:
         first, end = table.triangle_range[shape]
         for i in range(first, end):
-            _draw_triangle(table.triangles[i], surface + i - first, bit, lens, area, canvas)
+            _draw_triangle(table.triangles[i], surface + i - first, brush)
 
 
 @njit(cache=True, error_model="numpy")
-def _draw_ball(
-    centre: Point, radius: float, surface: int, bit: np.uint64, lens: Lens, area: Rectangle, canvas: Canvas
-) -> None:
+def _draw_ball(centre: Point, radius: float, surface: int, brush: Brush) -> None:
     k = dot(centre, centre) - radius * radius
     if k > 0.0:
         q = scaled(centre, -1.0)
-        _draw_round(q, k, radius, _NO_AXIS, -1.0, 1.0, surface, bit, lens, area, canvas)
+        _draw_round(q, k, radius, _NO_AXIS, -1.0, 1.0, surface, brush)
 
 
 @njit(cache=True, error_model="numpy")
-def _draw_tube(
-    half: float, radius: float, surface: int, bit: np.uint64, lens: Lens, area: Rectangle, canvas: Canvas
-) -> None:
+def _draw_tube(half: float, radius: float, surface: int, brush: Brush) -> None:
     """Draw the round side of a cylinder along the pose's z axis."""
-    pose = canvas.pose
+    pose = brush.canvas.pose
     axis, centre = (pose[0, 2], pose[1, 2], pose[2, 2]), (pose[0, 3], pose[1, 3], pose[2, 3])
     along = dot(axis, centre)
     q = plus(scaled(axis, along), scaled(centre, -1.0))
     k = dot(q, q) - radius * radius
     if k > 0.0:
-        _draw_round(q, k, radius, axis, along - half, along + half, surface, bit, lens, area, canvas)
+        _draw_round(q, k, radius, axis, along - half, along + half, surface, brush)
 
 
 @njit(cache=True, error_model="numpy")
 def _draw_round(
-    q: Point,
-    k: float,
-    radius: float,
-    axis: Point,
-    low: float,
-    high: float,
-    surface: int,
-    bit: np.uint64,
-    lens: Lens,
-    area: Rectangle,
-    canvas: Canvas,
+    q: Point, k: float, radius: float, axis: Point, low: float, high: float, surface: int, brush: Brush
 ) -> None:
     """Draw the quadric with Q = I - axis axis' between two heights along its axis."""
-    set_shading(canvas, surface, axis, q, 1.0 / radius)
+    set_shading(brush.canvas, surface, axis, q, 1.0 / radius)
     form = (
         q[0] * q[0] - k * (1.0 - axis[0] * axis[0]),
         q[0] * q[1] + k * axis[0] * axis[1],
@@ -193,18 +178,16 @@ def _draw_round(
         q[1] * q[2] + k * axis[1] * axis[2],
         q[2] * q[2] - k * (1.0 - axis[2] * axis[2]),
     )
-    fill_conic(form, scaled(q, -1.0 / k), 1.0 / k, axis, low, high, surface, bit, lens, area, canvas)
+    fill_conic(form, scaled(q, -1.0 / k), 1.0 / k, axis, low, high, surface, brush)
 
 
 @njit(cache=True, error_model="numpy")
-def _draw_lid(
-    height: float, radius: float, surface: int, bit: np.uint64, lens: Lens, area: Rectangle, canvas: Canvas
-) -> None:
+def _draw_lid(height: float, radius: float, surface: int, brush: Brush) -> None:
     """Draw the flat end of a cylinder at a height along the pose's z axis.
 
     With g . p = 1 its plane and c its centre, d lies on it where |d - (g . d) c| <= r (g . d).
     """
-    pose = canvas.pose
+    pose = brush.canvas.pose
     sign = 1.0 if height > 0.0 else -1.0
     normal = (sign * pose[0, 2], sign * pose[1, 2], sign * pose[2, 2])
     c = map_point(pose, 0.0, 0.0, height)
@@ -221,23 +204,14 @@ def _draw_lid(
         k * g[1] * g[2] + c[1] * g[2] + c[2] * g[1],
         k * g[2] * g[2] + 2.0 * c[2] * g[2] - 1.0,
     )
-    set_shading(canvas, surface, normal, _NO_AXIS, 0.0)
-    fill_conic(form, g, 0.0, _NO_AXIS, -1.0, 1.0, surface, bit, lens, area, canvas)
+    set_shading(brush.canvas, surface, normal, _NO_AXIS, 0.0)
+    fill_conic(form, g, 0.0, _NO_AXIS, -1.0, 1.0, surface, brush)
 
 
 @njit(cache=True, error_model="numpy")
-def draw_face(
-    size: Array,
-    axis: int,
-    sign: float,
-    surface: int,
-    bit: np.uint64,
-    lens: Lens,
-    area: Rectangle,
-    canvas: Canvas,
-) -> None:
+def draw_face(size: Array, axis: int, sign: float, surface: int, brush: Brush) -> None:
     """Draw one face of a box."""
-    pose, j, k = canvas.pose, (axis + 1) % 3, (axis + 2) % 3
+    pose, j, k = brush.canvas.pose, (axis + 1) % 3, (axis + 2) % 3
     normal = (sign * pose[0, axis], sign * pose[1, axis], sign * pose[2, axis])
     across = (pose[0, j], pose[1, j], pose[2, j])
     up = (pose[0, k], pose[1, k], pose[2, k])
@@ -248,16 +222,14 @@ def draw_face(
         side, step = (across, size[j] / 2.0) if i % 2 == 0 else (up, size[k] / 2.0)
         direction = up if i % 2 == 0 else across
         middle = plus(centre, scaled(side, step if i < 2 else -step))
-        set_edge(canvas, i, cross(middle, direction), centre)
-    _draw_flat(normal, centre, np.int64(4), surface, bit, lens, area, canvas)
+        set_edge(brush.canvas, i, cross(middle, direction), centre)
+    _draw_flat(normal, centre, np.int64(4), surface, brush)
 
 
 @njit(cache=True, error_model="numpy")
-def _draw_triangle(
-    corners: Array, surface: int, bit: np.uint64, lens: Lens, area: Rectangle, canvas: Canvas
-) -> None:
+def _draw_triangle(corners: Array, surface: int, brush: Brush) -> None:
     """Draw the side of a triangle from which its corners run counterclockwise."""
-    pose = canvas.pose
+    pose = brush.canvas.pose
     a = map_point(pose, corners[0, 0], corners[0, 1], corners[0, 2])
     b = map_point(pose, corners[1, 0], corners[1, 1], corners[1, 2])
     c = map_point(pose, corners[2, 0], corners[2, 1], corners[2, 2])
@@ -266,14 +238,15 @@ def _draw_triangle(
     if dot(normal, a) >= 0.0 or max(a[2], b[2], c[2]) < NEAR_M:
         return
     if min(a[2], b[2], c[2]) >= NEAR_M:
-        area = _narrowed(area, a, b, c, lens)
+        area = _narrowed(brush.area, a, b, c, brush.lens)
         if area[0] > area[2] or area[1] > area[3]:
             return
+        brush = Brush(brush.bit, brush.lens, area, brush.canvas)
     normal = scaled(normal, 1.0 / math.sqrt(dot(normal, normal)))
     centre = scaled(plus(plus(a, b), c), 1.0 / 3.0)
     for i, edge in enumerate((cross(a, b), cross(b, c), cross(c, a))):
-        set_edge(canvas, i, edge, centre)
-    _draw_flat(normal, a, np.int64(3), surface, bit, lens, area, canvas)
+        set_edge(brush.canvas, i, edge, centre)
+    _draw_flat(normal, a, np.int64(3), surface, brush)
 
 
 @njit(cache=True, error_model="numpy")
@@ -285,16 +258,7 @@ def _narrowed(area: Rectangle, a: Point, b: Point, c: Point, lens: Lens) -> Rect
 
 
 @njit(cache=True, error_model="numpy")
-def _draw_flat(
-    normal: Point,
-    point: Point,
-    edges: np.int64,
-    surface: int,
-    bit: np.uint64,
-    lens: Lens,
-    area: Rectangle,
-    canvas: Canvas,
-) -> None:
+def _draw_flat(normal: Point, point: Point, edges: np.int64, surface: int, brush: Brush) -> None:
     """Draw the polygon of the first `edges` edges in the plane through a point, from the normal's side.
 
     Literals as their number would have this compiled once for each.
@@ -303,8 +267,8 @@ def _draw_flat(
     if distance >= 0.0:
         return
     g = scaled(normal, 1.0 / distance)
-    near, far = canvas.edges[edges], canvas.edges[edges + 1]
+    near, far = brush.canvas.edges[edges], brush.canvas.edges[edges + 1]
     near[0], near[1], near[2] = -g[0], -g[1], 1.0 / NEAR_M - g[2]
     far[0], far[1], far[2] = g[0], g[1], g[2] - 1.0 / FAR_M
-    set_shading(canvas, surface, normal, _NO_AXIS, 0.0)
-    fill_polygon(g, int(edges) + 2, surface, bit, lens, area, canvas)
+    set_shading(brush.canvas, surface, normal, _NO_AXIS, 0.0)
+    fill_polygon(g, int(edges) + 2, surface, brush)

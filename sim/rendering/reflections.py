@@ -19,6 +19,7 @@ from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.geometry.vectors import Point, compose, dot, map_point, minus, plus, scaled, turn_back
 from peopleboy.sim.rendering.raycast import borders_of, draw_shape, is_outside, quick_bounds
 from peopleboy.sim.rendering.render_canvas import (
+    Brush,
     Canvas,
     Lens,
     Rectangle,
@@ -297,7 +298,7 @@ def _draw_beyond(
             if is_round:
                 _draw_round(kind, size, table.first_surface[shape], lens, area, canvas)
             else:
-                draw_shape(table, shape, np.uint64(0), lens, area, canvas)
+                draw_shape(table, shape, Brush(np.uint64(0), lens, area, canvas))
         if right < 0:
             break
         # What hides something must be nearer than that, and within its bounds.

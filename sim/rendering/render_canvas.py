@@ -61,6 +61,22 @@ class Canvas(NamedTuple):
     pose: Array
 
 
+class Brush(NamedTuple):
+    """How a piece of a shape is drawn.
+
+    Attributes:
+        bit: what it adds to the cover.
+        lens: where pixels look.
+        area: the pixels to look at.
+        canvas: what to draw on.
+    """
+
+    bit: np.uint64
+    lens: Lens
+    area: Rectangle
+    canvas: Canvas
+
+
 @njit(cache=True, nogil=True)
 def make_canvas(lens: Lens, surfaces: int) -> Canvas:
     """Return an empty canvas for a table of so many surfaces."""
@@ -100,10 +116,9 @@ def set_edge(canvas: Canvas, index: int, edge: Point, inside: Point) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def fill_polygon(
-    g: Point, edges: int, surface: int, bit: np.uint64, lens: Lens, area: Rectangle, canvas: Canvas
-) -> None:
+def fill_polygon(g: Point, edges: int, surface: int, brush: Brush) -> None:
     """Fill the pixels inside all edges with the plane g . p = 1."""
+    bit, lens, area, canvas = brush
     edges = _edges_across(edges, lens, area, canvas)
     slope, own = g[0] / lens.focal, np.int32(surface)
     for v in range(area[1], area[3] + 1):
@@ -149,17 +164,7 @@ def _edges_across(edges: int, lens: Lens, area: Rectangle, canvas: Canvas) -> in
 
 @njit(cache=True, error_model="numpy")
 def fill_conic(
-    form: Form,
-    line: Point,
-    root: float,
-    axis: Point,
-    low: float,
-    high: float,
-    surface: int,
-    bit: np.uint64,
-    lens: Lens,
-    area: Rectangle,
-    canvas: Canvas,
+    form: Form, line: Point, root: float, axis: Point, low: float, high: float, surface: int, brush: Brush
 ) -> None:
     """Fill the pixels where d'Fd >= 0 with the nearness line . d + root sqrt(d'Fd).
 
@@ -171,11 +176,9 @@ def fill_conic(
         low: [m] only points whose height along the axis is at least this are drawn.
         high: [m] and at most this.
         surface: number of the surface.
-        bit: what to add to the cover.
-        lens: where pixels look.
-        area: the pixels to look at.
-        canvas: what to draw on.
+        brush: how to draw.
     """
+    bit, lens, area, canvas = brush
     scale, nobody, own = 1.0 / lens.focal, np.uint64(0), np.int32(surface)
     for v in range(area[1], area[3] + 1):
         y = (v - lens.centre_v) * scale

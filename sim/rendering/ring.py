@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.vectors import compose, map_corner, map_point
 from peopleboy.sim.rendering.raycast import draw_face, draw_shape, quick_bounds
-from peopleboy.sim.rendering.render_canvas import Canvas, Lens, pixels, shade
+from peopleboy.sim.rendering.render_canvas import Brush, Canvas, Lens, pixels, shade
 from peopleboy.sim.shapes.bounds import FAR_M
 from peopleboy.sim.shapes.shape_table import ShapeTable
 from peopleboy.sim.shapes.shapes import ShapeKind
@@ -230,11 +230,11 @@ def _draw_column(
             none: int = np.int64(0)  # type: ignore[assignment]  # for a literal, kernels would be compiled once more
             whole = (none, none, ring.lens.width - 1, none)
             sign, surface = 1.0 if face < 3 else -1.0, table.first_surface[shape] + face
-            draw_face(table.size[shape], face % 3, sign, surface, bit, ring.lens, whole, canvas)
+            draw_face(table.size[shape], face % 3, sign, surface, Brush(bit, ring.lens, whole, canvas))
             continue
         area = pixels(ring.lens, quick_bounds(table, shape, canvas.pose))
         if area[0] <= area[2] and area[1] <= area[3]:
-            draw_shape(table, shape, bit, ring.lens, area, canvas)
+            draw_shape(table, shape, Brush(bit, ring.lens, area, canvas))
 
 
 @njit(cache=True, error_model="numpy")

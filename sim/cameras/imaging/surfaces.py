@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -19,6 +20,25 @@ from peopleboy.sim.geometry.vectors import multiply
 from peopleboy.sim.shapes.materials import TEXEL_STEP, PatternKind, Unrolling
 
 _LEVEL, _ASLANT = int(Unrolling.LEVEL), int(Unrolling.ASLANT)
+
+
+class PixelRun(NamedTuple):
+    """Neighbouring pixels of one row that see one part.
+
+    Attributes:
+        first, end: column of the first one, and that after the last one.
+        part: number of the part.
+        row: number of the row.
+        depths: (W,) [m] how far away what the row's pixels see is.
+        matrices: (P, 3, 4) as `part_from_pixel` gives them.
+    """
+
+    first: int
+    end: int
+    part: int
+    row: int
+    depths: NDArray[np.float32]
+    matrices: NDArray[np.float64]
 
 
 @njit(cache=True, fastmath=True)
@@ -50,12 +70,7 @@ def painted(
 @njit(cache=True, fastmath=True, forceinline=True)
 def paint_run(
     line: NDArray[np.float32],
-    first: int,
-    end: int,
-    v: int,
-    p: int,
-    depths: NDArray[np.float32],
-    matrices: NDArray[np.float64],
+    run: PixelRun,
     paint: NDArray[np.float64],
     texels: NDArray[np.int16],
     step: float,
@@ -65,17 +80,13 @@ def paint_run(
     They share nearly all that is to be reckoned.
 
     Args:
-        line: (W,) gets kelvin or factors on light of pixels first..end-1.
-        first: column of the first pixel.
-        end: column after the last one.
-        v: number of the row.
-        p: number of the part.
-        depths: (W,) [m] how far away what the row's pixels see is.
-        matrices: (P, 3, 4) as `part_from_pixel` gives them.
+        line: (W,) gets kelvin or factors on light of the pixels.
+        run: which pixels.
         paint: (P, 7) as `make_paint_table` gives them.
         texels: (N,) one of both layers beside them.
         step: what a unit of it means, `KELVIN_STEP` or `LIGHT_STEP`.
     """
+    first, end, p, v, depths, matrices = run
     unit, none, one = np.float32(step), np.float32(0.0), np.uint32(1)
     scale, columns, texel = paint[p, 4], np.int32(paint[p, 5]), np.int32(paint[p, 0])
     most_u, most_v = np.float32(paint[p, 5] - 1.001), np.float32(paint[p, 6] - 1.001)
@@ -240,30 +251,17 @@ def finish_at(
 
 
 @njit(cache=True, fastmath=True, forceinline=True)
-def finish_run(
-    places: NDArray[np.uint32],
-    first: int,
-    end: int,
-    v: int,
-    p: int,
-    depths: NDArray[np.float32],
-    matrices: NDArray[np.float64],
-    finish: NDArray[np.float64],
-) -> None:
+def finish_run(places: NDArray[np.uint32], run: PixelRun, finish: NDArray[np.float64]) -> None:
     """Find the texels of a finish on which neighbouring pixels of one part fall, as `finish_at` does it.
 
     They are found several at a time, and looked up only when all are known: waiting for memory takes longest.
 
     Args:
-        places: (W,) gets the number of the texel of pixels first..end-1.
-        first: column of the first pixel.
-        end: column after the last one.
-        v: number of the row.
-        p: number of the part.
-        depths: (W,) [m] how far away what the row's pixels see is.
-        matrices: (P, 3, 4) as `part_from_pixel` gives them.
+        places: (W,) gets the numbers of the pixels' texels.
+        run: which pixels.
         finish: (P, 8) as in `MaterialTable`.
     """
+    first, end, p, v, depths, matrices = run
     none, half, quarter = np.float32(0.0), np.float32(0.5), np.float32(0.25)
     one, tiny = np.float32(1.0), np.float32(1e-9)
     m, texel, columns, fine = matrices[p], np.int32(finish[p, 0]), np.int32(finish[p, 1]), finish[p, 4]

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from peopleboy.sim.cameras.imaging.camera_view import KELVIN_STEP, LIGHT_STEP, make_paint_table
 from peopleboy.sim.cameras.imaging.surfaces import (
+    PixelRun,
     paint_run,
     painted,
 )
@@ -52,7 +53,7 @@ def test_a_run_of_pixels_shows_what_a_painting_has_at_their_points(unrolling: Un
     matrices = rng.uniform(-0.2, 0.2, (3, 3, 4))
     for v, layer, step, part in ((1, 0, KELVIN_STEP, 1), (3, 1, LIGHT_STEP, 2)):
         line = np.full(9, np.nan, np.float32)
-        paint_run(line, 2, 8, v, np.int32(part), depths, matrices, paint, texels[layer], step)
+        paint_run(line, PixelRun(2, 8, np.int32(part), v, depths, matrices), paint, texels[layer], step)
         for u in range(2, 8):
             point = matrices[part] @ (u * depths[u], v * depths[u], depths[u], 1.0)
             assert line[u] == pytest.approx(painted(paint, texels, part, *point)[layer], abs=1e-4)

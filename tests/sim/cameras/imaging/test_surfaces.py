@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from peopleboy.sim.cameras.imaging.camera_view import make_material_table
 from peopleboy.sim.cameras.imaging.surfaces import (
+    PixelRun,
     finish_at,
     finish_run,
     part_from_pixel,
@@ -142,7 +143,7 @@ def test_a_run_of_pixels_falls_on_the_texels_that_finishes_have_at_their_points(
     for v, part in product(range(15), finishes):
         places = np.full(60, 10**6, np.uint32)
         depths = rng.uniform(0.2, 1.0, 60).astype(np.float32)
-        finish_run(places, 10, 50, v, part, depths, matrices, table.finish)
+        finish_run(places, PixelRun(10, 50, part, v, depths, matrices), table.finish)
         assert np.all(places[:10] == 10**6)
         assert np.all(places[50:] == 10**6)
         for u in range(10, 50):
