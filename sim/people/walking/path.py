@@ -36,18 +36,6 @@ class PathPiece:
     curvature: float
     goal: int
 
-    def at(self, distance_m: float) -> tuple[Array, float]:
-        """Position (2,) [m] and heading [rad] after a distance along the piece."""
-        heading = self.heading_rad + self.curvature * distance_m
-        if self.curvature == 0.0:
-            direction = np.array([math.cos(heading), math.sin(heading)])
-            return np.array(self.start) + distance_m * direction, heading
-        chord = [
-            math.sin(heading) - math.sin(self.heading_rad),
-            math.cos(self.heading_rad) - math.cos(heading),
-        ]
-        return np.array(self.start) + np.array(chord) / self.curvature, heading
-
 
 def turn_between(before: float, after: float) -> float:
     """Signed angle [rad] from one direction to another, in -pi..pi."""

@@ -316,7 +316,7 @@ def _follow(
 
 @njit(cache=True)
 def _put(walk: Record, piece: Record) -> float:
-    """Put a person where it has got to on a piece, and return its direction there; see `PathPiece.at`."""
+    """Put a person where it has got to on a piece, and return its direction there."""
     heading: float = piece.heading + piece.curvature * walk.along
     if piece.curvature == 0.0:
         walk.position[0] = piece.start[0] + walk.along * math.cos(heading)

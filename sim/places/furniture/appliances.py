@@ -1,6 +1,6 @@
 """What runs warm in kitchens, halls and workshops, and what stands about there.
 
-Builders as in `warm_pieces`: size [m], temperature [degC] and colour of the main piece, which comes first.
+Builders as in `furniture_pieces`: size [m], temperature [degC] and colour of the main piece, which is first.
 """
 
 from __future__ import annotations

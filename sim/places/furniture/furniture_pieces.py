@@ -1,17 +1,21 @@
-"""Furniture at room temperature, pillars, and what hangs on walls.
+"""What stands, lies and hangs in rooms: warm clutter that a tracker must not take for people, and furniture.
 
-Builders as in `warm_pieces`: size [m], temperature [degC] and colour of the main piece, which comes first.
+Source of the list of clutter: T fig. 4.1. Every builder takes depth, width, height [m] and the temperature
+[degC] and colour of the main piece, and returns the pieces, the main one first.
 """
 
 from __future__ import annotations
 
 from peopleboy.sim.places.pieces import (
+    ALONG_Y,
+    BLACK,
     SINK_M,
     STEEL,
     WHITE,
     WOOD,
     Piece,
     ball,
+    box,
     corner_legs,
     standing_box,
     thing_kind,
@@ -19,6 +23,129 @@ from peopleboy.sim.places.pieces import (
 )
 from peopleboy.sim.shapes.materials import Covering, Rgb
 from peopleboy.sim.shapes.shapes import Vector
+
+_MOST_RIBS = 14  # with the panel they fit into one body of 16 shapes
+
+
+@thing_kind(
+    "radiator",
+    size_m=(0.09, 1.2, 0.6),
+    temperature_c=48.0,
+    rgb=WHITE,
+    base_m=0.12,
+    is_hung=True,
+    is_heated=True,
+)
+def radiator(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A ribbed panel on a wall: two straight warm sides, as a standing person has."""
+    depth, width, height = size
+    count = max(2, min(_MOST_RIBS, round(width / 0.09)))
+    pitch = width / count
+    panel = standing_box(
+        0.6 * depth + SINK_M, width - 0.3 * pitch, 0.02, height - 0.02, x=0.3 * depth - SINK_M / 2
+    )
+    ribs = tuple(
+        standing_box(0.6 * depth, 0.6 * pitch, 0.0, height, x=0.7 * depth, y=(k + 0.5) * pitch - width / 2.0)
+        for k in range(count)
+    )
+    return (
+        Piece(
+            "panel", (panel, *ribs), temperature, rgb, variation_k=1.5, gradient_k_per_m=14.0, uneven_k=1.0
+        ),
+    )
+
+
+@thing_kind(
+    "pipe",
+    size_m=(0.06, 0.06, 2.7),
+    temperature_c=44.0,
+    rgb=WHITE,
+    is_hung=True,
+    is_to_ceiling=True,
+    is_heated=True,
+)
+def pipe(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A heating pipe that runs up a wall."""
+    depth, _, height = size
+    shape = tube(height + 2.0 * SINK_M, depth / 2.0, (depth / 2.0 + 0.02, 0.0, height / 2.0))
+    return (Piece("pipe", (shape,), temperature, rgb, variation_k=0.6),)
+
+
+@thing_kind(
+    "ceiling_lamp",
+    size_m=(0.22, 1.25, 0.1),
+    temperature_c=62.0,
+    rgb=(1.0, 1.0, 0.95),
+    is_from_ceiling=True,
+    is_heated=True,
+)
+def ceiling_lamp(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A bright tube under its housing."""
+    depth, width, height = size
+    glass = tube(0.92 * width, 0.3 * height, (0.0, 0.0, 0.3 * height), ALONG_Y)
+    housing = standing_box(depth, width, 0.55 * height, height + SINK_M)
+    return (
+        Piece("tube", (glass,), temperature, rgb, glow=1.0, is_solid=False),
+        Piece("housing", (housing,), 30.0, WHITE, is_solid=False),
+    )
+
+
+@thing_kind("floor_lamp", size_m=(0.36, 0.36, 1.6), temperature_c=75.0, rgb=(1.0, 0.95, 0.8), is_heated=True)
+def floor_lamp(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A hot bulb in a warm shade on a pole."""
+    depth, _, height = size
+    radius = depth / 2.0
+    bulb = ball(0.05, (0.0, 0.0, height - 0.04))
+    shade = tube(0.24, radius, (0.0, 0.0, height - 0.22))
+    pole = tube(height - 0.3, 0.015, (0.0, 0.0, (height - 0.3) / 2.0))
+    foot = tube(0.03 + SINK_M, 0.9 * radius, (0.0, 0.0, (0.03 - SINK_M) / 2.0))
+    return (
+        Piece("bulb", (bulb,), temperature, rgb, glow=1.0),
+        Piece("shade", (shade,), 36.0, (0.8, 0.7, 0.5), glow=0.6, variation_k=1.0),
+        Piece("pole", (pole, foot), 23.0, STEEL, emissivity=0.6),
+    )
+
+
+@thing_kind("monitor", size_m=(0.2, 0.55, 0.46), temperature_c=35.0, rgb=(0.35, 0.5, 0.75), is_heated=True)
+def monitor(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A flat screen on a foot, warm all over in front."""
+    depth, width, height = size
+    bottom = 0.28 * height
+    middle = (bottom + height) / 2.0
+    screen = box((0.01, width - 0.04, height - bottom - 0.04), (0.02, 0.0, middle))
+    case = standing_box(0.04, width, bottom, height)
+    stem = standing_box(0.03, 0.06, -SINK_M, bottom + 0.05, x=-0.01)
+    foot = standing_box(depth, 0.45 * width, -SINK_M, 0.02)
+    return (
+        Piece("screen", (screen,), temperature, rgb, glow=0.7, variation_k=0.8, shine=1.0),
+        Piece("case", (case,), temperature - 3.0, BLACK),
+        Piece("foot", (stem, foot), 23.0, BLACK),
+    )
+
+
+@thing_kind("robot", size_m=(0.47, 0.38, 1.12), temperature_c=27.0, rgb=(0.5, 0.04, 0.05), is_heated=True)
+def robot(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
+    """A robot like the PeopleBot: base, column with warm electronics, and a deck with a camera."""
+    depth, width, height = size
+    base = (standing_box(depth, width, 0.05, 0.27), ball(0.04, (-0.4 * depth, 0.0, 0.04 - SINK_M)))
+    wheels = tuple(
+        tube(0.05, 0.09, (0.05, side * width / 2.0, 0.09 - SINK_M), ALONG_Y) for side in (-1.0, 1.0)
+    )
+    column = standing_box(0.3 * depth, 0.4 * width, 0.22, height - 0.12, x=-0.12 * depth)
+    bay = standing_box(0.5 * depth, 0.55 * width, 0.30, 0.62, x=-0.1 * depth)
+    deck = tube(0.1, 0.42 * width, (-0.05, 0.0, height - 0.13))
+    camera = standing_box(0.1, 0.12, height - 0.1, height, x=0.05)
+    return (
+        Piece("base", base, temperature, rgb),
+        Piece("wheels", wheels, 22.0, BLACK, emissivity=0.95),
+        Piece("column", (column,), temperature - 1.0, STEEL),
+        Piece("electronics", (bay,), temperature + 2.5, BLACK, variation_k=0.8),
+        Piece("deck", (deck,), temperature - 0.5, rgb),
+        Piece("camera", (camera,), temperature + 1.5, BLACK),
+    )
+
+
+# Furniture at room temperature, pillars, and what hangs on walls.
 
 # Middle of each ball of leaves, in radii sideways and as a share of the height, and its share of the radius.
 _LEAVES = ((0.0, 0.0, 1.0, 1.0), (0.7, 0.4, 0.6, 0.9), (-0.6, 0.6, 0.5, 0.8), (0.0, -0.8, 0.55, 0.9))

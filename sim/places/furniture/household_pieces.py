@@ -1,6 +1,6 @@
 """What people take up, put down, open and close: toys, cans, doors, cupboards and drawers.
 
-Builders as in `warm_pieces`: size [m], temperature [degC] and colour of the main piece, which comes first.
+Builders as in `furniture_pieces`: size [m], temperature [degC] and colour of the main piece, which is first.
 """
 
 from __future__ import annotations

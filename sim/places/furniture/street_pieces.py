@@ -1,6 +1,6 @@
 """What stands in streets and garages.
 
-Builders as in `warm_pieces`: size [m], temperature [degC] and colour of the main piece, which comes first.
+Builders as in `furniture_pieces`: size [m], temperature [degC] and colour of the main piece, which is first.
 """
 
 from __future__ import annotations

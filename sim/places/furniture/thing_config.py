@@ -13,14 +13,13 @@ from peopleboy.sim.places.furniture import (
     furniture_pieces,
     household_pieces,
     street_pieces,
-    warm_pieces,
 )
 from peopleboy.sim.places.moving import ActionKind
 from peopleboy.sim.places.pieces import Kind, kinds_of
 from peopleboy.sim.shapes.materials import Colour
 
 # Listings and the schema show the kinds in this order.
-_MODULES = (warm_pieces, furniture_pieces, household_pieces, appliances, street_pieces)
+_MODULES = (furniture_pieces, household_pieces, appliances, street_pieces)
 KINDS: dict[str, Kind] = {
     name: kind for module in _MODULES for name, kind in kinds_of(module.__name__).items()
 }

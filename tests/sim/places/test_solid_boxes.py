@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from peopleboy.sim.places.extent import BoxSet, boxes_of, overlaps
-from peopleboy.sim.places.furniture.build_thing import build_thing
+from peopleboy.sim.places.furniture.place_things import build_thing
 from peopleboy.sim.places.furniture.thing_config import ThingConfig
 from peopleboy.sim.places.moving import Stance
 

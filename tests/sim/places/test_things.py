@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from peopleboy.sim.physics.urdf import find_urdf
 from peopleboy.sim.places.extent import fixture_extent, urdf_extent
-from peopleboy.sim.places.furniture.build_thing import build_thing
+from peopleboy.sim.places.furniture.place_things import build_thing
 from peopleboy.sim.places.furniture.thing_config import KINDS, ThingConfig
 from peopleboy.sim.places.moving import Stance
 from peopleboy.sim.places.pieces import SINK_M

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
-from peopleboy.sim.places.furniture.build_thing import build_thing
+from peopleboy.sim.places.furniture.place_things import build_thing
 from peopleboy.sim.places.furniture.thing_config import ThingConfig
 from peopleboy.sim.places.make_place import build_place
 from peopleboy.sim.places.moving import Action, ActionKind, Mover, Stance
