@@ -1,7 +1,5 @@
 """What the robot senses at one instant; the truth is never in it. Images are made on demand."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar

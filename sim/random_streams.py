@@ -1,7 +1,5 @@
 """One named stream of random numbers per noise source, all from one seed."""
 
-from __future__ import annotations
-
 import hashlib
 
 import numpy as np

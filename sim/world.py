@@ -1,7 +1,5 @@
 """The simulated world: it takes velocity commands and gives observations, with the truth beside them."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 from functools import partial
 from types import TracebackType
@@ -63,7 +61,7 @@ class World:
             self._physics.close()
             raise
 
-    def __enter__(self) -> World:
+    def __enter__(self) -> "World":
         return self
 
     def __exit__(

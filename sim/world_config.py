@@ -1,7 +1,5 @@
 """Every setting of a world: what stands in it, who walks through it, and what the robot carries."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from peopleboy.bad_input import BadInput, found_in

@@ -1,7 +1,5 @@
 """The cameras of many worlds: their images of an instant, made by threads ahead of time or on demand."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -38,7 +36,7 @@ class WorkerPool:
         self.threads = _processors() if threads is None else threads
         self._pool = ThreadPoolExecutor(self.threads - 1) if self.threads > 1 else None
 
-    def start(self, tasks: Sequence[Task]) -> PendingWork:
+    def start(self, tasks: Sequence[Task]) -> "PendingWork":
         """Begin with tasks that do not need each other; they are done when `PendingWork.finish` returns."""
         return PendingWork(
             [(task, None if self._pool is None else self._pool.submit(task)) for task in tasks]
@@ -146,7 +144,7 @@ class Exposures:
         self._shots, self._names = tuple(shots), names
 
     @classmethod
-    def none(cls) -> Exposures:
+    def none(cls) -> "Exposures":
         """Those of no instant yet."""
         return cls((), {})
 

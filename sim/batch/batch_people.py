@@ -1,7 +1,5 @@
 """The visible bodies of people in many worlds, posed by kernels over all of them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import accumulate
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """One control step of many worlds: their joined states, who walks where, and the robots among them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

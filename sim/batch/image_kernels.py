@@ -1,7 +1,5 @@
 """Thermal and colour images of cameras of plain detail in many worlds (numba kernels)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Render stages: what makes the images of one camera of many worlds, some worlds at a time."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 

@@ -1,7 +1,5 @@
 """What many robots sense together, with what is true at that instant."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any, NamedTuple, Protocol

@@ -1,7 +1,5 @@
 """Worlds stepped together: kinematic ones of a kind by kernels over all of them, others one by one."""
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """The settings of the cameras: where each sits, how often it takes an image, and how that is formed."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field, replace
 from typing import Annotated, ClassVar, Final, Literal, Self, get_args

@@ -1,7 +1,5 @@
 """The colour image: diffuse shading, patterned surfaces, a light that can change or go out, sensor noise."""
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray

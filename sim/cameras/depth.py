@@ -1,7 +1,5 @@
 """How sensors measure depth: by a pattern of light or by its time of flight, with their noise and holes."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Final
@@ -22,6 +20,9 @@ from peopleboy.sim.cameras.imaging.surfaces import (
 )
 from peopleboy.sim.geometry.pinhole import Matrix, Pinhole
 from peopleboy.sim.rendering.view import View
+
+Metres = NDArray[np.float32]
+Amplitude = NDArray[np.uint16]
 
 # Depth images, in millimetres: how they are stored, their points, and how people are shown them.
 
@@ -79,9 +80,6 @@ def _shades() -> NDArray[np.uint8]:
 
 _SHADES = _shades()
 
-
-Metres = NDArray[np.float32]
-Amplitude = NDArray[np.uint16]
 
 # Structured light. Noise and steps of its disparity: Khoshelham & Oude Elberink 2012, Sensors 12:1437.
 DISPARITY_SD_PX: Final = 0.062

@@ -1,7 +1,5 @@
 """The kinds of cameras: all that the rest of the project asks of one."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence

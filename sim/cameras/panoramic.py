@@ -1,7 +1,5 @@
 """The panoramic image: colours round the robot, and the lens's round image that they are unrolled from."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 

@@ -1,7 +1,5 @@
 """All cameras of a robot at work: which are due at an instant, and images that are made when asked for."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import partial
 

@@ -1,7 +1,5 @@
 """Cameras at work: from what one sees at an instant to its images, noise included."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any, Protocol
 

@@ -5,8 +5,6 @@ rotation blur -> apparent temperature -> detector noise -> 16 bit at 10 mK.
 Grey of 8 bits is what `electronics.gain` makes of it.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 

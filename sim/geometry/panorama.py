@@ -1,7 +1,5 @@
 """Panoramic camera geometry: which way the pixels of an unrolled image look, and where points fall in it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from typing import Annotated

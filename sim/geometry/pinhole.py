@@ -1,7 +1,5 @@
 """What all camera geometries have in common, and the pinhole camera."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from dataclasses import dataclass

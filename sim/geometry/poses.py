@@ -1,7 +1,5 @@
 """Quaternions to poses and back, for many bodies at once (numba kernels)."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

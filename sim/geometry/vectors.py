@@ -1,7 +1,5 @@
 """Vectors of three numbers as tuples, and poses as arrays, for use in kernels."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any, cast

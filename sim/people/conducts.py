@@ -1,7 +1,5 @@
 """How people behave towards the robot and their group: reactions, leading, and what makes up their minds."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace

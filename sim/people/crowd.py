@@ -1,7 +1,5 @@
 """The people of a world: they walk by their scripts, and their bodies and hands move in the physics world."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 

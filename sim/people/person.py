@@ -1,7 +1,5 @@
 """Walking people: what they are made of, how they move, where their parts are."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The settings of one person: its path, its reaction to the robot, what it does on the way, and its body."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

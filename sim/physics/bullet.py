@@ -1,7 +1,5 @@
 """The only caller of PyBullet: bodies by name, physics steps, rays, contacts and TinyRenderer's images."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """Bodies by name: which parts they have, what PyBullet calls them, and what rays meet without asking it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field

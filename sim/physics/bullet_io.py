@@ -1,7 +1,5 @@
 """What passes between Python and PyBullet: shapes, camera matrices, depth images, and printed noise."""
 
-from __future__ import annotations
-
 import contextlib
 import ctypes
 import os

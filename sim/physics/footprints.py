@@ -1,7 +1,5 @@
 """Footprints of shapes between two heights: convex outlines with a radius, and their overlap with a box."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A world without PyBullet: what stands stays, what rolls on two wheels rolls as they turn."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What a world needs of its physics, whatever moves the robot."""
 
-from __future__ import annotations
-
 import functools
 import importlib.util
 import logging

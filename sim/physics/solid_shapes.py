@@ -1,7 +1,5 @@
 """Solid shapes of a world as arrays for kernels: where they are, and where rays meet them (numba kernels)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

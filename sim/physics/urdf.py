@@ -1,7 +1,5 @@
 """Model files: where PyBullet's lie, and what a URDF says of shapes, links, joints and masses."""
 
-from __future__ import annotations
-
 import importlib.util
 import re
 from collections.abc import Iterator

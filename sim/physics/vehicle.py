@@ -1,7 +1,5 @@
 """A body on two driven wheels: its outline, read from a URDF, and its step in a kinematic world."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import NamedTuple

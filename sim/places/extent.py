@@ -1,7 +1,5 @@
 """How much room fixtures take up: the boxes around shapes and URDF files, and which upright boxes overlap."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -129,11 +127,11 @@ class BoxSet:
     half: Array
     heading: Array
 
-    def moved(self, stance: Stance) -> BoxSet:
+    def moved(self, stance: Stance) -> "BoxSet":
         """Boxes given in a thing's frame, where they are when the thing is there."""
         return BoxSet(stance.place(self.centre), self.half, self.heading + stance.heading_rad)
 
-    def between(self, low_m: float, high_m: float) -> BoxSet:
+    def between(self, low_m: float, high_m: float) -> "BoxSet":
         """Those that reach into a span of heights."""
         bottom, top = self.centre[:, 2] - self.half[:, 2], self.centre[:, 2] + self.half[:, 2]
         kept = (bottom < high_m) & (top > low_m)

@@ -1,7 +1,5 @@
 """Where one can walk: rectangles of floor, the walls around them, and the doors in the walls."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from enum import Enum
@@ -47,17 +45,17 @@ class Rectangle:
         """What it covers [m2]."""
         return (self.max_x - self.min_x) * (self.max_y - self.min_y)
 
-    def grown(self, margin_m: float) -> Rectangle:
+    def grown(self, margin_m: float) -> "Rectangle":
         """The rectangle with every side moved outward by margin_m; inward if it is negative."""
         return Rectangle(
             self.min_x - margin_m, self.min_y - margin_m, self.max_x + margin_m, self.max_y + margin_m
         )
 
-    def meets(self, other: Rectangle) -> bool:
+    def meets(self, other: "Rectangle") -> bool:
         """Whether the insides of the two share a point."""
         return not self.cut(other).is_empty
 
-    def cut(self, other: Rectangle) -> Rectangle:
+    def cut(self, other: "Rectangle") -> "Rectangle":
         """What the two share; empty if nothing."""
         return Rectangle(
             max(self.min_x, other.min_x),
@@ -66,7 +64,7 @@ class Rectangle:
             min(self.max_y, other.max_y),
         )
 
-    def without(self, hole: Rectangle) -> tuple[Rectangle, ...]:
+    def without(self, hole: "Rectangle") -> "tuple[Rectangle, ...]":
         """Split what is left outside a hole into at most four rectangles that do not overlap."""
         cut = self.cut(hole)
         if cut.is_empty:

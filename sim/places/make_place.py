@@ -1,7 +1,5 @@
 """Build a place of its settings: its shell, the things in it, and what moves them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path

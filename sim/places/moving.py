@@ -1,7 +1,5 @@
 """Things that are moved: where a thing is at a time, and what happens to it then."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from enum import StrEnum
@@ -58,7 +56,7 @@ class Stance:
         """(..., 3) [m] points of the world frame, in the thing's frame."""
         return np.asarray((points - np.array(self.position_m)) @ _turned(self.heading_rad))
 
-    def turned_about(self, hinge_m: tuple[float, float], angle_rad: float) -> Stance:
+    def turned_about(self, hinge_m: tuple[float, float], angle_rad: float) -> "Stance":
         """The stance after a turn about an upright axis through hinge_m (x, y) [m]."""
         x, y, z = self.position_m
         dx, dy = x - hinge_m[0], y - hinge_m[1]

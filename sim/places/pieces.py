@@ -3,8 +3,6 @@
 A thing's frame: x forward, y left, z up; origin on the floor below its middle, or on the wall behind it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """What stands in a world: walls, floor, ceiling, and the things between them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Annotated

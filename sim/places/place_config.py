@@ -1,7 +1,5 @@
 """The settings of a place: its kind and size, its doors, and its surfaces."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, Final, Literal
 

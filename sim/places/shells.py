@@ -1,7 +1,5 @@
 """Shells of places, built from a floor plan: floor, walls and doors; a ceiling, or houses and a sky."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 

@@ -6,8 +6,6 @@ not, those of the other pixel are. What they meet looks as one of the two pixels
 twice, and any image of the view can do it. Where an image shows no step, nothing is done.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray

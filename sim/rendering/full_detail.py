@@ -1,7 +1,5 @@
 """What makes images of full detail of a view: edges, mirrors, and what touches the floor."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """How panoramic cameras see: exactly, by the ray caster; what they see may go on over the seam."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from weakref import WeakKeyDictionary

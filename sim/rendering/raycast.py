@@ -4,8 +4,6 @@ Nothing is clipped: the formulas of `canvas` hold for corners behind the camera 
 seen from outside only: a camera within one does not see it. TinyRenderer leaves out the same sides.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

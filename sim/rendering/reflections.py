@@ -6,8 +6,6 @@ only hides them there: what is mirrored besides is taken as the surroundings. As
 is drawn at every third pixel.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

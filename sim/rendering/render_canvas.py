@@ -10,8 +10,6 @@ and needs no division. Where a row enters and leaves a piece follows from its ed
 outline (quadratic in x) before any pixel is looked at.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """What cameras see, drawn by one of two renderers, and the outlines of what stands alone before them."""
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -81,7 +79,7 @@ def _step(here: Point, before: Point, after: Point) -> Point:
 _MOST_PEOPLE = 64
 
 
-def render(scene: Scene, camera: Pinhole, world_from_camera: Matrix) -> View:
+def render(scene: "Scene", camera: Pinhole, world_from_camera: Matrix) -> View:
     """Draw a scene by its renderer: "raycast", exact and quick, or "bullet", an independent reference.
 
     Raises:
@@ -233,7 +231,7 @@ class Scene:
     person_of_part: NDArray[np.int64]
     hidden: Mask
 
-    def only(self, parts: Mask) -> Scene:
+    def only(self, parts: Mask) -> "Scene":
         """The same scene with some parts (P,) alone, as those of one person."""
         return replace(self, person_of_part=np.where(parts, 0, NOBODY), hidden=~parts)
 

@@ -3,8 +3,6 @@
 A column is drawn as a row, by a camera that lies on its side: rows are what the ray caster is quick at.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """What lies behind the pixels of one image."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The robot: wheels that drive it, encoders that count, and a ring of sonars."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

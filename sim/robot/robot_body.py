@@ -1,7 +1,5 @@
 """The robot's body: the file that describes it, its wheels, outline and sonars, and its materials."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

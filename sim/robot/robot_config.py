@@ -1,7 +1,5 @@
 """The settings of the robot: its start, its drive, its sonars, and the cameras that it carries."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """The sonar ring: the nearest solid within each of 16 cones."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from typing import TypeAlias

@@ -5,8 +5,6 @@ beyond the near plane, in the optical frame; `EMPTY` if there is none. Poses are
 camera from shape.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

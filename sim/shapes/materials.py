@@ -1,7 +1,5 @@
 """How surfaces look to the thermal and the colour camera, and colours by name."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum

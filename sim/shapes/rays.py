@@ -5,8 +5,6 @@ in `ShapeTable`; t is infinite for a miss. As in `raycast`, shapes are seen from
 of these kernels' business: they are always missed.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba import njit

@@ -1,7 +1,5 @@
 """All visible shapes of one world, and of many, as arrays for the kernels of the ray caster."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

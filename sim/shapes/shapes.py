@@ -1,7 +1,5 @@
 """What things are made of: primitive shapes, grouped into parts that share a pose and a look."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cache

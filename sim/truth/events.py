@@ -1,7 +1,5 @@
 """What happens between one instant and the next: entries, exits, occlusions, contacts."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The truth at an instant as far as it needs no image, with how much of people rays find visible."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from typing import Any, Final, NamedTuple, TypeAlias

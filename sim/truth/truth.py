@@ -1,7 +1,5 @@
 """The exact truth about one instant: poses of people, what the camera sees of them, and occlusion."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

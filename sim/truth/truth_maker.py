@@ -1,7 +1,5 @@
 """Makes the truth: puts what the renderer saw beside what the people's bodies say."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
@@ -135,7 +133,7 @@ class TruthMaker:
         shown: list[int],
         pixels: Edges,
         edges: Sequence[Edges],
-        joints: _Joints,
+        joints: "_Joints",
     ) -> PersonTruth:
         """Tell of a person, at whose pixels so many of each owner's are `shown`, and in which are its own."""
         person, (whole, height, torso) = self._people[k], edges
@@ -184,7 +182,7 @@ class TruthMaker:
         outside = area - sum(shown)
         return shares | {BORDER: outside / area} if outside > 0 else shares
 
-    def _joints(self, here: Sequence[int], seen: RenderPass) -> Iterator[_Joints]:
+    def _joints(self, here: Sequence[int], seen: RenderPass) -> "Iterator[_Joints]":
         """Return the joints of some people, by their numbers from 0."""
         places = np.concatenate([self._people[k].joints() for k in here])
         pixels = seen.camera.project(transform(invert_pose(seen.world_from_camera), places))

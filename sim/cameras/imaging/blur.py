@@ -1,7 +1,5 @@
 """What optics and rotation do to an image: point spread and motion blur."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 

@@ -1,7 +1,5 @@
 """What one camera sees at an instant, with the materials of all that it may see as arrays for kernels."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -5,8 +5,6 @@ that to greys, and plateau equalisation gives temperatures that many pixels have
 than a plateau lets it. Greys 0 and 255 are left to the tails.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Final
 

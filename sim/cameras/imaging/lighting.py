@@ -1,7 +1,5 @@
 """What shiny surfaces mirror, added to an image that is linear in light or radiance."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

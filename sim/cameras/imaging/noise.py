@@ -1,7 +1,5 @@
 """Gaussian noise for whole images, quickly."""
 
-from __future__ import annotations
-
 import math
 from typing import Final
 

@@ -3,8 +3,6 @@
 Patterns live in the frame of their part, so they move with it; every value depends on the point alone.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Clothes as both cameras see them: warm where they lie on, cool where they hang, creased at the joints."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Faces, hair and bare skin: what is warm and cool in them, and what is dark."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

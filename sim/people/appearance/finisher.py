@@ -1,7 +1,5 @@
 """How a person looks in full detail: warmth that follows the air, folds, a face, hair, and a bag."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 

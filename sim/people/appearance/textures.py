@@ -1,7 +1,5 @@
 """Grids wrapped round the parts of a body: crumpled cloth, and the paint that becomes a finish."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

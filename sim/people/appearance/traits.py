@@ -1,7 +1,5 @@
 """What sets one person apart from the next: usual clothes by sex and warmth, glasses, straps, body warmth."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, Literal

@@ -1,7 +1,5 @@
 """Sizes of a human body from stature, sex and build."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal

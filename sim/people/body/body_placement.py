@@ -1,7 +1,5 @@
 """From turns of joints to bones above the floor and the parts that they carry, and reaching for a point."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """The shapes of a human body: overlapping capsules, spheres and boxes on the bones."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Clothes, hair and skin: what covers which part of a person, how warm and how coloured it is."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Literal

@@ -1,7 +1,5 @@
 """Gait: a motion-captured cycle of walking, tabulated by stride length and phase, and its look-up."""
 
-from __future__ import annotations
-
 import functools
 import json
 import math
@@ -18,6 +16,8 @@ from scipy.spatial.transform import Rotation
 from peopleboy.sim.people.body.body_shapes import SIDES, sole_points
 from peopleboy.sim.people.body.manner import USUAL, Manner, bearing
 from peopleboy.sim.people.body.skeleton import ARM_BONES, BONE_INDEX, BONES, lateral, standing_rotations
+
+Array = NDArray[np.float64]
 
 PHASES: Final = 48
 AMPLITUDES: Final = np.array([0.0, 0.15, 0.3, 0.5, 0.75, 1.0, 1.2, 1.4])
@@ -105,8 +105,6 @@ def load_walking_clip() -> WalkingClip:
         array.setflags(write=False)
     return WalkingClip(rotations=rotations, sway=sway, stride_m=data["stride_m"])
 
-
-Array = NDArray[np.float64]
 
 # The left foot of the clip is on the floor between these phases [cycles].
 _HEEL_STRIKE, _TOE_OFF = 0.485, 1.085

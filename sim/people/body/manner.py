@@ -1,7 +1,5 @@
 """How one person walks and holds itself: what sets one gait apart from the next."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

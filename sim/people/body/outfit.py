@@ -1,7 +1,5 @@
 """What changes a person's outline beside the catalogue of clothes: coats, wide legs, hair, hats, bags."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final, Literal

@@ -1,7 +1,5 @@
 """Bones, the joints between them, postures as turns of the joints, and where a pose puts the bones."""
 
-from __future__ import annotations
-
 import math
 from enum import StrEnum
 

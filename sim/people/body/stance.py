@@ -1,7 +1,5 @@
 """How people hold themselves from instant to instant, as arrays for kernels."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any, Final, NamedTuple

@@ -1,7 +1,5 @@
 """Paths over the floor: straight lines joined by arcs, and whether walls stand in between."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

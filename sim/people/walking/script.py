@@ -1,7 +1,5 @@
 """Scripts of people, and how far along them the people are, as arrays for kernels."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """How people give way: the social force model (numba kernels)."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Final, NamedTuple, TypeAlias

@@ -3,8 +3,6 @@
 Records are WALK of all people, changed in place; those of the scripts are read only.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, Final
 

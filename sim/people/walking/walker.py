@@ -1,7 +1,5 @@
 """One person's walk along its script: what guides it besides, and when it is where if nothing disturbs it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

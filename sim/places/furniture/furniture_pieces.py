@@ -4,8 +4,6 @@ Source of the list of clutter: T fig. 4.1. Every builder takes depth, width, hei
 [degC] and colour of the main piece, and returns the pieces, the main one first.
 """
 
-from __future__ import annotations
-
 from peopleboy.sim.places.pieces import (
     ALONG_Y,
     BLACK,

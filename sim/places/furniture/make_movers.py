@@ -1,7 +1,5 @@
 """Make movers of the actions of things; actions that cannot happen are refused."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Where the things of a scenario stand: on the floor, against or on a wall, under the ceiling, on a thing."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace

@@ -3,8 +3,6 @@
 Builders as in `furniture_pieces`: size [m], temperature [degC] and colour of the main piece, which is first.
 """
 
-from __future__ import annotations
-
 import math
 
 from peopleboy.sim.places.furniture.appliances import capsule

@@ -1,7 +1,5 @@
 """Every kind of thing by name, and the settings of a thing: where it stands, how it looks, what it does."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 

@@ -4,8 +4,6 @@ A clear sky looks far colder overhead than the air and hardly colder at the hori
 stone that had sun by day stays warm in the evening.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from peopleboy.sim.places.textures.surface_texture import Array, SurfaceTexture

@@ -1,7 +1,5 @@
 """Where the sun gets in through windows, or falls between houses, and warms what it meets."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

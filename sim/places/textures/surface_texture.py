@@ -1,7 +1,5 @@
 """The flat grids that surfaces are painted on."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +9,8 @@ from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.places.extent import Extent, shape_extents
 from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.shapes.materials import Painting, Unrolling
+
+Array = NDArray[np.float64]
 
 # Clouds: smooth noise that has structure at all scales, as stains, drafts and moisture have.
 
@@ -50,8 +50,6 @@ def draw_clouds(rng: np.random.Generator) -> Clouds:
     square = np.fft.irfft2(spectrum, (_SIDE, _SIDE))
     return Clouds(square / square.std())
 
-
-Array = NDArray[np.float64]
 
 _FINEST_M, _MOST_TEXELS = 0.025, 300_000
 _FINEST_OF_THINGS_M, _TEXELS_OF_THINGS = 0.01, 20_000

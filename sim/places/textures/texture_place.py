@@ -1,7 +1,5 @@
 """Paint a whole place: every surface by its covering, then what things and the sun do to it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
