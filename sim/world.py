@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.cameras.imaging.camera_view import CameraView, MaterialTable, make_material_table
+from peopleboy.sim.cameras.imaging.camera_view import CameraView, make_material_table
 from peopleboy.sim.cameras.kinds import flat_geometry, kind_of
 from peopleboy.sim.cameras.rig import Rig
 from peopleboy.sim.geometry.pinhole import CameraGeometry, Matrix, Pinhole
@@ -29,7 +29,7 @@ from peopleboy.sim.robot.peoplebot import PeopleBot
 from peopleboy.sim.robot.robot_body import NAME as ROBOT
 from peopleboy.sim.robot.robot_body import RADIUS_M, robot_material
 from peopleboy.sim.shapes.materials import Material
-from peopleboy.sim.shapes.shape_table import ShapeTable, make_shape_table
+from peopleboy.sim.shapes.shape_table import make_shape_table
 from peopleboy.sim.truth.scenes import SCENE, ImageFreeTruth, Records, Scenes, known_people, look_at_people
 from peopleboy.sim.truth.truth import BORDER, Box, Truth
 from peopleboy.sim.truth.truth_maker import TruthMaker
@@ -45,6 +45,14 @@ class World:
     `observe` returns what the robot senses now; `truth` what is true at the same instant; `step` moves the
     world on by one control step. The same configuration gives the same bytes in every process.
 
+    Attributes:
+        config: as given.
+        crowd: all people.
+        robot: that `step` drives.
+        physics: where robot, people and things are, and what they hit.
+        table, materials, rig: all that cameras see, how its parts look, and the robot's cameras; there
+            must be images.
+
     Raises:
         BadInput: names clash, or something cannot be built.
     """
@@ -54,11 +62,11 @@ class World:
         self._tick = 0
         self._touching: set[str] = set()
         _check_names(config)
-        self._physics = _open_physics(config)
+        self.physics = _open_physics(config)
         try:
             self._build()
         except BaseException:
-            self._physics.close()
+            self.physics.close()
             raise
 
     def __enter__(self) -> "World":
@@ -72,8 +80,8 @@ class World:
     def close(self) -> None:
         """Free the physics world; what was not read until now cannot be read any more."""
         if self.config.renderer != BLIND:
-            self._rig.forget()
-        self._physics.close()
+            self.rig.forget()
+        self.physics.close()
 
     @property
     def cameras(self) -> Mapping[str, CameraConfig]:
@@ -85,39 +93,9 @@ class World:
         """Whether there is a renderer."""
         return self.config.renderer != BLIND
 
-    @property
-    def crowd(self) -> Crowd:
-        """All people."""
-        return self._crowd
-
-    @property
-    def robot(self) -> PeopleBot:
-        """The robot that `step` drives."""
-        return self._robot
-
-    @property
-    def physics(self) -> Physics:
-        """Where robot, people and things are, and what they hit."""
-        return self._physics
-
-    @property
-    def table(self) -> ShapeTable:
-        """All that cameras see; there must be images."""
-        return self._table
-
-    @property
-    def materials(self) -> MaterialTable:
-        """Materials of its parts."""
-        return self._materials
-
     def await_images(self) -> tuple[str, ...]:
         """Names of the cameras whose images of this instant are made elsewhere; there must be images."""
-        return self._rig.expect(self._tick)
-
-    @property
-    def rig(self) -> Rig:
-        """The robot's cameras; there must be images."""
-        return self._rig
+        return self.rig.expect(self._tick)
 
     @property
     def touching(self) -> tuple[str, ...]:
@@ -150,15 +128,15 @@ class World:
 
     def take_images(self) -> Mapping[str, NDArray[Any]]:
         """Return the images of this instant, as `observe` does; there must be images."""
-        return self._rig.read(self._tick)
+        return self.rig.read(self._tick)
 
     def sense(self) -> Senses:
         """Read every sensor but the cameras once; instead of `observe`, where nobody needs the images."""
         return Senses(
             time_s=self.time_s,
-            sonar_m=self._robot.sonar(),
-            odometry=self._robot.odometry,
-            wheel_speeds_m_s=self._robot.wheel_speeds(),
+            sonar_m=self.robot.sonar(),
+            odometry=self.robot.odometry,
+            wheel_speeds_m_s=self.robot.wheel_speeds(),
         )
 
     def scene(self) -> ImageFreeTruth:
@@ -167,19 +145,19 @@ class World:
 
     def scenes(self) -> Scenes:
         """Return what `scene` does as arrays, of one world."""
-        pose, world_from_robot = self._robot.pose(), self._robot.world_from_robot()
+        pose, world_from_robot = self.robot.pose(), self.robot.world_from_robot()
         robot = np.array([pose.x, pose.y, pose.heading])
         worlds, people = np.zeros(1, SCENE), self._bystanders(robot, world_from_robot)
-        worlds["time_s"], worlds["robot"], worlds["velocity"] = self.time_s, robot, self._robot.velocity()
+        worlds["time_s"], worlds["robot"], worlds["velocity"] = self.time_s, robot, self.robot.velocity()
         worlds["is_touching"], worlds["end"] = bool(self._touching), len(people)
-        return Scenes(worlds, people, (self._crowd.names,), (self.touching,))
+        return Scenes(worlds, people, (self.crowd.names,), (self.touching,))
 
     def _bystanders(self, robot: Matrix, world_from_robot: Matrix) -> Records:
         """(Q,) records BYSTANDER of all who are present, by the robot's pose (3,) [m, m, rad] and (4, 4)."""
-        present = [k for k, person in enumerate(self._crowd.people) if person.present]
+        present = [k for k, person in enumerate(self.crowd.people) if person.present]
         found = self._known_people[present]
         for row, k in zip(found, present, strict=True):
-            person = self._crowd.people[k]
+            person = self.crowd.people[k]
             row["position_m"], row["velocity_m_s"] = person.position, person.velocity
             row["heading_rad"] = person.heading
         camera = flat_geometry(self.config.robot.cameras, "thermal")
@@ -187,7 +165,7 @@ class World:
 
         def cast(_: NDArray[np.int64], starts: Matrix, ends: Matrix) -> Matrix:
             rays = starts.reshape(-1, 3), ends.reshape(-1, 3)
-            return self._physics.cast_rays(*rays, ignore=ROBOT)[0].reshape(starts.shape[:2])
+            return self.physics.cast_rays(*rays, ignore=ROBOT)[0].reshape(starts.shape[:2])
 
         look_at_people(found, robot[None], camera, cameras, cast)
         return found
@@ -205,8 +183,8 @@ class World:
         return self._truth_maker.make(
             time_s=self.time_s,
             seen=seen,
-            robot=self._robot.pose(),
-            robot_velocity=self._robot.velocity(),
+            robot=self.robot.pose(),
+            robot_velocity=self.robot.velocity(),
             contacts=self.touching,
         )
 
@@ -233,11 +211,11 @@ class World:
         """
         self._check_sight()
         at_once = {"thermal": self.truth()}
-        return OnDemand(self._rig.due(self._tick), partial(self._truth_at, self._tick), at_once)
+        return OnDemand(self.rig.due(self._tick), partial(self._truth_at, self._tick), at_once)
 
     def robot_state(self) -> PlanarState:
         """Return where the robot is, how it moves, and how wide it is, as people see it."""
-        pose, (speed, _) = self._robot.pose(), self._robot.velocity()
+        pose, (speed, _) = self.robot.pose(), self.robot.velocity()
         heading = np.array([np.cos(pose.heading), np.sin(pose.heading)])
         place = np.array([pose.x, pose.y])
         return PlanarState(
@@ -256,11 +234,11 @@ class World:
         touched = set()
         steps = self.config.physics_hz // self.config.control_hz
         for k in range(steps):
-            self._robot.drive(1.0 / self.config.physics_hz)
-            self._crowd.move_bodies((k + 1) / steps)
-            self._physics.step()
-            touched |= self._robot.touching()
-        self._robot.update_odometry()
+            self.robot.drive(1.0 / self.config.physics_hz)
+            self.crowd.move_bodies((k + 1) / steps)
+            self.physics.step()
+            touched |= self.robot.touching()
+        self.robot.update_odometry()
         self.end_step(touched)
 
     def begin_step(self, linear_m_s: float, angular_rad_s: float, *, is_emergency: bool = False) -> None:
@@ -269,8 +247,8 @@ class World:
         Raises:
             BadInput: the command is not finite.
         """
-        self._robot.command(linear_m_s, angular_rad_s, is_emergency=is_emergency)
-        self._crowd.step(self.time_s, 1.0 / self.config.control_hz, self.robot_state())
+        self.robot.command(linear_m_s, angular_rad_s, is_emergency=is_emergency)
+        self.crowd.step(self.time_s, 1.0 / self.config.control_hz, self.robot_state())
 
     def end_step(self, touched: Collection[str], *, is_settled: bool = False) -> None:
         """Take over what physics made of the step.
@@ -287,9 +265,9 @@ class World:
             self._settle()
 
     def _build(self) -> None:
-        config, physics = self.config, self._physics
+        config, physics = self.config, self.physics
         materials = _add_fixtures(physics, config.place)
-        self._crowd = Crowd(
+        self.crowd = Crowd(
             physics,
             config.people,
             config.place,
@@ -297,38 +275,38 @@ class World:
             is_visible=config.renderer != BLIND,
             detail=config.detail,
         )
-        self._known_people = known_people(self._crowd.people)
-        self._handling = Handling(physics, config.place, self._crowd.people)
-        self._robot = PeopleBot(physics, config.robot, config.seed)
+        self._known_people = known_people(self.crowd.people)
+        self._handling = Handling(physics, config.place, self.crowd.people)
+        self.robot = PeopleBot(physics, config.robot, config.seed)
         if config.renderer != BLIND:
-            self._open_eyes(materials | self._crowd.materials)
+            self._open_eyes(materials | self.crowd.materials)
         self._settle()
 
     def _open_eyes(self, materials: dict[str, Material]) -> None:
         """Prepare for images: what is to be seen, and how each part looks, by body name."""
-        config, physics = self.config, self._physics
+        config, physics = self.config, self.physics
         keys = physics.parts()
         part_materials = [
             robot_material(key.link_name) if key.name == ROBOT else materials[key.name] for key in keys
         ]
-        self._table = make_shape_table(physics.visual_shapes())
+        self.table = make_shape_table(physics.visual_shapes())
         paintings = paint_place(config.place, config.seed) if config.detail == "full" else {}
-        self._materials = make_material_table(
+        self.materials = make_material_table(
             part_materials,
             stream(config.seed, "surface.variation"),
             [paintings.get(key.name) for key in keys],
         )
-        self._truth_maker = TruthMaker(keys, self._crowd, part_materials, config.place.movers)
-        self._is_shiny = self._materials.shine > 0.0
-        stands_out = abs(self._materials.thermal[:, 0] - config.place.surroundings_c) > _STANDS_OUT_K
-        is_person, glows = self._truth_maker.person_of_part != NOBODY, self._materials.colour[:, 6] > 0.0
+        self._truth_maker = TruthMaker(keys, self.crowd, part_materials, config.place.movers)
+        self._is_shiny = self.materials.shine > 0.0
+        stands_out = abs(self.materials.thermal[:, 0] - config.place.surroundings_c) > _STANDS_OUT_K
+        is_person, glows = self._truth_maker.person_of_part != NOBODY, self.materials.colour[:, 6] > 0.0
         self._is_mirrored = is_person | stands_out | glows
-        self._rig = Rig(config.robot.cameras, config.control_hz, config.seed, self._camera_view)
+        self.rig = Rig(config.robot.cameras, config.control_hz, config.seed, self._camera_view)
 
     def _settle(self) -> None:
         """Take over the poses of a new instant; what was seen before is forgotten."""
         self._handling.show(self.time_s)
-        self._crowd.show(self._robot.gap_to)
+        self.crowd.show(self.robot.gap_to)
         self._forget()
 
     def _forget(self) -> None:
@@ -337,7 +315,7 @@ class World:
             return
         self._scene_now: Scene | None = None
         self._seen: dict[tuple[Renderer, CameraGeometry], RenderPass] = {}
-        self._rig.forget()
+        self.rig.forget()
 
     @property
     def _scene(self) -> Scene:
@@ -345,11 +323,11 @@ class World:
         if self._scene_now is None:
             self._scene_now = Scene(
                 renderer=self.config.renderer,
-                physics=self._physics,
-                table=self._table,
-                world_from_part=self._physics.part_poses(),
+                physics=self.physics,
+                table=self.table,
+                world_from_part=self.physics.part_poses(),
                 person_of_part=self._truth_maker.person_of_part,
-                hidden=self._physics.hidden_parts(),
+                hidden=self.physics.hidden_parts(),
             )
         return self._scene_now
 
@@ -371,7 +349,7 @@ class World:
         self._check_sight()
         renderer, camera = kind_of(config).renderer, config.camera
         if (renderer, camera) not in self._seen:
-            pose = self._robot.world_from_robot() @ camera.robot_from_camera
+            pose = self.robot.world_from_robot() @ camera.robot_from_camera
             self._seen[renderer, camera] = look(renderer, self._scene, camera, pose)
         return self._seen[renderer, camera]
 
@@ -383,10 +361,10 @@ class World:
             draw=lambda camera: seen.renderer.view(seen.scene, camera, seen.world_from_camera),
             world_from_camera=seen.world_from_camera,
             world_from_part=self._scene.world_from_part,
-            materials=self._materials,
+            materials=self.materials,
             surroundings_c=self.config.place.surroundings_c,
             light_level=light_level(self.config.place, self.time_s),
-            turn_rad_s=self._robot.velocity()[1],
+            turn_rad_s=self.robot.velocity()[1],
             time_s=self.time_s,
             full_detail=self._full_detail(seen),
         )

@@ -166,7 +166,7 @@ def bullet_rate(image_size: tuple[int, int], steps: int = 20) -> float:
         for camera in (one.camera for one in config.robot.cameras.values())
     ]
     with World(config) as world:
-        client, robot = world._physics._client, world._robot
+        client, robot = world.physics._client, world.robot
 
         def step(number: int) -> None:  # noqa: ARG001
             world.step(0.0, 0.3)

@@ -244,7 +244,7 @@ def test_a_command_that_is_no_number_is_refused_and_moves_nothing() -> None:
 
 def test_its_own_body_is_not_in_the_robot_s_default_cameras() -> None:
     with World(WorldConfig(place=hall(), robot=RobotConfig(at_m=(3.0, 0.0)))) as world:
-        keys = world._physics.parts()
+        keys = world.physics.parts()
         own = [k for k, key in enumerate(keys) if key.name == "robot"]
         for command in [(0.0, 0.0), (0.8, 2.6), (-0.8, -2.6)]:
             for _ in range(8):
@@ -285,7 +285,7 @@ def test_a_person_who_walks_on_past_a_robot_that_comes_from_the_side_pushes_it()
         for _ in range(60):
             world.step(0.8, 0.0)
             contacts.append(world.truth().contacts)
-            tilts.append(world._robot.world_from_robot()[2, 2])
+            tilts.append(world.robot.world_from_robot()[2, 2])
     assert set(contacts) == {(), ("walker",)}
     assert contacts[0] == ()
     assert min(tilts) > math.cos(math.radians(3.0))

@@ -292,7 +292,7 @@ def test_closing_frees_the_physics_world(scene: Path) -> None:
     world = env._world
     env.close()
     env.close()
-    assert world._physics._client._number is None
+    assert world.physics._client._number is None
     with pytest.raises(BadInput, match="reset"):
         env.step((0.0, 0.0))
 

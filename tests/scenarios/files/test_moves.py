@@ -168,7 +168,7 @@ def _hands(name: str) -> list[tuple[Mover, float]]:
     """How far the acting hand is from what it moves, at every instant of a run."""
     scenario, gaps = load_scenario(name), []
     with World(scenario.world(0)) as world:
-        people = {person.name: person for person in world._crowd.people}
+        people = {person.name: person for person in world.crowd.people}
         for _ in range(round(scenario.duration_s * 15)):
             for mover in scenario.place.movers:
                 for action in mover.actions:

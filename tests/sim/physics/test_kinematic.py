@@ -128,8 +128,8 @@ def test_only_one_body_that_rolls_on_two_wheels_can_move() -> None:
 def test_an_image_is_the_same_by_either_physics_until_the_robot_moves() -> None:
     config = load_scenario("single_follow").world(3)
     with World(config) as theirs, World(replace(config, physics="kinematic")) as ours:
-        assert theirs._physics.parts() == ours._physics.parts()
-        for one, other in zip(theirs._physics.visual_shapes(), ours._physics.visual_shapes(), strict=True):
+        assert theirs.physics.parts() == ours.physics.parts()
+        for one, other in zip(theirs.physics.visual_shapes(), ours.physics.visual_shapes(), strict=True):
             assert (one.part, one.kind, one.mesh) == (other.part, other.kind, other.mesh)
             np.testing.assert_allclose(one.size, other.size, atol=1e-12)
             np.testing.assert_allclose(one.part_from_shape, other.part_from_shape, atol=1e-12)

@@ -111,7 +111,7 @@ def test_the_sky_over_a_street_is_colder_the_steeper_one_looks() -> None:
 def test_a_plain_world_has_no_paintings(tmp_path: Any) -> None:
     scenario = parse_scenario(ROOM | {"detail": "plain"}, source="room.yaml", folder=tmp_path)
     with World(scenario.world(0)) as world:
-        assert world._materials.paint_texels.size == 0
+        assert world.materials.paint_texels.size == 0
 
 
 def test_what_is_not_heated_follows_the_air(tmp_path: Any) -> None:

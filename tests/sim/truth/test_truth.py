@@ -44,7 +44,7 @@ class Scene:
 
 def draw_alone(world: World, k: int, pose: np.ndarray) -> np.ndarray:
     """(3 H, 3 W) where TinyRenderer draws a person in a PyBullet world of its own, image in the middle."""
-    somebody = world._crowd.people[k]
+    somebody = world.crowd.people[k]
     with Bullet() as bullet:
         for part, part_pose in zip(somebody.parts, somebody.poses(), strict=True):
             bullet.add_part(part.name, part.shapes)
