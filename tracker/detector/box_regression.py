@@ -9,9 +9,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.detector.cascade import DEPTH, NODES
+from peopleboy.tracker.detector.cascade import NODES, find_leaf
 from peopleboy.tracker.detector.channels import Cells
-from peopleboy.tracker.detector.patches import Layouts, Patches, Sums, patch
+from peopleboy.tracker.detector.patches import Layouts, Patches, Sums
 from peopleboy.tracker.detector.window import Floats
 
 OFFSETS: Final = 4
@@ -88,12 +88,8 @@ def _place(
     result[:] = 0.0
     for offset_of in range(leaf.shape[0]):
         for tree in range(trees):
-            nodes = (offset_of * trees + tree) * NODES
+            nodes = np.uint32((offset_of * trees + tree) * NODES)
             for number in range(len(begin)):
                 at = np.uint32(begin[number])
-                node = 0
-                for _ in range(DEPTH):
-                    corner, by = offset[nodes + node], weight[nodes + node]
-                    seen = patch(sums, at, corner, by)
-                    node = 2 * node + 1 + (seen > threshold[nodes + node])
-                result[number, offset_of] += leaf[offset_of, tree, node - NODES]
+                end = find_leaf(sums, at, offset, weight, threshold, nodes)
+                result[number, offset_of] += leaf[offset_of, tree, end]

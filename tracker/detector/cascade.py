@@ -127,6 +127,19 @@ class Cascade:
         return scores
 
 
+@njit(inline="always")
+def find_leaf(
+    sums: Sums, at: np.uint32, offset: NDArray[np.uint32], weight: Cells, threshold: Cells, nodes: np.uint32
+) -> np.uint32:  # pragma: no cover
+    """Return the leaf (0 to 7) of a window that begins at a place, in the tree with nodes from one on."""
+    node = np.uint32(0)
+    for _ in range(DEPTH):
+        seen = patch(sums, at, offset[nodes + node], weight[nodes + node])
+        is_right = seen > threshold[nodes + node]
+        node = np.uint32(2) * node + np.uint32(1) + np.uint32(is_right)
+    return node - np.uint32(NODES)
+
+
 @njit(cache=True, nogil=True)
 def _scan(
     sums: Sums,
@@ -214,13 +227,7 @@ def _walk(
         kept = 0
         nodes, leaves, limit = np.uint32(tree * NODES), np.uint32(tree * LEAVES), least[tree]
         for k in range(count):
-            node = np.uint32(0)
-            for _ in range(DEPTH):
-                corner, by = offset[nodes + node], weight[nodes + node]
-                seen = patch(sums, at[k], corner, by)
-                is_right = seen > threshold[nodes + node]
-                node = np.uint32(2) * node + np.uint32(1) + np.uint32(is_right)
-            total = score[k] + leaf[leaves + node - np.uint32(NODES)]
+            total = score[k] + leaf[leaves + find_leaf(sums, at[k], offset, weight, threshold, nodes)]
             at[kept], score[kept] = at[k], total
             kept += total >= limit
         count = kept
@@ -240,9 +247,6 @@ def _run(
 ) -> None:  # pragma: no cover
     score = np.float32(0.0)
     for tree in range(len(leaf)):
-        node, nodes = 0, tree * NODES
-        for _ in range(DEPTH):
-            seen = patch(window, np.uint32(0), offset[nodes + node], weight[nodes + node])
-            node = 2 * node + 1 + (seen > threshold[nodes + node])
-        score += leaf[tree, node - NODES]
+        nodes = np.uint32(tree * NODES)
+        score += leaf[tree, find_leaf(window, np.uint32(0), offset, weight, threshold, nodes)]
         scores[tree] = score
