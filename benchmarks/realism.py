@@ -23,8 +23,8 @@ from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import make_named_tracker
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.run_folder.atomic_output import atomic
+from peopleboy.scenarios.run_folder.folder import gt_lines
 from peopleboy.scenarios.run_folder.image_files import image_file, write_png
-from peopleboy.scenarios.run_folder.truth_files import gt_lines
 from peopleboy.scenarios.sim_to_real.compare import Separability, compare_images
 from peopleboy.scenarios.sim_to_real.page import describe_auc, write_comparison
 from peopleboy.sim.world import World

@@ -27,6 +27,7 @@ from peopleboy.scenarios.run_folder.image_files import (
     write_images,
     write_png,
 )
+from peopleboy.scenarios.run_folder.run_files import truth_files
 from peopleboy.sim.cameras.kinds import Stored, kind_of
 from peopleboy.sim.geometry.pinhole import CameraGeometry
 from peopleboy.sim.people.person import PART_CLASSES
@@ -70,8 +71,7 @@ class OneCamera:
     @property
     def truth_file(self) -> Path:
         """Its truth as MOTChallenge text, with the run's frames."""
-        name = "gt.txt" if self.name == "thermal" else f"{self.name}.gt.txt"
-        return self.run.folder / "truth" / name
+        return truth_files(self.run.folder, self.name)[0]
 
     @property
     def tracks_file(self) -> Path:

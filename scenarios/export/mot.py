@@ -28,7 +28,7 @@ from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.export.splits import by_split
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file
-from peopleboy.scenarios.run_folder.truth_files import true_boxes, truth_files
+from peopleboy.scenarios.run_folder.run_files import true_boxes, truth_files
 from peopleboy.tracker.evaluation.mot_files import truth_line
 from peopleboy.tracker.footage.box_kinds import BoxKind
 

@@ -35,7 +35,7 @@ from peopleboy.scenarios.export.camera_images import (
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.export.splits import by_split
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
-from peopleboy.scenarios.run_folder.run_files import read_table
+from peopleboy.scenarios.run_folder.run_files import read_table, truth_files
 from peopleboy.scenarios.run_folder.run_tables import TRUTH, Row
 from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.people.body.skeleton import JOINT_NAMES
@@ -142,9 +142,9 @@ def _mirrored() -> list[int]:
 
 def _labels(shots: OneCamera, what: _Labels) -> Iterator[tuple[int, str]]:
     """Yield the labels of each image, a line a box; of an image without people, none."""
-    name = "truth.parquet" if shots.name == "thermal" else f"truth/{shots.name}.parquet"
+    _, table = truth_files(shots.run.folder, shots.name)
     people: dict[int, list[Row]] = defaultdict(list)
-    for row in read_table(shots.run.folder / name, TRUTH, _COLUMNS).to_pylist():
+    for row in read_table(table, TRUTH, _COLUMNS).to_pylist():
         if row[_EDGES[0]] is not None:
             people[row["frame"]].append(row)
     for frame in shots.frames:

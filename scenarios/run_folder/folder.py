@@ -22,31 +22,105 @@ from peopleboy.scenarios.run_folder.image_files import (
     BackgroundQueue,
     images_to_write,
     make_image_folders,
+    millimetres,
     write_png,
 )
+from peopleboy.scenarios.run_folder.run_files import truth_files
 from peopleboy.scenarios.run_folder.run_tables import (
     ROBOT,
+    THINGS,
     TRACKS,
     TRUTH,
     Row,
     robot_row,
+    thing_rows,
     track_rows,
     truth_rows,
     write_table,
 )
-from peopleboy.scenarios.run_folder.truth_files import (
-    CameraTruth,
-    ThingFiles,
-    further_cameras,
-    gt_lines,
-    open_text,
-)
-from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.tracker.evaluation.mot_files import track_line
+from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig
+from peopleboy.sim.cameras.kinds import with_boxes
+from peopleboy.sim.truth.truth import Backgrounds
+from peopleboy.tracker.evaluation.mot_files import track_line, truth_line
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import confirmed
 
 _VERSIONED = ("peopleboy", "numpy", "numba", "opencv-python-headless", "pybullet", "scipy")
+
+
+def further_cameras(cameras: Mapping[str, CameraConfig]) -> tuple[str, ...]:
+    """Name the cameras with boxes beside `thermal`, of which truth.parquet and truth/gt.txt speak."""
+    return tuple(name for name in with_boxes(cameras) if name != "thermal")
+
+
+class CameraTruth:
+    """Writes the truth of one camera, of the frames in which it took an image.
+
+    Args:
+        folder: of the run.
+        camera: its name.
+    """
+
+    def __init__(self, folder: Path, camera: str) -> None:
+        text, self._table = truth_files(folder, camera)
+        self.lines = open_text(text)
+        self._camera = camera
+        self._rows: list[Row] = []
+
+    def write(self, tick: Tick) -> None:
+        """Write what is true at one tick."""
+        if self._camera in tick.truths:
+            self._rows += truth_rows(tick, self._camera)
+            self.lines.writelines(gt_lines(tick, self._camera))
+
+    def write_table(self) -> None:
+        """Bring the table to disk."""
+        write_table(self._table, self._rows, TRUTH)
+
+
+def things_camera(cameras: Mapping[str, CameraConfig]) -> str:
+    """Name the camera in whose image things are described: the first depth camera, else `thermal`."""
+    return next(iter(depth_cameras(cameras)), "thermal")
+
+
+def depth_cameras(cameras: Mapping[str, CameraConfig]) -> tuple[str, ...]:
+    """Name the cameras that measure depth."""
+    return tuple(name for name, config in cameras.items() if isinstance(config, DepthConfig))
+
+
+class ThingFiles:
+    """Writes the truth about things, of a run in which some are moved.
+
+    Args:
+        folder: truth/ of the run.
+        cameras: of the robot.
+        frames: whether images are written, and with them the backgrounds of depth cameras.
+    """
+
+    def __init__(self, folder: Path, cameras: Mapping[str, CameraConfig], *, frames: bool) -> None:
+        self._folder = folder
+        self._camera = things_camera(cameras)
+        self._rows: list[Row] = []
+        self._has_things = False
+        self._backgrounds = {name: Backgrounds() for name in depth_cameras(cameras)} if frames else {}
+
+    def write(self, tick: Tick) -> None:
+        """Take in what is true at one tick."""
+        if tick.truth.things and self._camera in tick.truths:
+            self._has_things = True
+            self._rows += thing_rows(tick, self._camera)
+        for name, backgrounds in self._backgrounds.items():
+            if name in tick.truths:
+                backgrounds.update(tick.truths[name])
+
+    def flush(self) -> None:
+        """Bring everything to disk."""
+        if self._has_things:
+            write_table(self._folder / "things.parquet", self._rows, THINGS)
+        for name, backgrounds in self._backgrounds.items():
+            for kind, depth in (("clean", backgrounds.clean), ("ever", backgrounds.ever)):
+                if depth is not None:
+                    write_png(self._folder / f"{name}_{kind}.png", millimetres(depth))
 
 
 class RunFolder:
@@ -70,7 +144,6 @@ class RunFolder:
         self._cameras = cameras
         self._about = dict(about) | {"versions": versions()}
         self._writes_frames = frames
-        self._truth: list[Row] = []
         self._tracks: list[Row] = []
         self._robot: list[Row] = []
         self._is_complete = False
@@ -81,11 +154,10 @@ class RunFolder:
         (path / "truth").mkdir()
         if frames:
             make_image_folders(path, cameras)
-        self._gt = self._open("truth/gt.txt")
+        self._truths = [CameraTruth(path, name) for name in (THERMAL, *further_cameras(cameras))]
         self._things = ThingFiles(path / "truth", cameras, frames=frames)
-        self._further = {name: CameraTruth(path / "truth", name) for name in further_cameras(cameras)}
-        self._results = {THERMAL: self._open("tracks.txt")}
-        self._events = self._open("events.jsonl")
+        self._results = {THERMAL: open_text(path / "tracks.txt")}
+        self._events = open_text(path / "events.jsonl")
         self._images = BackgroundQueue()
 
     def __enter__(self) -> RunFolder:
@@ -97,8 +169,6 @@ class RunFolder:
         self._images.close()
         for file in self._texts():
             file.close()
-        for camera in self._further.values():
-            camera.close()
         if not self._is_complete:
             self._write_tables()
         state: Mapping[str, Any] = {"status": "complete" if self._is_complete and kind is None else "cut off"}
@@ -112,12 +182,10 @@ class RunFolder:
         Raises:
             BadInput: an image, of this tick or an earlier one, cannot be written.
         """
-        self._truth += truth_rows(tick)
         self._tracks += track_rows(tick)
         self._robot.append(robot_row(tick))
-        self._gt.writelines(gt_lines(tick))
-        for camera in self._further.values():
-            camera.write(tick)
+        for truth in self._truths:
+            truth.write(tick)
         self._things.write(tick)
         self._write_boxes(tick)
         self._events.writelines(json.dumps(dict(event)) + "\n" for event in events)
@@ -140,28 +208,24 @@ class RunFolder:
         self._write_tables()
         for file in self._texts():
             file.flush()
-        for camera in self._further.values():
-            camera.flush()
 
     def _texts(self) -> tuple[TextIO, ...]:
-        return self._gt, self._events, *self._results.values()
+        return self._events, *self._results.values(), *(truth.lines for truth in self._truths)
 
     def _write_boxes(self, tick: Tick) -> None:
         """Write the boxes that the tracker gives, by camera; a camera's file begins with its first box."""
         for camera in {camera for track in tick.tracks for camera in track.boxes} - set(self._results):
             (self.path / "tracks").mkdir(exist_ok=True)
-            self._results[camera] = self._open(f"tracks/{camera}.txt")
+            self._results[camera] = open_text(self.path / "tracks" / f"{camera}.txt")
         for camera, file in self._results.items():
             file.writelines(result_lines(tick, camera))
 
     def _write_tables(self) -> None:
-        write_table(self.path / "truth.parquet", self._truth, TRUTH)
+        for truth in self._truths:
+            truth.write_table()
         write_table(self.path / "tracks.parquet", self._tracks, TRACKS)
         write_table(self.path / "robot.parquet", self._robot, ROBOT)
         self._things.flush()
-
-    def _open(self, name: str) -> TextIO:
-        return open_text(self.path / name)
 
     def _write_json(self, name: str, content: Mapping[str, Any]) -> None:
         (self.path / name).write_text(json.dumps(dict(content), indent=2) + "\n", encoding="utf-8")
@@ -204,3 +268,17 @@ def result_lines(tick: Tick, camera: str = THERMAL) -> list[str]:
         track_line(tick.frame, track.id, box, track.confidence)
         for track, box in confirmed(tick.tracks, camera)
     ]
+
+
+def gt_lines(tick: Tick, camera: str = "thermal") -> list[str]:
+    """MOTChallenge truth of everybody whose silhouette reaches into a camera's image: a line a person."""
+    return [
+        truth_line(tick.frame, person.id, person.box, person.is_counted, person.visible_fraction)
+        for person in tick.truths[camera].people
+        if person.box is not None and person.is_in_image
+    ]
+
+
+def open_text(path: Path) -> TextIO:
+    """Open a file of lines to write."""
+    return path.open("w", encoding="utf-8", newline="\n")

@@ -33,6 +33,7 @@ from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.floor import Places
 from peopleboy.tracker.evaluation.mot_files import read_tracks, read_truth
 from peopleboy.tracker.evaluation.sequence import Rows, TrackBoxes, TrueBoxes
+from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.track import Box, Status, Track
 
 _AGAIN = "run the scenario again"
@@ -40,6 +41,7 @@ _TRUTH_TEXT, _TRACKS_TEXT = Path("truth") / "gt.txt", Path("tracks.txt")
 # What says which rows of the tables are in the text files too.
 WRITTEN_TRUTH = ("frame", "id", "left_px", "whole_px", "hidden_by")
 _WRITTEN_TRACKS = ("frame", "id", "status", "left_px")
+_WHOLE = ("whole_left_px", "whole_top_px", "whole_width_px", "whole_height_px")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -180,6 +182,35 @@ def read_table(path: Path, schema: pa.Schema, columns: Collection[str]) -> pa.Ta
         if table[name].null_count and name not in MAY_BE_EMPTY:
             raise BadInput(f"{path}: column {name!r} has rows without a value; {_AGAIN}")
     return table
+
+
+def truth_files(folder: Path, camera: str) -> tuple[Path, Path]:
+    """Name the text and the table of a camera's truth in a run's folder."""
+    if camera == "thermal":
+        return folder / "truth" / "gt.txt", folder / "truth.parquet"
+    return folder / "truth" / f"{camera}.gt.txt", folder / "truth" / f"{camera}.parquet"
+
+
+def true_boxes(text: Path, table: Path, kind: BoxKind) -> TrueBoxes:
+    """Read who was there: boxes round torsos are in the text, those round whole people in the table alone.
+
+    Whole ones are those of the silhouette as if nothing hid it, also outside the image.
+
+    Raises:
+        BadInput: the file is missing or spoilt.
+    """
+    if kind is BoxKind.TORSO:
+        return read_truth(text)
+    columns = (*WRITTEN_TRUTH, "is_counted", "visible_fraction", *_WHOLE)
+    people = written_truth(read_table(table, TRUTH, columns))
+    people = people.filter(people["whole_left_px"].is_valid())
+    return TrueBoxes(
+        frame=people["frame"].to_numpy(),
+        id=people["id"].to_numpy(),
+        box=np.stack([people[name].to_numpy() for name in _WHOLE], axis=-1),
+        counted=people["is_counted"].to_numpy(zero_copy_only=False),
+        visible=people["visible_fraction"].to_numpy(),
+    )
 
 
 def written_truth(people: pa.Table) -> pa.Table:

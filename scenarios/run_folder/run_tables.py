@@ -1,4 +1,4 @@
-"""Define the parquet tables of a run: truth, tracks and robot, a row per frame and person, track or robot."""
+"""Define the parquet tables of a run: truth, tracks, robot and things, a row per frame and one of them."""
 
 from __future__ import annotations
 
@@ -159,6 +159,16 @@ _TRACK: Final[TableColumns] = {
     "occluder": TableColumn(INT, attrgetter("track.occluder"), True),
 }
 
+_THING: Final[TableColumns] = {
+    **plain(STRING, "name"),
+    **numbers(("x_m", "y_m", "z_m"), attrgetter("position_m")),
+    **plain(FLOAT, "heading_rad"),
+    **plain(BOOL, "is_there", "is_moving"),
+    **plain(STRING, "moved_by"),
+    **plain(INT, "visible_px"),
+    **box("", "visible_box"),
+}
+
 _ROBOT: Final[TableColumns] = {
     **numbers(
         ("x_m", "y_m", "heading_rad"), attrgetter("truth.robot.x", "truth.robot.y", "truth.robot.heading")
@@ -176,7 +186,7 @@ _ROBOT: Final[TableColumns] = {
     "contacts": TableColumn(pa.list_(STRING), lambda tick: list(tick.truth.contacts)),
 }
 
-TRUTH, TRACKS, ROBOT = schema_of(_PERSON), schema_of(_TRACK), schema_of(_ROBOT)
+TRUTH, TRACKS, ROBOT, THINGS = map(schema_of, (_PERSON, _TRACK, _ROBOT, _THING))
 
 MAY_BE_EMPTY = frozenset(
     name for columns in (_PERSON, _TRACK) for name, column in columns.items() if column.may_be_empty
@@ -187,6 +197,11 @@ MAY_BE_EMPTY = frozenset(
 def truth_rows(tick: Tick, camera: str = "thermal") -> list[Row]:
     """Return the rows of a camera's truth table for one tick: one per person present."""
     return [row_of(_PERSON, tick.frame, tick.truth.time_s, one) for one in tick.truths[camera].people]
+
+
+def thing_rows(tick: Tick, camera: str) -> list[Row]:
+    """Return the rows of the table of things for one tick, as a camera's truth describes them."""
+    return [row_of(_THING, tick.frame, tick.truth.time_s, one) for one in tick.truths[camera].things]
 
 
 def is_in_image(people: pa.Table) -> NDArray[np.bool_]:

@@ -25,9 +25,9 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop, make_frame
 from peopleboy.scenarios.run_folder.atomic_output import atomic, writing_to
-from peopleboy.scenarios.run_folder.folder import versions
+from peopleboy.scenarios.run_folder.folder import gt_lines, versions
+from peopleboy.scenarios.run_folder.run_files import true_boxes
 from peopleboy.scenarios.run_folder.run_tables import TRUTH, truth_rows
-from peopleboy.scenarios.run_folder.truth_files import gt_lines, true_boxes
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.observation import Observation
 from peopleboy.tracker.evaluation.sequence import TrueBoxes

@@ -26,9 +26,10 @@ from peopleboy.scenarios.run_folder.run_files import (
     places_of_people,
     places_of_tracks,
     read_table,
+    true_boxes,
+    truth_files,
 )
 from peopleboy.scenarios.run_folder.run_tables import ROBOT, TRACKS, TRUTH
-from peopleboy.scenarios.run_folder.truth_files import true_boxes, truth_files
 from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.world_config import CONTROL_HZ
 from peopleboy.tracker.evaluation.box_matching import MIN_VISIBLE

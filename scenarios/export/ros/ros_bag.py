@@ -12,7 +12,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.export.formats import need
 from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
-from peopleboy.scenarios.run_folder.truth_files import further_cameras
+from peopleboy.scenarios.run_folder.folder import further_cameras
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.export.ros.message_types import RosDistro

@@ -15,9 +15,14 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun, cameras_of
-from peopleboy.scenarios.run_folder.run_files import RunFiles, as_squares, is_on_floor_alone, read_table
+from peopleboy.scenarios.run_folder.run_files import (
+    RunFiles,
+    as_squares,
+    is_on_floor_alone,
+    read_table,
+    truth_files,
+)
 from peopleboy.scenarios.run_folder.run_tables import TRUTH
-from peopleboy.scenarios.run_folder.truth_files import truth_files
 from peopleboy.scenarios.scores.evaluate_runs import (
     BoxReference,
     boxed_cameras,

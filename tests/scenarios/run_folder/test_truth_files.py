@@ -15,7 +15,8 @@ from peopleboy.scenarios.loop.run_events import describe
 from peopleboy.scenarios.report.columns import read_columns
 from peopleboy.scenarios.report.page_tables import moves
 from peopleboy.scenarios.run_folder.finished_run import open_run
-from peopleboy.scenarios.run_folder.truth_files import THINGS, things_camera
+from peopleboy.scenarios.run_folder.folder import things_camera
+from peopleboy.scenarios.run_folder.run_tables import THINGS
 from peopleboy.scenarios.running.run import run as play
 from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.sim.cameras.camera_config import ThermalConfig
