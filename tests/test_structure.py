@@ -24,7 +24,6 @@ MOST_TWICE = 10
 SMALL_MODULES: dict[str, str] = {
     "behaviours.scripted": "a behaviour that the registry loads by its name",
     "scenarios.compiling": "imports numba, which a progress bar needs on a terminal only",
-    "scenarios.environments.save_episode": "imports the recorder, which only saved episodes need",
 }
 
 # A folder with fewer modules needs one as well.

@@ -304,7 +304,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             BadInput: there is no episode yet, it was varied by options or had images or physics that no run
                 has, or the folder cannot be written to.
         """
-        from peopleboy.scenarios.environments.save_episode import save_episode  # here, as it loads a recorder
+        from peopleboy.scenarios.running.run import save_episode  # here, as only saved episodes need it
         from peopleboy.scenarios.running.run_options import RunOptions
 
         config = self._running(even_over=True).config

@@ -43,8 +43,8 @@ def takes(name: str, option: str) -> bool:
     return option in signature(FORMATS[name]).parameters
 
 
-def need(package: str, form: str) -> Any:
-    """Import a package of the extra `export`.
+def need(package: str, option: str) -> Any:
+    """Import a package of the extra `export`, which an option of the command line wants.
 
     Raises:
         BadInput: it is not installed.
@@ -53,4 +53,4 @@ def need(package: str, form: str) -> Any:
         return import_module(package)
     except ImportError as error:
         name = package.split(".")[0]
-        raise BadInput(f"--format {form} needs the package {name}: pip install {name}") from error
+        raise BadInput(f"{option} needs the package {name}: pip install {name}") from error

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
+from types import TracebackType
+from typing import Any, Final, Self
 
 import cv2
 import numpy as np
@@ -27,6 +28,7 @@ from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.robot.robot_config import RobotConfig
 
+_OPTION: Final = "--format mp4"
 HEIGHT_PX: Final = 480
 BAR_PX: Final = 32
 
@@ -49,26 +51,58 @@ def write_mp4(runs: Sequence[FinishedRun], folder: Path, play: Play, camera: str
     Raises:
         BadInput: the package that encodes is not installed, or a run has no such camera.
     """
-    need("av", "mp4")
+    need("av", _OPTION)
     shown = ("thermal", "colour") if camera is None else (camera,)
     for run in runs:
         _write_film(folder / f"{run.name}.mp4", [one_camera(run, name) for name in shown], play)
 
 
 def _write_film(path: Path, shots: Sequence[OneCamera], play: Play) -> None:
-    import av
-
-    run, rate = shots[0].run, shots[0].rate_hz
-    names = [each.name for each in shots]
-    with av.open(str(path), "w", options={"movflags": "+faststart"}) as film:
-        stream = film.add_stream("libx264", rate=rate, options={"crf": _QUALITY, "preset": "veryfast"})
-        stream.pix_fmt = "yuv420p"
+    run, names = shots[0].run, [each.name for each in shots]
+    with FilmWriter(path, shots[0].rate_hz, _OPTION) as film:
         for tick in (tick for tick in play(run) if tick.frame in shots[0].frames):
-            picture = draw_film_frame(tick, run.robot, run.title, names)
-            if tick.frame == 1:
-                stream.height, stream.width = picture.shape[:2]
-            film.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))
-        film.mux(stream.encode(None))
+            film.add(draw_film_frame(tick, run.robot, run.title, names))
+
+
+class FilmWriter:
+    """Writes a film frame by frame, H.264, which every browser shows; use it as a context manager.
+
+    Args:
+        path: of the film.
+        rate_hz: frames a second.
+        option: of the command line that asks for it.
+
+    Raises:
+        BadInput: the package that encodes is not installed.
+    """
+
+    def __init__(self, path: Path, rate_hz: int, option: str) -> None:
+        av = need("av", option)
+        self._file: Any = av.open(str(path), "w", options={"movflags": "+faststart"})
+        encoding = {"crf": _QUALITY, "preset": "veryfast"}
+        self._stream: Any = self._file.add_stream("libx264", rate=rate_hz, options=encoding)
+        self._stream.pix_fmt = "yuv420p"
+        self._frame_of: Any = av.VideoFrame.from_ndarray
+        self._is_new = True
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if kind is None:
+            self._file.mux(self._stream.encode(None))
+        self._file.close()
+
+    def add(self, picture: Picture) -> None:
+        """Add a frame; a last odd row or column is cut off, as H.264 wants it."""
+        height, width = (side // 2 * 2 for side in picture.shape[:2])
+        if self._is_new:
+            self._stream.height, self._stream.width = height, width
+            self._is_new = False
+        even = np.ascontiguousarray(picture[:height, :width])
+        self._file.mux(self._stream.encode(self._frame_of(even, format="rgb24")))
 
 
 def draw_film_frame(tick: Tick, robot: RobotConfig, title: str, cameras: Sequence[str]) -> Picture:

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -55,46 +56,28 @@ def write_yolo(
     play: Play,
     camera: str = "thermal",
     least_px: float = LEAST_PX,
+    *,
+    has_poses: bool = False,
 ) -> None:
     """Write boxes round what is visible of people, but for those narrower or lower than `least_px`.
+
+    Args:
+        runs: which.
+        folder: to leave.
+        play: gives a run's ticks.
+        camera: whose images and boxes.
+        least_px: least width and height of boxes [px].
+        has_poses: whether they come with the 17 keypoints of COCO.
 
     Raises:
         BadInput: the runs cannot be sorted by split, or one has no such camera of 8 bits.
     """
-    _write(runs, folder, play, _Labels(camera, least_px, has_poses=False))
-
-
-def write_yolo_pose(
-    runs: Sequence[FinishedRun],
-    folder: Path,
-    play: Play,
-    camera: str = "thermal",
-    least_px: float = LEAST_PX,
-) -> None:
-    """Write the same boxes with the 17 keypoints of COCO.
-
-    Raises:
-        BadInput: as for `write_yolo`.
-    """
-    _write(runs, folder, play, _Labels(camera, least_px, has_poses=True))
-
-
-class _Labels(NamedTuple):
-    """Of whose images, of boxes how large at least [px], and whether of poses, too."""
-
-    camera: str
-    least_px: float
-    has_poses: bool
-
-
-def _write(runs: Sequence[FinishedRun], folder: Path, play: Play, what: _Labels) -> None:
+    what = _Labels(camera, least_px, has_poses)
     sorted_runs = {
-        split or EVERYTHING: [_eight_bits(run, what.camera) for run in own]
+        split or EVERYTHING: [_eight_bits(run, camera) for run in own]
         for split, own in by_split(runs).items()
     }
-    settings = yaml.safe_dump(
-        _settings(sorted_runs, what.has_poses), sort_keys=False, default_flow_style=None
-    )
+    settings = yaml.safe_dump(_settings(sorted_runs, has_poses), sort_keys=False, default_flow_style=None)
     (folder / "data.yaml").write_text(settings, encoding="utf-8")
     for split, every in sorted_runs.items():
         images, labels = (folder / kind / split for kind in ("images", "labels"))
@@ -104,6 +87,17 @@ def _write(runs: Sequence[FinishedRun], folder: Path, play: Play, what: _Labels)
             for number, text in _labels(shots, what):
                 (labels / f"{_stem(shots, number)}.txt").write_text(text, encoding="utf-8")
             _write_images(shots, images, play)
+
+
+write_yolo_pose = partial(write_yolo, has_poses=True)
+
+
+class _Labels(NamedTuple):
+    """Of whose images, of boxes how large at least [px], and whether of poses, too."""
+
+    camera: str
+    least_px: float
+    has_poses: bool
 
 
 def _write_images(shots: OneCamera, folder: Path, play: Play) -> None:

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Final, Self
 
 import cv2
@@ -25,6 +24,7 @@ from peopleboy.scenarios.drawing.overlay import (
     draw_truth,
     enlarge,
 )
+from peopleboy.scenarios.export.video import FilmWriter
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.views import Views
 from peopleboy.scenarios.run_folder.run_tables import TRACKS, Row, track_row, write_table
@@ -44,7 +44,6 @@ _MOMENTS: Final = 12
 _COLUMNS: Final = 4
 _GAP_PX: Final = 6
 _WIDTH_PX: Final = 2 * MARGIN_PX + _COLUMNS * TILE_PX + (_COLUMNS - 1) * _GAP_PX
-_QUALITY: Final = "20"  # CRF: 0 loses nothing, 18 nothing to be seen
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,47 +116,6 @@ class Sheet:
         page.save(path, compress_level=3)
 
 
-class OverlayFilm:
-    """Writes overlay.mp4 frame by frame, H.264, which every browser shows; use it as a context manager.
-
-    Raises:
-        BadInput: the package that encodes is not installed.
-    """
-
-    def __init__(self, path: Path, rate_hz: float) -> None:
-        try:
-            import av
-        except ImportError as error:
-            raise BadInput("--film needs the package av: pip install av") from error
-        self._file: Any = av.open(str(path), "w", options={"movflags": "+faststart"})
-        rate = round(max(rate_hz, 1.0))
-        self._stream: Any = self._file.add_stream(
-            "libx264", rate=rate, options={"crf": _QUALITY, "preset": "veryfast"}
-        )
-        self._stream.pix_fmt = "yuv420p"
-        self._frame_of: Any = av.VideoFrame.from_ndarray
-        self._is_new = True
-
-    def __enter__(self) -> OverlayFilm:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if kind is None:
-            self._file.mux(self._stream.encode(None))
-        self._file.close()
-
-    def add(self, picture: Picture) -> None:
-        """Add a frame; a last odd row or column is cut off, as H.264 wants it."""
-        height, width = (side // 2 * 2 for side in picture.shape[:2])
-        if self._is_new:
-            self._stream.height, self._stream.width = height, width
-            self._is_new = False
-        even = np.ascontiguousarray(picture[:height, :width])
-        self._file.mux(self._stream.encode(self._frame_of(even, format="rgb24")))
-
-
 class FootageLog:
     """Writes the files of a folder as tracking goes on; use it as a context manager.
 
@@ -173,9 +131,10 @@ class FootageLog:
         self._sheet = Sheet(options.footage.resolve().name, has_truth=truth is not None)
         self._means = f"at {views.rate_hz:g} Hz, tracker {options.tracker}"
         self._stack = ExitStack()
-        self._film: OverlayFilm | None = None
+        self._film: FilmWriter | None = None
         if options.film:
-            self._film = self._stack.enter_context(OverlayFilm(folder / "overlay.mp4", views.rate_hz))
+            path, rate_hz = folder / "overlay.mp4", round(max(views.rate_hz, 1.0))
+            self._film = self._stack.enter_context(FilmWriter(path, rate_hz, "--film"))
         self._results = self._stack.enter_context(
             (folder / "tracks.txt").open("w", encoding="utf-8", newline="\n")
         )

@@ -5,11 +5,14 @@ The SVG has always the same bytes, and no names that could clash.
 
 from __future__ import annotations
 
+import base64
 import io
 import re
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
+import jinja2
 import matplotlib
 from markupsafe import Markup, escape
 from matplotlib.artist import Artist
@@ -112,6 +115,29 @@ def write_page(text: str, out: Path) -> None:
     """
     with writing_to(out), atomic(out) as part:
         part.write_text(text, encoding="utf-8")
+
+
+def render_page(
+    template: str,
+    folders: Sequence[Path],
+    filters: Mapping[str, Callable[..., object]] | None = None,
+    **content: object,
+) -> str:
+    """Render a page as HTML from a template in one of these folders, which may use further filters."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(folders),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= filters or {}
+    return environment.get_template(template).render(**content)
+
+
+def data_address(media_type: str, content: bytes) -> str:
+    """Return the address by which a page holds a file, such as a picture, in itself."""
+    return f"data:{media_type};base64,{base64.b64encode(content).decode()}"
 
 
 def _is_report(path: Path) -> bool:

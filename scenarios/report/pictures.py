@@ -8,7 +8,6 @@ or without a physics engine, boxes alone are drawn.
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from enum import StrEnum
@@ -37,6 +36,7 @@ from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.scenarios.report.columns import Column, are_same_scene
 from peopleboy.scenarios.report.findings.run_findings import BadMoment, RunFindings, worst_moments
 from peopleboy.scenarios.report.findings.sentences import seconds
+from peopleboy.scenarios.report.page_parts import data_address
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file
 from peopleboy.scenarios.run_folder.run_tables import Row, read_explanation
@@ -272,7 +272,7 @@ def _pictured(moment: BadMoment, whose: str, stills: _Stills, is_beside: bool) -
 
 def page_jpeg(image: NDArray[np.uint8], quality: int) -> str:
     """Return an image as an address for a page."""
-    return f"data:image/jpeg;base64,{base64.b64encode(encode_jpeg(image, quality)).decode()}"
+    return data_address("image/jpeg", encode_jpeg(image, quality))
 
 
 # A strip of a page: where attention would look when its person was learned, lost, away, and found again.

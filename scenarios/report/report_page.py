@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import jinja2
 from markupsafe import Markup
 
 from peopleboy.bad_input import BadInput
@@ -19,7 +18,7 @@ from peopleboy.scenarios.report.charts.timelines import PersonTimeline, draw_thi
 from peopleboy.scenarios.report.columns import Column, lacking, read_columns
 from peopleboy.scenarios.report.findings.run_findings import RunFindings
 from peopleboy.scenarios.report.findings.sentences import listed
-from peopleboy.scenarios.report.page_parts import check_place, write_page
+from peopleboy.scenarios.report.page_parts import check_place, render_page, write_page
 from peopleboy.scenarios.report.page_tables import PageTable
 from peopleboy.scenarios.report.pictures import (
     Origin,
@@ -135,7 +134,8 @@ def write_report(paths: Sequence[Path], out: Path) -> list[str]:
     columns = read_columns(paths)
     moments = pictured_moments(columns)
     lines = [*lacking(columns), *_notes(columns), *_unknown(columns), *_without_images(moments)]
-    write_page(_render(make_page(columns, moments, lines)), out)
+    page = make_page(columns, moments, lines)
+    write_page(render_page("page.html.jinja", [HERE], page=page, swatch=swatch), out)
     return lines
 
 
@@ -177,18 +177,6 @@ def _section(column: Column) -> RunSection:
         modes=page_tables.modes(found),
         tiles=contact_sheet(found.run),
     )
-
-
-def _render(page: ReportPage) -> str:
-    """Render a page as HTML."""
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    return environment.get_template("page.html.jinja").render(page=page, swatch=swatch)
 
 
 def _notes(columns: Sequence[Column]) -> list[str]:

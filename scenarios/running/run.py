@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import yaml
 
 from peopleboy.bad_input import BadInput
+from peopleboy.behaviours.behaviour import STOP, Command
 from peopleboy.own_code import traceback_in
 from peopleboy.scenarios.drawing.contact_sheet import ContactSheet
 from peopleboy.scenarios.files.own_files import are_kept, keep_own_files
@@ -190,6 +192,30 @@ def run(
         watchers.save(options.out)
         folder.complete(scores.to_json())
     return scores
+
+
+def save_episode(
+    scenario: Scenario, commands: Sequence[Command], frames: int, options: RunOptions, rate_hz: int
+) -> RunScores:
+    """Write an episode as a run's folder: the same world once more, in which the robot repeats its commands.
+
+    Args:
+        scenario: what was played.
+        commands: the robot's commands, one a step.
+        frames: how many images there were.
+        options: of the run.
+        rate_hz: steps a second.
+
+    Raises:
+        BadInput: the folder cannot be written to.
+    """
+    lasted_s = frames / rate_hz
+    # Whoever was still to come must be able to; the robot waits for them.
+    latest_s = max((person.enter_s for person in scenario.people(options.seed)), default=0.0)
+    if latest_s >= lasted_s:
+        lasted_s = min(latest_s + 1.0 / rate_hz, scenario.duration_s)
+    sound = replace(scenario, spec=replace(scenario.spec, faults=()))
+    return run(sound.driven([*commands, STOP]).lasting(lasted_s), options, lambda _tick, _frames: None)
 
 
 def is_finished(scenario: Scenario, options: RunOptions) -> bool:

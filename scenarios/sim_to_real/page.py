@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
 import cv2
-import jinja2
 import numpy as np
 from markupsafe import Markup
 from matplotlib.axes import Axes
 
-from peopleboy.scenarios.report.page_parts import LINE, SERIES, inline, new_figure, svg_style, write_page
+from peopleboy.scenarios.report.page_parts import (
+    LINE,
+    SERIES,
+    data_address,
+    inline,
+    new_figure,
+    render_page,
+    svg_style,
+    write_page,
+)
 from peopleboy.scenarios.sim_to_real.clips import ROWS, SIDE, Grey
 from peopleboy.scenarios.sim_to_real.compare import PICTURES, Comparison, Separability, Side, figures_of
 from peopleboy.scenarios.sim_to_real.measures import (
@@ -114,7 +121,7 @@ def grid(patches: Sequence[Grey]) -> str:
         row, column = divmod(number, _COLUMNS)
         large = np.kron(patch, np.ones((_LARGER, _LARGER), np.uint8))
         page[row * step : row * step + len(large), column * step : column * step + len(large)] = large
-    return f"data:image/png;base64,{base64.b64encode(cv2.imencode('.png', page)[1].tobytes()).decode()}"
+    return data_address("image/png", cv2.imencode(".png", page)[1].tobytes())
 
 
 HERE = Path(__file__).parent
@@ -132,15 +139,10 @@ def write_comparison(comparison: Comparison, out: Path) -> None:
 
 def render_comparison(comparison: Comparison) -> str:
     """Write the page as HTML."""
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader([HERE, _STYLE]),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
     sides = {"rendered": comparison.rendered, "real": comparison.real}
-    return environment.get_template("comparison.html.jinja").render(
+    return render_page(
+        "comparison.html.jinja",
+        [HERE, _STYLE],
         headline=headline(comparison),
         comparison=comparison,
         rows=[row for name, side in sides.items() for row in table_rows(name, side)],

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-import jinja2
-
 from peopleboy.scenarios.files.read_yaml import read_yaml
+from peopleboy.scenarios.report.page_parts import render_page
 from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.running.engine.store import Store
 from peopleboy.studies.reproductions.catalogue import EXPERIMENTS, PAPERS, paper_of
@@ -155,15 +154,7 @@ def page_text(sections: Sequence[Section], about: PageHead) -> str:
 
 def rendered(template: str, **values: Any) -> str:
     """Fill in a template of this folder."""
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters |= {"points": points, "span": span}
-    return environment.get_template(template).render(values)
+    return render_page(template, [HERE], {"points": points, "span": span}, **values)
 
 
 def section(outcome: ExperimentOutcome) -> Section:

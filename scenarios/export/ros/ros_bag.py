@@ -38,7 +38,7 @@ def write_mcap(
     Raises:
         BadInput: the package that writes bags is not installed, or the epoch is no time.
     """
-    need("rosbags", "mcap")
+    need("rosbags", "--format mcap")
     start_ns = epoch_ns(epoch)
     for run in runs:
         _write_bag(run, folder / run.name, play, start_ns, ros_distro)
