@@ -5,8 +5,8 @@ from __future__ import annotations
 from docs.generate.markdown import sentence, table
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
+from peopleboy.scenarios.scores.drive_record import ScoreRecord
 from peopleboy.scenarios.scores.following_metrics import FollowingScore
-from peopleboy.scenarios.scores.score_record import ScoreRecord
 from peopleboy.tracker.evaluation.table import FIGURES
 
 

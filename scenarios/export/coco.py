@@ -26,13 +26,13 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.export.camera_images import (
+from peopleboy.scenarios.export.replay import (
     CORNER_PX,
     OUTSIDE,
+    Play,
     from_corner,
     keypoints_from_corner,
 )
-from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.export.splits import by_split
 from peopleboy.scenarios.loop.loop import Tick, calibration_of
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun

@@ -25,7 +25,7 @@ FORMATS: Final = Registry(
         "mot": Entry(f"{_HERE}.mot:write_mot", "MOTChallenge, for TrackEval"),
         "coco": Entry(f"{_HERE}.coco:write_coco", "masks, boxes, keypoints"),
         "images": Entry(
-            f"{_HERE}.camera_images:write_label_images",
+            f"{_HERE}.replay:write_label_images",
             "beside every image, who is at each pixel, which part of the body, and true depth",
         ),
         "yolo": Entry(f"{_HERE}.yolo:write_yolo", "boxes, for Ultralytics"),

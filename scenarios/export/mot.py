@@ -23,8 +23,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.export.camera_images import OneCamera, with_people, write_camera_images
-from peopleboy.scenarios.export.replay import Play
+from peopleboy.scenarios.export.replay import OneCamera, Play, with_people, write_camera_images
 from peopleboy.scenarios.export.splits import by_split
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file

@@ -20,9 +20,8 @@ from peopleboy.scenarios.drawing.overlay import (
     show_image,
 )
 from peopleboy.scenarios.drawing.palette import TRUTH, Rgb
-from peopleboy.scenarios.export.camera_images import OneCamera, one_camera
 from peopleboy.scenarios.export.formats import need
-from peopleboy.scenarios.export.replay import Play
+from peopleboy.scenarios.export.replay import OneCamera, Play, one_camera
 from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.sim.cameras.kinds import kind_of

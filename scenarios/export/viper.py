@@ -19,8 +19,7 @@ from xml.etree import ElementTree
 import pyarrow as pa
 
 from peopleboy.scenarios.drawing.overlay import box_parts
-from peopleboy.scenarios.export.camera_images import OneCamera, with_people
-from peopleboy.scenarios.export.replay import Play
+from peopleboy.scenarios.export.replay import OneCamera, Play, with_people
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.sim.geometry.panorama import around_px
 from peopleboy.sim.truth.truth import Box

@@ -24,16 +24,16 @@ import yaml
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.drawing.overlay import box_parts
-from peopleboy.scenarios.export.camera_images import (
+from peopleboy.scenarios.export.replay import (
     CORNER_PX,
     OUTSIDE,
     Keypoint,
     OneCamera,
+    Play,
     keypoints_from_corner,
     with_people,
     write_camera_images,
 )
-from peopleboy.scenarios.export.replay import Play
 from peopleboy.scenarios.export.splits import by_split
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.run_files import read_table, truth_files

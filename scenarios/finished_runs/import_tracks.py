@@ -13,8 +13,7 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.export.camera_images import OneCamera, one_camera
-from peopleboy.scenarios.export.replay import replay
+from peopleboy.scenarios.export.replay import OneCamera, one_camera, replay
 from peopleboy.scenarios.files.own_files import keep_own_files
 from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.recording.recording_file import is_recorded

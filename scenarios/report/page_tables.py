@@ -20,8 +20,8 @@ from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.scores.bootstrap import bootstrap
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
+from peopleboy.scenarios.scores.drive_record import Row
 from peopleboy.scenarios.scores.following_metrics import FollowingScore
-from peopleboy.scenarios.scores.score_record import Row
 from peopleboy.sim.truth.events import Move
 from peopleboy.tracker.evaluation.occlusion_scores import LENGTHS_S, by_length
 from peopleboy.tracker.evaluation.table import FIGURES, FLOOR, Figure

@@ -10,8 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.scenarios.scores.drive_record import DriveRecord, Flags, Floats, root_mean_square
-from peopleboy.scenarios.scores.score_record import ScoreRecord, metric
+from peopleboy.scenarios.scores.drive_record import (
+    DriveRecord,
+    Flags,
+    Floats,
+    ScoreRecord,
+    metric,
+    root_mean_square,
+)
 from peopleboy.sim.robot.robot_body import RADIUS_M, outline_gap
 
 # Spaces about a person, from the robot's outline to the middle of the body (E. T. Hall, The Hidden Dimension,

@@ -11,12 +11,13 @@ import numpy as np
 from peopleboy.scenarios.scores.drive_record import (
     DriveRecord,
     Floats,
+    ScoreRecord,
     count_contacts,
     mean,
+    metric,
     root_mean_square,
     way_m,
 )
-from peopleboy.scenarios.scores.score_record import ScoreRecord, metric
 from peopleboy.sim.places.floor_plan import FloorPlan, Rectangle
 
 

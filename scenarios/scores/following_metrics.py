@@ -16,12 +16,13 @@ from peopleboy.scenarios.scores.drive_record import (
     DriveRecord,
     Flags,
     Floats,
+    ScoreRecord,
     count_contacts,
     mean,
+    metric,
     root_mean_square,
     way_m,
 )
-from peopleboy.scenarios.scores.score_record import ScoreRecord, metric
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.truth.truth import Box
 from peopleboy.sim.world_config import WorldConfig

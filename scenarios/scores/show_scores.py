@@ -12,7 +12,7 @@ from rich.table import Table
 from peopleboy.scenarios.scores.bootstrap import Interval
 from peopleboy.scenarios.scores.by_tracker import Difference, Groups, differences
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
-from peopleboy.scenarios.scores.score_record import Row
+from peopleboy.scenarios.scores.drive_record import Row
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.evaluation.table import FIGURES, NEED_EVERYBODY, rows, spread
 from peopleboy.wording import counted

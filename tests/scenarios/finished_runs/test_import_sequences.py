@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from peopleboy.scenarios.export.camera_images import with_people
 from peopleboy.scenarios.export.mot import gt_text
+from peopleboy.scenarios.export.replay import with_people
 from peopleboy.scenarios.run_folder.finished_run import open_whole_runs
 from tests.helpers.calls.command_line import refusal, run_cli
 from tests.helpers.calls.refused import assert_names
