@@ -22,10 +22,10 @@ from benchmarks.compare import compare, percents, print_table
 from benchmarks.peers.detectors import Hog
 from benchmarks.timing import spent_ms, timed_ms
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.loop import Tick, calibrations_of, closed_loop, make_frame
+from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.scenarios.running.engine.task import Tell, chosen_workers
-from peopleboy.sim.random_streams import stream
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.sim.world import World
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
@@ -157,7 +157,7 @@ class Play:
 def _make(name: str, seed: int) -> Tracker:
     if name == ONE_IMAGE:
         return PanoramicTracker(PlaceModel.load(), PeopleConfig(restlessness=1e3))
-    return make_tracker(name, stream(seed, "tracker"))
+    return make_tracker(name, seed)
 
 
 class _Timed:
@@ -247,7 +247,9 @@ def _distance_error(rows: _Rows) -> tuple[float, int]:
 @click.argument("scenarios", nargs=-1)
 @click.option("--seeds", type=click.IntRange(min=1), default=10, show_default=True)
 @click.option("--laps", type=click.IntRange(min=1), default=50, show_default=True, help=f"Runs of {ROUND}.")
-@click.option("--first", type=click.IntRange(min=0), default=0, show_default=True, help="Seed to begin with.")
+@click.option(
+    "--first-seed", "first", type=click.IntRange(min=0), default=0, show_default=True, help="First seed."
+)
 @click.option("--workers", type=click.IntRange(min=1), help="Processes.")
 def main(scenarios: tuple[str, ...], seeds: int, laps: int, first: int, workers: int | None) -> None:
     """Print how well people are tracked on the floor, and how they are handed over.
@@ -301,7 +303,7 @@ def time_beside_hog(scenario: str, tracker: str, seed: int) -> tuple[float, floa
     before, hog_ms = None, []
     cv2.setNumThreads(1)
     for number, (_, seen) in enumerate(islice(blind_drive(loaded, seed), _TIMED_FRAMES)):
-        frame, before = make_frame(seen, calibrations, before), seen.odometry
+        frame, before = Frame.from_observation(seen, before, calibrations), seen.odometry
         timed.update(frame)
         if number % _HOG_EVERY == 0:
             drawn = replace(frame, images={name: frame.images[name] for name in (COLOUR, THERMAL)})

@@ -75,7 +75,7 @@ def _program(checkout: Path) -> Path:
 
 
 def _play(program: Path, scenario: str, seed: int, out: Path) -> None:
-    command = [program, "run", scenario, "--seed", str(seed), "--frames", "--no-rrd", "--out", out]
+    command = [program, "run", scenario, "--seed", str(seed), "--frames", "--no-recording", "--out", out]
     done = subprocess.run(
         list(map(str, command)), capture_output=True, text=True, cwd=out.anchor, check=False
     )

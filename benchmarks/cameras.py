@@ -18,16 +18,14 @@ import numpy as np
 from benchmarks import call
 from benchmarks.sequences import Recording, print_head, print_row, truth_rows
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.imaging.electronics import encode_8bit
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
-from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
 SCENES: Final = ("crossing_2", "single_stationary")
@@ -107,7 +105,7 @@ def play(scene: str, camera: Camera, seed: int) -> Recording:
     with World(config) as world:
         for tick in range(count):
             observation = world.observe()
-            frame = make_frame(observation, calibrations_of(world.cameras), None)
+            frame = Frame.from_observation(observation)
             images = {name: observation.images[name] for name in frame.images if not name.endswith("_c")}
             warmer_c = observation.images["thermal_c"] + np.float32(camera.offset_k(tick / count))
             frames.append(replace(frame, images=images | {THERMAL: encode_8bit(warmer_c)}))
@@ -118,7 +116,7 @@ def play(scene: str, camera: Camera, seed: int) -> Recording:
 
 def track(recording: Recording, tracker: str, seed: int) -> Scores:
     """Score a tracker on a recording."""
-    people = make_tracker(tracker, stream(seed, "tracker"))
+    people = make_tracker(tracker, seed)
     return recording.score(people.update(frame) for frame in recording.frames)
 
 
@@ -141,7 +139,7 @@ def rows(names: tuple[str, ...], seeds: int, tracker: str) -> Iterator[tuple[str
 @click.argument("cameras", nargs=-1, type=click.Choice(tuple(CAMERAS)))
 def main(seeds: int, tracker: str, cameras: tuple[str, ...]) -> None:
     """Print how a tracker does with these cameras, or with all, as a Markdown table [%]."""
-    make_tracker(tracker, stream(0, "tracker"))  # refused now rather than after scenes are played
+    make_tracker(tracker)  # refused now rather than after scenes are played
     figures = ("CP", "CR", "IDF1", "HOTA")
     print_head("camera", [f"{one}, {kind}" for kind in ("calibrated", "not") for one in figures])
     for name, cells in rows(cameras or tuple(CAMERAS), seeds, tracker):

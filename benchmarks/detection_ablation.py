@@ -208,7 +208,12 @@ def score_clips(clips: Sequence[Recording], variant: Variant) -> list[str]:
 @click.command()
 @click.option("--seed", default=1, show_default=True, help="Of the scenes.")
 @click.option(
-    "--worlds", type=click.IntRange(min=1), default=30, show_default=True, help="How many, from 0 on."
+    "--seeds",
+    "worlds",
+    type=click.IntRange(min=1),
+    default=30,
+    show_default=True,
+    help="Number of worlds.",
 )
 @click.option(
     "--clips",

@@ -24,7 +24,8 @@ from numpy.typing import NDArray
 from benchmarks import call
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.written_controller import WrittenController
-from peopleboy.scenarios.files.load import library, load_scenario
+from peopleboy.scenarios.files.library import library
+from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
 

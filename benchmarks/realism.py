@@ -15,7 +15,8 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks import call
-from peopleboy.scenarios.files.load import LIBRARY, load_scenario, parse_scenario
+from peopleboy.scenarios.files.library import LIBRARY
+from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.scenario_file import to_data

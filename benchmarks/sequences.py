@@ -9,8 +9,7 @@ import click
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.loop import calibrations_of, closed_loop, make_frame
-from peopleboy.sim.random_streams import stream
+from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.sim.world import World
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
@@ -56,9 +55,9 @@ def record(scenario: str | Scenario, seed: int) -> Recording:
     frames, rows, before = [], [], None
     with World(config) as world:
         count = round(loaded.duration_s * config.control_hz)
-        tracker = make_tracker(CONTOUR_TRACKER, stream(seed, "tracker"))
+        tracker = make_tracker(CONTOUR_TRACKER, seed)
         for tick in closed_loop(world, tracker, loaded.make_behaviour(), count):
-            frames.append(make_frame(tick.observation, calibrations_of(world.cameras), before))
+            frames.append(Frame.from_observation(tick.observation, before))
             before = tick.observation.odometry
             rows += truth_rows(tick.frame, tick.truth)
     return Recording(tuple(frames), TrueBoxes.from_rows(rows))

@@ -71,7 +71,7 @@ EYES = {"truth": see_tallest, "tracks": see_tallest, "pixels": see_warmth}
 
 
 @click.command()
-@click.option("--scenario", default="single_follow", show_default=True, help="Name or file.")
+@click.argument("scenario", default="single_follow")
 @click.option(
     "--seeds", type=click.IntRange(min=1), default=20, show_default=True, help="How many, from 0 on."
 )

@@ -94,7 +94,7 @@ def compare(scenario: str, eyes: str, file: Path, seeds: Sequence[int]) -> dict[
 
 
 @click.command()
-@click.option("--scenario", default="single_follow", show_default=True, help="Name or file.")
+@click.argument("scenario", default="single_follow")
 @click.option("--steps", type=click.IntRange(min=0), default=100_000, show_default=True, help="Decisions.")
 @click.option("--seeds", type=click.IntRange(min=1), default=20, show_default=True, help="How many worlds.")
 @click.option("--eyes", type=click.Choice(["tracks", "truth"]), default="tracks", help="To compare by.")

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import errno
 import sys
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
 
 import click
 
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import OwnCodeFailed
+from peopleboy.scenarios.commands.command_options import british
 from peopleboy.scenarios.commands.dataset_commands import export, render
 from peopleboy.scenarios.commands.footage_commands import import_tracks, sim_to_real, track
 from peopleboy.scenarios.commands.inspect_commands import (
@@ -29,33 +30,49 @@ from peopleboy.scenarios.running.engine.task import TasksFailed
 FAILED = 1
 BAD_INPUT = 2
 _FULL = (errno.ENOSPC, errno.EDQUOT)
-COMMANDS = (
-    list_command,
-    show,
-    schema,
-    run,
-    sweep,
-    render,
-    evaluate,
-    compare,
-    track,
-    import_tracks,
-    sim_to_real,
-    view,
-    scene_model,
-    report,
-    export,
-    datasets,
-    train,
-    reproduce,
-    tune,
-)
+SECTIONS: Final[Mapping[str, tuple[click.Command, ...]]] = {
+    "Core": (list_command, show, run, sweep, view, report),
+    "Score": (evaluate, compare, import_tracks),
+    "Data": (track, render, export, scene_model, schema),
+    "Research": (datasets, reproduce, tune, train, sim_to_real),
+}
+"""The commands, by the headings of the help."""
+
+COMMANDS: Final = tuple(command for commands in SECTIONS.values() for command in commands)
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+class _Sections(click.Group):
+    """A group whose help lists the commands by section."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
+        """Name the commands in the order of the sections."""
+        return list(self.commands)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
+        """Write a list of commands for each section."""
+        width = max(len(name) for name in self.commands)
+        for title, commands in SECTIONS.items():
+            with formatter.section(title):
+                limit = formatter.width - width - 6
+                rows = [(f"{one.name:{width}}", one.get_short_help_str(limit)) for one in commands]
+                formatter.write_dl(rows)
+
+
+_SETTINGS: Final = {
+    "help_option_names": ["-h", "--help"],
+    "max_content_width": 100,
+    "token_normalize_func": british,
+}
+
+
+@click.group(cls=_Sections, context_settings=_SETTINGS)
 @click.version_option(package_name="peopleboy")
 def cli() -> None:
-    """Scripted people, a robot with thermal and colour cameras, and a tracker that sees only the images."""
+    """Simulate, track and evaluate people around a mobile robot.
+
+    Scenarios script people and a robot with thermal, colour and depth cameras. `peopleboy run crossing_2`
+    runs one, with exact ground truth for every image. `peopleboy COMMAND --help` describes a command.
+    """
 
 
 for command in COMMANDS:
@@ -63,7 +80,7 @@ for command in COMMANDS:
 
 
 def main(arguments: Sequence[str] | None = None) -> Any:
-    """Run the command line; a user's mistake is one line on standard error and exit code 2."""
+    """Run the command line; wrong input gives one line on standard error and exit code 2."""
     try:
         code = cli.main(args=arguments, prog_name="peopleboy", standalone_mode=False)
     except click.exceptions.NoArgsIsHelpError as error:
@@ -82,7 +99,9 @@ def main(arguments: Sequence[str] | None = None) -> Any:
     except OSError as error:
         if error.errno not in _FULL:
             raise
-        click.echo(f"peopleboy: the disk is full: {error}; make room and give the command again", err=True)
+        click.echo(
+            f"peopleboy: the disk is full: {error}; free some space and give the command again", err=True
+        )
         code = FAILED
     sys.exit(code if isinstance(code, int) else 0)
 

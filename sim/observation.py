@@ -1,13 +1,15 @@
 """What the robot senses at one instant; the truth is never in it. Images are made on demand."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.geometry.pose2 import Pose2
+from peopleboy.notebook import names_of, png_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -39,9 +41,18 @@ class Observation(Senses):
             to look at; a colour camera, such as `colour`, (H, W, 3) uint8 sRGB;
             a depth camera, such as `depth`, (H, W) uint16 [mm] along the optical axis, 0 where none is read,
             and as `depth_colour` (H, W, 3) uint8 sRGB of the same pixels.
+        calibrations: of the robot's cameras, by name: where each sits, and where its pixels look.
     """
 
     images: Mapping[str, NDArray[Any]]
+    calibrations: Mapping[str, Calibration] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        """Name the images, which may not have been rendered yet."""
+        return f"Observation(time_s={self.time_s:.3f}, images: {names_of(self.images)})"
+
+    def _repr_png_(self) -> bytes | None:
+        return png_of(self.images)
 
 
 V = TypeVar("V")

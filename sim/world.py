@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.random_streams import stream
+from peopleboy.sim.cameras.camera_config import CameraConfig, calibrations_of
 from peopleboy.sim.cameras.imaging.camera_view import CameraView, make_material_table
 from peopleboy.sim.cameras.kinds import flat_geometry, kind_of
 from peopleboy.sim.cameras.rig import Rig
@@ -21,7 +22,6 @@ from peopleboy.sim.physics.kinematic import Kinematic
 from peopleboy.sim.physics.physics_engine import Physics
 from peopleboy.sim.places.place import Place
 from peopleboy.sim.places.textures.texture_place import paint_place
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.full_detail import FullDetail
 from peopleboy.sim.rendering.renderer import Renderer, RenderPass, Scene, look
 from peopleboy.sim.rendering.view import BLIND, NOBODY
@@ -59,6 +59,7 @@ class World:
 
     def __init__(self, config: WorldConfig) -> None:
         self.config = config
+        self._calibrations = calibrations_of(config.robot.cameras)
         self._tick = 0
         self._touching: set[str] = set()
         _check_names(config)
@@ -121,6 +122,7 @@ class World:
         return Observation(
             time_s=senses.time_s,
             images=self.take_images(),
+            calibrations=self._calibrations,
             sonar_m=senses.sonar_m,
             odometry=senses.odometry,
             wheel_speeds_m_s=senses.wheel_speeds_m_s,

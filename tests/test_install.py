@@ -109,7 +109,9 @@ def run(command: list[str], cwd: Path) -> subprocess.CompletedProcess[str]:
 
 
 def test_the_wheel_works_beside_a_users_own_modules_of_the_same_names(whole: Path, home: Path) -> None:
-    done = call(whole, home, "run", "crossing_pair", "--tracker", "learned", "--no-rrd", "--out", "learned")
+    done = call(
+        whole, home, "run", "crossing_pair", "--tracker", "learned", "--no-recording", "--out", "learned"
+    )
     assert done.returncode == 0, done.stderr
     assert (home / "learned" / "metrics.json").is_file()
 

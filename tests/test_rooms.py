@@ -31,7 +31,9 @@ ALLOWED: dict[str, set[str]] = {
 COMMANDS = "scenarios.commands"  # the one place that imports `studies`, when a command runs
 SHARED = {
     "peopleboy.bad_input",
+    "peopleboy.notebook",
     "peopleboy.own_code",
+    "peopleboy.random_streams",
     "peopleboy.registry",
     "peopleboy.settings",
     "peopleboy.wording",

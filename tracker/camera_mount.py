@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from peopleboy.tracker.frame import Calibration, PinholeCalibration
+from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibration
 
 USUAL_HEIGHT_M: Final = 1.2  # above the floor, for which the limits of the variants are given
 VIEW_ANGLE_DEG: Final = 44.0  # vertical, of a camera of which nothing is known

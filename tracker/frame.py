@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.geometry.small_matrices import inverse
+from peopleboy.notebook import names_of, png_of
 
 Floats = NDArray[np.float64]
 
@@ -24,69 +25,9 @@ DEPTH_COLOUR: Final = "depth_colour"
 DEPTH_AMPLITUDE: Final = "depth_amplitude"
 
 
-class Calibration(Protocol):
-    """What a tracker must know of a camera to tell metres from pixels.
-
-    The robot's frame is x forward, y left, z up, with z = 0 on the floor [m]; pixels are u right, v down from
-    the middle of the first one.
-    """
-
-    @property
-    def position_m(self) -> tuple[float, float, float]:
-        """Optical centre in the robot's frame [m]."""
-        ...
-
-    def project(self, points_m: Floats) -> Floats:
-        """Map points (N, 3) of the robot's frame to pixels (N, 2); NaN where the camera cannot see them."""
-        ...
-
-    def rays(self, pixels: Floats) -> Floats:
-        """Return the directions (N, 3) in the robot's frame in which pixels (N, 2) look, of any length."""
-        ...
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PinholeCalibration:
-    """Calibration of a camera whose image is flat and free of distortion.
-
-    Attributes:
-        intrinsics: (3, 3) [px] camera matrix.
-        robot_from_camera: (4, 4) pose of the optical frame, x right, y down, z forward, in the robot's.
-
-    Raises:
-        BadInput: a matrix of another shape, or with a number that is not finite.
-    """
-
-    intrinsics: Floats
-    robot_from_camera: Floats
-    _robot_from_pixel: Floats = field(init=False, repr=False)
-
-    def __post_init__(self) -> None:
-        """Refuse what is no calibration."""
-        for name, shape in (("intrinsics", (3, 3)), ("robot_from_camera", (4, 4))):
-            matrix = getattr(self, name)
-            if np.shape(matrix) != shape or not np.isfinite(matrix).all():
-                raise BadInput(f"calibration: {name} must be {shape} and finite, got {np.shape(matrix)}")
-        unprojected = self.robot_from_camera[:3, :3] @ inverse(self.intrinsics)
-        object.__setattr__(self, "_robot_from_pixel", unprojected)
-
-    @property
-    def position_m(self) -> tuple[float, float, float]:
-        """Optical centre in the robot's frame [m]."""
-        x, y, z = self.robot_from_camera[:3, 3].tolist()
-        return x, y, z
-
-    def project(self, points_m: Floats) -> Floats:
-        """Map points (N, 3) of the robot's frame to pixels (N, 2); NaN for those behind the camera."""
-        rotation, origin = self.robot_from_camera[:3, :3], self.robot_from_camera[:3, 3]
-        seen = (points_m - origin) @ rotation @ self.intrinsics.T
-        depth = np.where(seen[:, 2:] > 1e-9, seen[:, 2:], np.nan)
-        return np.asarray(seen[:, :2] / depth, np.float64)
-
-    def rays(self, pixels: Floats) -> Floats:
-        """Return the directions (N, 3) in the robot's frame in which pixels (N, 2) look; their depth is 1."""
-        columns = self._robot_from_pixel.T
-        return np.asarray(pixels @ columns[:2] + columns[2], np.float64)
+# Motion between two images beyond what the drive can do in a quarter of a second is a jump of the odometry.
+FARTHEST_TURN_RAD: Final = math.radians(40.0)
+FARTHEST_WAY_M: Final = 0.2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,6 +56,14 @@ class Odometry:
     def from_motion(cls, motion: Pose2) -> Self:
         """Take the pose after a movement, in the robot's frame before it."""
         return cls(advance_m=motion.x, aside_m=motion.y, turn_rad=motion.heading)
+
+    @classmethod
+    def between(cls, before: Pose2, now: Pose2) -> Self | None:
+        """Return the motion between two poses of the odometry; None for a jump that no wheels can make."""
+        motion = now.relative_to(before)
+        if abs(motion.heading) > FARTHEST_TURN_RAD or math.hypot(motion.x, motion.y) > FARTHEST_WAY_M:
+            return None
+        return cls.from_motion(motion)
 
     @property
     def motion(self) -> Pose2:
@@ -150,6 +99,30 @@ class ReadOnlyImages(Mapping[str, NDArray[Any]]):
         return len(self._images)
 
 
+class SensorReadings(Protocol):
+    """What the robot sensed at one instant, such as an `Observation` of the simulated world."""
+
+    @property
+    def time_s(self) -> float:
+        """When [s]."""
+        ...
+
+    @property
+    def images(self) -> Mapping[str, NDArray[Any]]:
+        """By camera."""
+        ...
+
+    @property
+    def calibrations(self) -> Mapping[str, Calibration]:
+        """By camera."""
+        ...
+
+    @property
+    def odometry(self) -> Pose2:
+        """Pose in the world by dead reckoning."""
+        ...
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Frame:
     """What the tracker sees at one instant.
@@ -177,6 +150,40 @@ class Frame:
         """Refuse a time that is none, and guard the images, which are checked when they are read."""
         _check_finite("time_s", self.time_s)
         object.__setattr__(self, "images", ReadOnlyImages(self.images))
+
+    def __repr__(self) -> str:
+        """Name the cameras; images may not have been rendered yet."""
+        images, calibrated = names_of(self.images), names_of(self.calibrations)
+        return f"Frame(time_s={self.time_s:.3f}, images: {images}; calibrations: {calibrated})"
+
+    def _repr_png_(self) -> bytes | None:
+        return png_of(self.images)
+
+    @classmethod
+    def from_image(cls, image: NDArray[Any], time_s: float, camera: str = THERMAL) -> Self:
+        """Make a frame of one camera's image, without a calibration, such as one of your own footage."""
+        return cls(images={camera: image}, time_s=time_s)
+
+    @classmethod
+    def from_observation(
+        cls,
+        observation: SensorReadings,
+        before: Pose2 | None = None,
+        calibrations: Mapping[str, Calibration] | None = None,
+    ) -> Self:
+        """Make the frame that a tracker gets of an observation.
+
+        Args:
+            observation: what the robot sensed, such as `World.observe()` returns.
+            before: `odometry` of the observation before; None if there was none.
+            calibrations: by camera; None for those of the observation.
+        """
+        return cls(
+            images=observation.images,
+            calibrations=observation.calibrations if calibrations is None else calibrations,
+            time_s=observation.time_s,
+            odometry=None if before is None else Odometry.between(before, observation.odometry),
+        )
 
     def grey(self, camera: str) -> NDArray[np.uint8]:
         """Read the (H, W) grey image of a camera.
@@ -212,6 +219,20 @@ class Frame:
         if camera not in self.images:
             raise BadInput(_lacking(camera, self.images))
         return self.images[camera]
+
+
+def check_frame(frame: object) -> None:
+    """Refuse what is not a frame, such as a bare image.
+
+    Raises:
+        BadInput: with how to make one.
+    """
+    if not isinstance(frame, Frame):
+        shape = f" {frame.shape} {frame.dtype}" if isinstance(frame, np.ndarray) else ""
+        raise BadInput(
+            f"update(frame) takes a Frame, got {type(frame).__name__}{shape}; "
+            "make one with Frame.from_image(image, time_s) or Frame.from_observation(observation)"
+        )
 
 
 def _check_finite(name: str, value: float) -> None:

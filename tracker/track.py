@@ -56,6 +56,18 @@ class Track:
     age_s: float
     occluder: int | None = None
 
+    def __repr__(self) -> str:
+        """Say id, status, confidence and place in a line."""
+        parts = [f"id={self.id}", f"{self.status}", f"confidence={self.confidence:.2f}"]
+        for camera, box in self.boxes.items():
+            parts.append(f"{camera}=({', '.join(f'{value:.1f}' for value in box)})")
+        if self.place is not None:
+            forward, left = self.place.position_m
+            parts.append(f"position_m=({forward:.2f}, {left:.2f})")
+        if self.occluder is not None:
+            parts.append(f"occluder={self.occluder}")
+        return f"Track({', '.join(parts)})"
+
 
 def confirmed(tracks: Iterable[Track], camera: str) -> Iterator[tuple[Track, Box]]:
     """Yield the tracks that are claimed in the image of a camera, with their boxes there."""

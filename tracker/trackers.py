@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from typing import TYPE_CHECKING, Final, Protocol, runtime_checkable
 
 from peopleboy.bad_input import BadInput
@@ -13,8 +14,9 @@ if TYPE_CHECKING:
 
     import numpy as np
 
+    from peopleboy.geometry.camera_calibration import Calibration
     from peopleboy.tracker.contour.contour_tracker import ContourTracker
-    from peopleboy.tracker.frame import Calibration, Frame
+    from peopleboy.tracker.frame import Frame
     from peopleboy.tracker.fusion.fused_tracker import FusedTracker
     from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
     from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
@@ -307,14 +309,27 @@ def is_own(name: str) -> bool:
     return ":" in name or TRACKERS.is_plugged_in(name)
 
 
-def make_tracker(name: str, rng: np.random.Generator) -> Tracker:
-    """Make the tracker of that name: one of `TRACKERS`, or "module:Class" for one of your own.
+def make_tracker(name: str, seed: int = 0) -> Tracker:
+    """Make a tracker by its name: one of `TRACKERS`, or "module:Class" for one of your own.
 
     Modules are looked for where Python looks for them, and in the working directory.
 
+    Args:
+        name: of the tracker.
+        seed: of its random numbers. The tracker of `peopleboy run --seed 3` is the one with seed 3.
+
     Raises:
-        BadInput: there is none of that name, or what is there is no tracker.
+        BadInput: there is no tracker of that name, the object is not a tracker, or the seed is not 0 or more.
     """
+    from peopleboy.random_streams import stream  # here, as names of trackers are listed without NumPy
+
+    try:
+        number = operator.index(seed)
+    except TypeError:
+        number = -1
+    if number < 0:
+        raise BadInput(f"tracker {name!r}: seed must be a whole number of 0 or more, got {seed!r}")
+    rng = stream(number, "tracker")
     if ":" in name:
         return _checked(name, load_own("tracker", name, _CALL)(rng))
     if name not in TRACKERS:

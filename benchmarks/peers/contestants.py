@@ -13,7 +13,7 @@ from benchmarks.peers.classic import DetectAndFilter
 from benchmarks.peers.detectors import Blobs, Boxes, Hog, Oracle, PeerDetections
 from benchmarks.peers.joint_filter import JointFilter
 from benchmarks.peers.ours import Contestant, Ours
-from peopleboy.sim.random_streams import stream
+from peopleboy.random_streams import stream
 from peopleboy.tracker.boxes import within_image
 from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.evaluation.sequence import TrueBoxes

@@ -7,7 +7,6 @@ from typing import Protocol
 import numpy as np
 
 from benchmarks.peers.detectors import Boxes
-from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.footage.box_kinds import boxed_whole
 from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.track import confirmed
@@ -26,7 +25,7 @@ class Ours:
     """A tracker of `peopleboy.tracker.trackers`."""
 
     def __init__(self, name: str, seed: int, *, boxes_whole: bool = False) -> None:
-        self._tracker = make_tracker(name, stream(seed, "tracker"))
+        self._tracker = make_tracker(name, seed)
         self._boxes_whole = boxes_whole
 
     @property

@@ -12,7 +12,6 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.scenarios.running.run import run
 from peopleboy.scenarios.running.run_options import RunOptions
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
@@ -24,9 +23,7 @@ def loop_speed(scenario: str, frames: int = 300, *, tracker: str = DEFAULT_TRACK
     loaded = load_scenario(scenario)
     times = []
     with World(loaded.world(0)) as world:
-        ticks = closed_loop(
-            world, make_tracker(tracker, stream(0, "tracker")), loaded.make_behaviour(), frames
-        )
+        ticks = closed_loop(world, make_tracker(tracker), loaded.make_behaviour(), frames)
         next(ticks)
         last = time.process_time()
         for number, _ in enumerate(ticks, start=1):

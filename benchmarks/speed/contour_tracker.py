@@ -12,9 +12,8 @@ import numpy as np
 
 from benchmarks.peers.detectors import Hog
 from benchmarks.timing import Turns, median_ms, spent_ms, timed_ms
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.contour.appearance.appearance_model import ColourModel, likelihood
 from peopleboy.tracker.contour.box_interaction import overlap_shares, person_factor, regions_of
@@ -115,7 +114,7 @@ def shoot(scenario: str, people: int | None = None, seed: int = 0) -> Iterator[F
     with World(replace(config, people=config.people[:people])) as world:
         for _ in range(round(loaded.duration_s * config.control_hz)):
             observation = world.observe()
-            frame = make_frame(observation, calibrations_of(world.cameras), before)
+            frame = Frame.from_observation(observation, before)
             yield replace(frame, images={name: frame.images[name] for name in (THERMAL, COLOUR)})
             before = observation.odometry
             world.step(0.0, 0.0)
@@ -132,7 +131,7 @@ def contour_times(crowds: Sequence[Sequence[Frame]]) -> ContourTimes:
 
 
 def _crowd_time(film: Sequence[Frame], people: int) -> CrowdTime:
-    tracker = make_tracker(CONTOUR_TRACKER, stream(0, "tracker"))
+    tracker = make_tracker(CONTOUR_TRACKER)
     times, tracked = [], []
     for frame in film:
         frame_ms, tracks = timed_ms(partial(tracker.update, frame))
@@ -149,7 +148,7 @@ def people_in(tracker: ContourTracker) -> list[int]:
 
 def _parts_ms(film: Sequence[Frame]) -> dict[str, float]:
     """Time the parts with the samples of people in the middle of a film, each in turn before all others."""
-    tracker = make_tracker(CONTOUR_TRACKER, stream(0, "tracker"))
+    tracker = make_tracker(CONTOUR_TRACKER)
     for frame in film[: len(film) // 2]:
         tracker.update(frame)
     view = _view_of(film[len(film) // 2])
@@ -213,7 +212,7 @@ def beside_hog(film: Sequence[Frame]) -> Turns:
 
 
 def _turns(film: Sequence[Frame]) -> Turns:
-    trackers = {name: make_tracker(name, stream(0, "tracker")) for name in (CONTOUR_TRACKER, DEFAULT_TRACKER)}
+    trackers = {name: make_tracker(name) for name in (CONTOUR_TRACKER, DEFAULT_TRACKER)}
     hog, follow, turns = Hog(uses_colour=True), FilterStep(SAMPLES), Turns()
     hog.detect(film[0])
     for first in range(0, len(film), _TURN_FRAMES):

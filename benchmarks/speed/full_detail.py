@@ -19,7 +19,8 @@ from rich.table import Table
 from benchmarks import call
 from benchmarks.timing import Turns, spent_ms
 from peopleboy.behaviours.behaviour import Command
-from peopleboy.scenarios.files.load import LIBRARY, library, load_scenario, parse_scenario
+from peopleboy.scenarios.files.library import LIBRARY, library
+from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.scenario_file import to_data

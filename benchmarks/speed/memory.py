@@ -23,7 +23,6 @@ import numpy as np
 from benchmarks import call
 from benchmarks.speed.contour_tracker import STEP_S, shoot
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
-from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
@@ -56,7 +55,7 @@ class MemoryCurve:
 
 def memory_curve(frames: Iterable[Frame], length: int) -> MemoryCurve:
     """Track so many frames, and look at the memory now and then."""
-    tracker = make_tracker(DEFAULT_TRACKER, stream(0, "tracker"))
+    tracker = make_tracker(DEFAULT_TRACKER)
     at, held, people = [], [], 0
     for number, frame in enumerate(islice(frames, length), 1):
         tracks = tracker.update(frame)

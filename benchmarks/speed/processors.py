@@ -22,7 +22,6 @@ from benchmarks import call
 from benchmarks.speed.contour_tracker import SCENARIO
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.frame_cache import film, frames_of, open_film
-from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import make_tracker
@@ -58,7 +57,7 @@ def _tracked(shot: Path, tracker: str, environment: dict[str, str]) -> list[list
 
 
 def _track(frames: Iterable[Frame], name: str) -> list[tuple[int, str]]:
-    tracker = make_tracker(name, stream(0, "tracker"))
+    tracker = make_tracker(name)
     tracks = [tracker.update(frame) for frame in frames]
     rows = [[_row(track) for track in each] for each in tracks]
     return [(len(each), sha256(repr(each).encode()).hexdigest()) for each in rows]

@@ -14,13 +14,12 @@ import numpy as np
 
 from benchmarks import call
 from benchmarks.timing import Turns, spent_ms, timed_ms
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.running.blind_drive import blind_drive
-from peopleboy.sim.cameras.camera_config import DepthConfig
+from peopleboy.sim.cameras.camera_config import DepthConfig, calibrations_of
 from peopleboy.sim.cameras.depth import structured_light
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.camera_mount import mount_of
 from peopleboy.tracker.detector.detector import PeopleDetector
@@ -93,7 +92,7 @@ def rgbd(instants: int = 60) -> Iterator[str]:
     """Time the RGB-D tracker beside HOG, and beside HOG slid over the same image as the source does."""
     scenario = load_scenario(RGBD_SCENARIO).mounting((DEPTH,))
     calibrations = calibrations_of(scenario.world(0).robot.cameras)
-    tracker, hog, turns, counts = make_tracker("rgbd", np.random.default_rng(0)), _hog(), Turns(), []
+    tracker, hog, turns, counts = make_tracker("rgbd"), _hog(), Turns(), []
     for number, (_, seen) in enumerate(blind_drive(scenario, 0)):
         if number >= _RGBD_WARM_UP + instants:
             break

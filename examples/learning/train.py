@@ -21,7 +21,7 @@ from rich.console import Console
 from examples.learning.evolution import evolve
 from examples.learning.follower import SIZE, Weights
 from examples.learning.worlds import LEARNED_ON, earn
-from peopleboy.sim.random_streams import stream
+from peopleboy.random_streams import stream
 
 SPREAD = 0.25  # of the first generation's weights, which correct by MOST * tanh(weight * sight)
 
@@ -42,7 +42,7 @@ def judge(
     "--generations", type=click.IntRange(min=1), default=8, show_default=True, help="How many to try."
 )
 @click.option("--members", type=click.IntRange(min=4), default=10, show_default=True, help="Of each of them.")
-@click.option("--scenario", "scenarios", multiple=True, default=LEARNED_ON, show_default=True, help="Names.")
+@click.argument("scenarios", nargs=-1)
 @click.option(
     "--first-seed", type=click.IntRange(min=0), default=100, show_default=True, help="Of the worlds."
 )
@@ -61,7 +61,7 @@ def main(
     out.parent.mkdir(parents=True, exist_ok=True)
     start = time.monotonic()
     with joblib.Parallel(workers) as pool:
-        score = partial(judge, first=first_seed, scenarios=scenarios, workers=pool)
+        score = partial(judge, first=first_seed, scenarios=scenarios or LEARNED_ON, workers=pool)
         rng = stream(seed, "examples.learning.members")
         for found in evolve(np.zeros(SIZE), SPREAD, score, rng, members=members, generations=generations):
             np.savez(out, weights=found.mean)

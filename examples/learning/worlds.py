@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from examples.learning.follower import LearnedFollower, Weights
 from peopleboy.behaviours.make_behaviour import make_behaviour
 from peopleboy.behaviours.safety_guard import Guarded
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.written_controller import WrittenController
-from peopleboy.sim.random_streams import stream
 
 LEARNED_ON: Final = ("single_follow", "follow_passers_by", "follow_occluded", "follow_round_corner")
 NEVER_SEEN: Final = ("leads_robot", "reacts_ignores", "follow_at_distance", "waits_for_robot")

@@ -8,6 +8,7 @@ gives a command such options; it takes the values as one `GivenOptions`, from wh
 from __future__ import annotations
 
 import json
+import logging
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, dataclass
@@ -19,16 +20,21 @@ from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar, cast, get_args
 
 import click
 
-from peopleboy.scenarios.commands.completion import BEHAVIOUR_NAMES, TRACKER_NAMES, complete_names
+from peopleboy.scenarios.commands.completion import (
+    BEHAVIOUR_NAMES,
+    TRACKER_NAMES,
+    complete_names,
+    complete_scenario,
+)
 
 if TYPE_CHECKING:
     from peopleboy.settings import Setting
 
-SEED = "[default: 0, or that of a run's own scenario.yaml]"
-TRACKERS = f"{', '.join(TRACKER_NAMES)}; truth, the true positions; or module:Class, your own"
-TRACKER = f"One of {TRACKERS}.  [default: the scenario's, or detection]"
-BEHAVIOURS = f"{', '.join(BEHAVIOUR_NAMES)}; or module:Class, your own"
-BEHAVIOUR = f"What drives the robot: {BEHAVIOURS}.  [default: the scenario's]"
+SEED = "Seed of all random numbers.  [default: 0, or that of the run whose scenario.yaml is given]"
+TRACKERS = f"{', '.join(TRACKER_NAMES)}; truth for the ground truth; or module:Class for your own"
+TRACKER = f"Tracker: {TRACKERS}.  [default: the scenario's, or detection]"
+BEHAVIOURS = f"{', '.join(BEHAVIOUR_NAMES)}; or module:Class for your own"
+BEHAVIOUR = f"Behaviour that drives the robot: {BEHAVIOURS}.  [default: the scenario's]"
 
 PATH: Final = click.Path(path_type=Path)
 
@@ -111,14 +117,14 @@ class _FieldOptions:
         known = {setting.field: setting for setting in settings_of(self.config())}
         return [known[field] for field in self.fields]
 
-    def options(self) -> Iterator[click.Option]:
+    def options(self) -> Iterator[click.Parameter]:
         for setting in self.settings():
             meaning = self.meanings.get(setting.field, setting.meaning)
             is_required = setting.is_required and not self.is_optional and "[default:" not in meaning
             yield _option(setting, meaning, is_required=is_required)
 
     def given(self, values: dict[str, Any]) -> GivenOptions[Any]:
-        """Take the values of these fields out of those of a command."""
+        """Take the values of these fields out of the values of a command."""
         taken = {setting.field: _taken(setting, values.pop(setting.field)) for setting in self.settings()}
         return GivenOptions(
             self.config(), {field: value for field, value in taken.items() if value is not None}
@@ -126,17 +132,18 @@ class _FieldOptions:
 
 
 class FieldsCommand(click.Command):
-    """A command with `options_of`, which become parameters when they are first asked for."""
+    """A command that takes --verbose, and whose `options_of` become parameters when first asked for."""
 
     _params: list[Any]
     _is_expanded: bool
 
     @property
     def params(self) -> list[click.Parameter]:
-        """All parameters; always the same list, as click adds to it."""
+        """All parameters: always the same list, as click adds to it."""
         if not self._is_expanded:
             fields = [each.options() if isinstance(each, _FieldOptions) else [each] for each in self._params]
-            self._params, self._is_expanded = [param for params in fields for param in params], True
+            own = [param for params in fields for param in params]
+            self._params, self._is_expanded = [*own, _verbose_option()], True
         return self._params
 
     @params.setter
@@ -147,9 +154,9 @@ class FieldsCommand(click.Command):
 def options_of(
     target: str, *fields: str, into: str = "given", is_optional: bool = False, **meanings: str
 ) -> Callable[[Command], Command]:
-    """Return a `FieldsCommand` one option for each of these fields of a dataclass.
+    """Give a `FieldsCommand` one option for each of these fields of a dataclass.
 
-    The command takes them as one `GivenOptions`.
+    The command takes them as one `GivenOptions`. A field that is marked as `POSITIONAL` becomes an argument.
 
     Args:
         target: the dataclass, as "module:Class" below `peopleboy`.
@@ -173,9 +180,14 @@ def options_of(
     return decorate
 
 
-def _option(setting: Setting, meaning: str, *, is_required: bool) -> click.Option:
+def _option(setting: Setting, meaning: str, *, is_required: bool) -> click.Parameter:
+    if setting.is_positional:
+        metavar = f"[{setting.field.upper()}]"
+        return click.Argument(
+            [setting.field], required=False, metavar=metavar, shell_complete=complete_scenario
+        )
     flag = f"--{setting.key.replace('_', '-')}"
-    if setting.kind is bool:  # one that is on unless asked for has a key that says so, such as no_rrd
+    if setting.kind is bool:  # a setting that is on by default has a key that says so, such as no_recording
         return click.Option([flag, setting.field], is_flag=True, help=meaning)
     if setting.default is not MISSING and setting.default is not None and "[default:" not in meaning:
         # Click does not get the default itself, so that a command knows what the user gave.
@@ -220,6 +232,8 @@ def _taken(setting: Setting, value: Any) -> Any:
         return not setting.default if value else None
     if _is_many(setting):
         return tuple(map(get_args(setting.kind)[0], value)) or None
+    if setting.field in _NAMES and isinstance(value, str) and value.isidentifier():
+        return british(value)
     is_enum = isinstance(setting.kind, type) and issubclass(setting.kind, Enum)
     return setting.kind(value) if is_enum and value is not None else value
 
@@ -227,12 +241,25 @@ def _taken(setting: Setting, value: Any) -> Any:
 complete_trackers = complete_names((*TRACKER_NAMES, "truth"))
 _COMPLETED: Final = {"tracker": complete_trackers, "behaviour": complete_names(BEHAVIOUR_NAMES)}
 
-_COUNT = "Processes at the same time; 1 for none but this one.  [default: one a core]"
-_ADDRESS = "Work on the cluster of this Dask scheduler instead."
+_NAMES: Final = ("tracker", "camera")
+"""Fields whose values are names of ours, such as `colour`, which may be spelt the American way."""
+
+_AMERICAN: Final = {"color": "colour", "behavior": "behaviour", "randomize": "randomise", "gray": "grey"}
+
+
+def british(word: str) -> str:
+    """Return a word of the command line in the spelling of the options: `color` is `colour`."""
+    for american, ours in _AMERICAN.items():
+        word = word.replace(american, ours)
+    return word
+
+
+_COUNT = "Number of processes; 1 runs everything in this process.  [default: one per core]"
+_ADDRESS = "Run on the cluster of this Dask scheduler instead."
 
 
 def workers_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Add the options that choose who does the work; the command takes `Workers` named workers."""
+    """Add the options for parallel work; the command takes them as `Workers` named workers."""
 
     @wraps(command)
     def with_workers(*arguments: Any, workers: int | None, scheduler: str | None, **options: Any) -> None:
@@ -244,12 +271,41 @@ def workers_options(command: Callable[..., None]) -> Callable[..., None]:
     return click.option("--workers", type=WholeNumber(min=1), help=_COUNT)(scheduler_option(with_workers))
 
 
-films_option = click.option(
-    "--films",
+def seeds_options(count: int, first: int = 0) -> Callable[[Command], Command]:
+    """Add --seeds and --first-seed with these defaults; the command takes a range named seeds."""
+
+    def decorate(command: Command) -> Command:
+        @wraps(command)
+        def with_seeds(*arguments: Any, seeds: int, first_seed: int, **options: Any) -> None:
+            command(*arguments, seeds=range(first_seed, first_seed + seeds), **options)
+
+        start = click.option(
+            "--first-seed",
+            metavar="K",
+            type=WholeNumber(min=0),
+            default=first,
+            show_default=str(first),
+            help="First seed; the others follow it.",
+        )
+        number = click.option(
+            "--seeds",
+            metavar="N",
+            type=WholeNumber(min=1),
+            default=count,
+            show_default=str(count),
+            help="Number of seeds.",
+        )
+        return cast(Command, number(start(with_seeds)))
+
+    return decorate
+
+
+frame_cache_option = click.option(
+    "--frame-cache",
     type=PATH,
     default=Path("runs/films"),
     show_default=True,
-    help="Where rendered frames are kept; for a cluster, a folder that all share.",
+    help="Folder in which rendered frames are kept; on a cluster, one that all machines share.",
 )
 
 
@@ -258,33 +314,38 @@ class Output:
     """How a command prints its results.
 
     Attributes:
-        as_json: figures as one JSON document, and nothing else.
-        is_quiet: nothing else in any case, not even progress.
+        as_json: print one JSON document and nothing else.
+        is_quiet: print no text and no progress.
     """
 
     as_json: bool
     is_quiet: bool
 
     @property
-    def is_wordy(self) -> bool:
-        """Whether to print text for people."""
+    def is_text(self) -> bool:
+        """Whether to print text."""
         return not (self.as_json or self.is_quiet)
 
-    def figures(self, give: Callable[[], object], show: Callable[[], None] = lambda: None) -> None:
-        """Print results as JSON, or show them."""
+    def results(self, to_json: Callable[[], object], show: Callable[[], None]) -> None:
+        """Print results as JSON, or as text."""
         if self.as_json:
-            click.echo(json.dumps(give(), indent=2))
-        elif self.is_wordy:
+            click.echo(json.dumps(to_json(), indent=2, default=str))
+        elif self.is_text:
             show()
+
+    def lines(self, data: Mapping[str, object], *lines: object) -> None:
+        """Print data as JSON, or these lines as text."""
+        self.results(lambda: data, lambda: click.echo("\n".join(map(str, lines))))
 
 
 def output_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Add the options that say how results are printed; the command takes an `Output` named output."""
+    """Add --json and --quiet; the command takes them as an `Output` named output."""
 
     @wraps(command)
     def with_output(*arguments: Any, as_json: bool, quiet: bool, **options: Any) -> None:
         output = Output(as_json, quiet)
         if quiet:
+            configure_logging(logging.ERROR)
             from peopleboy.scenarios.progress_bar import no_progress
 
             with no_progress():
@@ -292,11 +353,51 @@ def output_options(command: Callable[..., None]) -> Callable[..., None]:
         else:
             command(*arguments, output=output, **options)
 
-    as_json = click.option("--json", "as_json", is_flag=True, help="Print figures alone, as a JSON document.")
-    quiet = click.option("--quiet", is_flag=True, help="Print nothing but what --json asks for, and errors.")
+    as_json = click.option("--json", "as_json", is_flag=True, help="Print the results as one JSON document.")
+    quiet = click.option("--quiet", is_flag=True, help="Print errors only, and the JSON of --json.")
     return as_json(quiet(with_output))
 
 
-def tell_note(text: str) -> None:
-    """Print a note on standard error."""
-    click.echo(f"peopleboy: note: {text}", err=True)
+class _StandardError(logging.Handler):
+    """Writes to the standard error of the moment, on which a progress bar may be."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Write a line."""
+        click.echo(self.format(record), err=True)
+
+
+class _Formatter(logging.Formatter):
+    """`peopleboy: note: ...` for warnings; with --verbose also the seconds since the start."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Format a line."""
+        kind = "note" if record.levelno >= logging.WARNING else f"{record.relativeCreated / 1000.0:.1f} s"
+        return f"peopleboy: {kind}: {record.getMessage()}"
+
+
+def configure_logging(level: int = logging.WARNING) -> None:
+    """Print the log of `peopleboy` from this level on to standard error."""
+    log = logging.getLogger("peopleboy")
+    log.setLevel(level)
+    if not any(isinstance(handler, _StandardError) for handler in log.handlers):
+        handler = _StandardError()
+        handler.setFormatter(_Formatter())
+        log.addHandler(handler)
+
+
+def _verbose_option() -> click.Option:
+    def configure(context: click.Context, option: click.Parameter, value: bool) -> None:  # noqa: ARG001
+        configure_logging(logging.INFO if value else logging.WARNING)
+
+    return click.Option(
+        ["--verbose"],
+        is_flag=True,
+        expose_value=False,
+        callback=configure,
+        help="Log what the command does to standard error.",
+    )
+
+
+def print_note(text: str) -> None:
+    """Log a note for the reader of the results."""
+    logging.getLogger("peopleboy").warning(text)

@@ -15,8 +15,11 @@ from peopleboy.scenarios.commands.command_options import (
     TRACKERS,
     FieldsCommand,
     GivenOptions,
+    Output,
     options_of,
-    tell_note,
+    output_options,
+    print_note,
+    seeds_options,
     workers_options,
 )
 from peopleboy.scenarios.commands.completion import complete_scenario
@@ -25,7 +28,7 @@ from peopleboy.wording import counted
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.export.export_runs import ExportOptions
-    from peopleboy.scenarios.export.make_dataset import SetOptions
+    from peopleboy.scenarios.export.make_dataset import RenderedSet, SetOptions
     from peopleboy.scenarios.running.engine.task import Workers
 
 FAILED = 1
@@ -35,27 +38,42 @@ FAILED = 1
 @click.argument("scenarios", metavar="[SCENARIO...]", nargs=-1, shell_complete=complete_scenario)
 @options_of(
     "scenarios.export.make_dataset:SetOptions",
-    *("frames", "seeds", "randomise", "seed", "out", "tracker"),
-    tracker=f"Tracker that steers robots that follow people: {TRACKERS}.  [default: truth]",
+    *("frames", "random_worlds", "out", "tracker"),
+    tracker=f"Tracker of robots that follow people: {TRACKERS}.  [default: truth]",
 )
+@seeds_options(100)
 @workers_options
-def render(scenarios: tuple[str, ...], given: GivenOptions[SetOptions], workers: Workers) -> None:
-    """Render a data set: scenarios with many seeds, split, counted and checked, with a datasheet.
+@output_options
+def render(
+    scenarios: tuple[str, ...],
+    given: GivenOptions[SetOptions],
+    seeds: range,
+    workers: Workers,
+    output: Output,
+) -> None:
+    """Render a data set with splits, checks and a datasheet.
 
-    Or, with --randomise, worlds of which each has its own place, things, temperatures, people and cameras. A
-    killed call goes on where it was; with more --seeds, or worlds, the set grows, and no run changes its
-    split.
+    A data set holds scenarios, each with many seeds; or, with --random-worlds, a random world for each seed,
+    with its own place, things, temperatures, people and cameras. From 7 seeds on every split has runs. A
+    killed call resumes when you give the command again. With more --seeds the set grows, and no run changes
+    its split.
     """
     from peopleboy.scenarios.export.make_dataset import render_set
 
-    options = given.make(scenarios=scenarios)
+    options = given.make(scenarios=scenarios, seeds=seeds)
     contents, name = options.contents()
     folder = options.out or Path("sets") / name
     done = render_set(contents, folder, frames=options.frames, tracker=options.tracker, workers=workers)
+    output.results(done.to_json, lambda: _print_set(done))
+    if not done.is_sound:
+        sys.exit(FAILED)
+
+
+def _print_set(done: RenderedSet) -> None:
     for check in done.checks:
-        click.echo(f"{'holds' if not check.failures else 'FAILS'}: {check.what}")
+        click.echo(f"{'passed' if not check.failures else 'FAILED'}: {check.what}")
         for failure in check.failures[:5]:
-            click.echo(f"       {failure}")
+            click.echo(f"        {failure}")
     content = done.statistics["all"].content
     click.echo(
         f"{counted(len(done.runs), 'run')}, {counted(content['frames'], 'frame')}, "
@@ -63,13 +81,11 @@ def render(scenarios: tuple[str, ...], given: GivenOptions[SetOptions], workers:
     )
     if done.lacking:
         click.echo(done.lacking)
-    click.echo(folder / "README.md")
-    if not done.is_sound:
-        sys.exit(FAILED)
+    click.echo(done.folder / "README.md")
 
 
 class FormatName(click.Choice[str]):
-    """A format's name, of another package's too; these are looked for only when the command is used."""
+    """The name of a format, also of one from another package; those are found when the command is used."""
 
     def __init__(self) -> None:
         self.case_sensitive = True
@@ -82,22 +98,24 @@ class FormatName(click.Choice[str]):
 
 @click.command(cls=FieldsCommand)
 @click.argument("runs", nargs=-1, required=True, type=PATH)
-@click.option("--format", "form", type=FormatName(), required=True, help="What to write.")
+@click.option("--format", "form", type=FormatName(), required=True, help="Format to write.")
 @options_of(
     "scenarios.export.export_runs:ExportOptions",
     *("camera", "least_px", "boxes", "epoch", "ros_distro", "out", "overwrite"),
-    out="Folder to leave.  [default: beside the run, RUN-FORMAT(-CAMERA); of several, export-FORMAT]",
+    out="Output folder.  [default: beside the run, RUN-FORMAT(-CAMERA); for several runs, export-FORMAT]",
 )
-def export(runs: Sequence[Path], form: str, given: GivenOptions[ExportOptions]) -> None:
-    """Hand runs over to other tools; a folder that holds folders of runs stands for all of them.
+@output_options
+def export(runs: Sequence[Path], form: str, given: GivenOptions[ExportOptions], output: Output) -> None:
+    """Export runs to the formats of other tools.
 
-    Runs of a rendered set go to coco, yolo and mot split by split, as its folder `splits` says; export.json
-    names the runs of each.
+    RUNS are folders of runs, or folders that hold them. The runs of a rendered data set are exported to coco,
+    yolo and mot by split, as its folder `splits` says; export.json lists the runs of each split.
 
-    mot: MOTChallenge, for TrackEval. coco: masks, boxes, keypoints. images: beside every image, who is at
-    each pixel, which part of the body, and true depth. yolo, yolo-pose: boxes, and keypoints, for
-    Ultralytics. viper: ViPER XML. mcap: ROS 2 bags. mp4: films. coco, images and mcap tell of every camera.
-    Images and masks are rendered again, and are those of the run. mcap needs the package rosbags, mp4 av.
+    mot: MOTChallenge, for TrackEval. coco: masks, boxes and keypoints. images: for each image the person and
+    the body part at each pixel, and true depth. yolo, yolo-pose: boxes, and keypoints, for Ultralytics.
+    viper: ViPER XML. mcap: ROS 2 bags. mp4: videos. coco, images and mcap contain every camera. Images and
+    masks are rendered again, and equal those of the run to the bit. mcap needs the package rosbags, mp4
+    needs av.
     """
     from peopleboy.scenarios.export.export_runs import export as write
     from peopleboy.scenarios.export.export_runs import notes_on
@@ -119,6 +137,7 @@ def export(runs: Sequence[Path], form: str, given: GivenOptions[ExportOptions]) 
     frames = sum(run.frames for run in opened)
     with progress_bar(form, unit="frames") as show:
         write(opened, options, counted(lambda frame: show(frame, frames)))
-    for note in notes_on(opened, options):
-        tell_note(note)
-    click.echo(options.out)
+    notes = list(notes_on(opened, options))
+    for note in notes:
+        print_note(note)
+    output.lines({"out": options.out, "format": form, "runs": len(opened), "notes": notes}, options.out)

@@ -1,8 +1,7 @@
-"""Commands for images and tracks of others: `track`, `import-tracks`, `sim-to-real`."""
+"""Commands for recorded images and imported tracks: `track`, `import-tracks`, `sim-to-real`."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,9 +13,11 @@ from peopleboy.scenarios.commands.command_options import (
     PATH,
     FieldsCommand,
     GivenOptions,
+    Output,
     WholeNumber,
     options_of,
-    tell_note,
+    output_options,
+    print_note,
 )
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 _TRACKERS = (
     "detection, contour, learned, thesis, colour, thermal or paper; rgbd or rgbd-printed with --depth; "
-    "or module:Class, your own"
+    "or module:Class for your own"
 )
 
 
@@ -40,7 +41,7 @@ _TRACKERS = (
 @click.option(
     "--scale",
     metavar="GAIN,OFFSET",
-    help="16-bit counts to degC: 'centikelvin', or degC = GAIN counts + OFFSET.",
+    help="Convert 16-bit counts to degC: 'centikelvin', or degC = GAIN * counts + OFFSET.",
 )
 @options_of(
     "scenarios.footage.options:RgbdOptions", "depth", "m_per_count", "odometry", into="rgbd", is_optional=True
@@ -55,14 +56,15 @@ _TRACKERS = (
 )
 @options_of(
     "scenarios.footage.options:TrackOptions",
-    *("rate_hz", "tracker", "truth", "boxes", "seed", "film", "overwrite"),
-    tracker=f"One of {_TRACKERS}.  [default: detection; rgbd with --depth]",
+    *("rate_hz", "tracker", "truth", "boxes", "seed", "video", "overwrite"),
+    tracker=f"Tracker: {_TRACKERS}.  [default: detection; rgbd with --depth]",
 )
 @click.option(
     "--start",
     metavar="X,Y,W,H|truth",
-    help="Where a person is in the first picture, to initialise it.",
+    help="Initialise the tracker with the box of a person in the first image.",
 )
+@output_options
 def track(
     footage: Path,
     files: GivenOptions[TrackOptions],
@@ -72,12 +74,14 @@ def track(
     camera: GivenOptions[RgbdCamera],
     given: GivenOptions[TrackOptions],
     start: str | None,
+    output: Output,
 ) -> None:
-    """Track people in thermal pictures (PNG, TIFF, JPEG, BMP; 8 or 16 bit) of a folder, or in a video.
+    """Track people in recorded thermal images or in a video.
 
-    Leaves tracks.txt (MOTChallenge), tracks.parquet, run.json and contact_sheet.png; metrics.json if there is
-    truth. Without temperatures the grey follows the scene's contrast. With --depth and --depth-scale, people
-    are tracked in colour with depth, and tracks.parquet has their places on the floor.
+    FOLDER contains PNG, TIFF, JPEG or BMP images of 8 or 16 bit. Writes tracks.txt (MOTChallenge),
+    tracks.parquet, run.json and contact_sheet.png, and with ground truth metrics.json. Without known
+    temperatures, grey levels are stretched to the contrast of the scene. With --depth and --depth-scale,
+    people are tracked in colour and depth images, and tracks.parquet has their positions on the floor.
     """
     from peopleboy.scenarios.footage.options import RGBD_TRACKER, parse_start
     from peopleboy.scenarios.footage.track_footage import track_footage
@@ -94,7 +98,7 @@ def track(
     )
     with progress_bar(footage.name, unit="frames") as show:
         tracked = track_footage(options, lambda frame, expected: show(frame, max(expected, frame)))
-    _tell(tracked, options)
+    _print(tracked, options, output)
 
 
 def _rgbd(given: GivenOptions[RgbdOptions], camera: GivenOptions[RgbdCamera]) -> RgbdOptions | None:
@@ -103,20 +107,26 @@ def _rgbd(given: GivenOptions[RgbdOptions], camera: GivenOptions[RgbdCamera]) ->
             raise BadInput("options of a depth camera need --depth FOLDER; without it, leave them out")
         return None
     if given.m_per_count is None:
-        raise BadInput("--depth needs --depth-scale, the metres a count stands for: 0.001 for millimetres")
+        raise BadInput("--depth needs --depth-scale, the metres per count: 0.001 for millimetres")
     return given.make(camera=camera.make())
 
 
-def _tell(tracked: Tracked, options: TrackOptions) -> None:
+def _print(tracked: Tracked, options: TrackOptions, output: Output) -> None:
     from peopleboy.scenarios.footage.track_footage import outcome_lines
     from peopleboy.scenarios.scores.show_scores import print_scores
+    from peopleboy.tracker.evaluation.table import to_json
 
     for note in tracked.notes:
-        tell_note(note)
-    if tracked.scores is not None:
-        print_scores(tracked.scores)
-    for line in outcome_lines(tracked, options):
-        click.echo(line)
+        print_note(note)
+
+    def show() -> None:
+        if tracked.scores is not None:
+            print_scores(tracked.scores)
+        for line in outcome_lines(tracked, options):
+            click.echo(line)
+
+    metrics = {} if tracked.scores is None else {"metrics": to_json(tracked.scores)}
+    output.results(lambda: {"out": str(options.out), "notes": list(tracked.notes)} | metrics, show)
 
 
 @click.command("import-tracks", cls=FieldsCommand)
@@ -125,19 +135,20 @@ def _tell(tracked: Tracked, options: TrackOptions) -> None:
 @options_of(
     "scenarios.finished_runs.import_tracks:TrackImport",
     *("name", "camera", "out", "boxes", "record", "overwrite"),
-    out="Folder to leave.  [default: beside RUN, SCENARIO-SEED-NAME, or RUN-NAME for a folder of runs]",
+    out="Output folder.  [default: beside RUN, SCENARIO-SEED-NAME, or RUN-NAME for a folder of runs]",
 )
-def import_tracks(run: Path, tracks: Path, given: GivenOptions[TrackImport]) -> None:
-    """Import tracks that another program made of the images of RUN, as a run of their own.
+@output_options
+def import_tracks(run: Path, tracks: Path, given: GivenOptions[TrackImport], output: Output) -> None:
+    """Import tracks that another program made of a run.
 
-    TRACKS is MOTChallenge text: frame, id, left, top, width, height, confidence, -1, -1, -1; frames are
-    the camera's images, counted 1, 2, 3 ... as exports do, and boxes in pixels of them. Leaves a folder with
-    RUN's scenario and truth and with these tracks, which report, view, evaluate and export take like any
-    other. Status and place on the floor, which such text does not hold, are marked as unknown. The images are
-    rendered again, and are those of RUN.
+    TRACKS is MOTChallenge text: frame, id, left, top, width, height, confidence, -1, -1, -1. Frames count the
+    camera's images from 1, as exports do, and boxes are in pixels. Writes a run's folder with RUN's scenario
+    and ground truth and with these tracks, for report, view, evaluate and export. Status and position on the
+    floor are marked as unknown, as MOTChallenge text has neither. The images are rendered again, and equal
+    those of RUN.
 
-    RUN may be a folder of runs, such as a sweep's. TRACKS is one of files then, SCENARIO-SEED.txt for each
-    of them, as benchmarks ask for; those files may lie in a folder data in it.
+    RUN may be a folder of runs, such as that of a sweep. TRACKS is then a folder with a file
+    SCENARIO-SEED.txt for each run, or with a folder `data` that contains them.
     """
     from peopleboy.scenarios.finished_runs.import_tracks import import_tracks as take
     from peopleboy.scenarios.finished_runs.import_tracks import imports_by_sequence
@@ -148,16 +159,19 @@ def import_tracks(run: Path, tracks: Path, given: GivenOptions[TrackImport]) -> 
     out = given.out or run.resolve().parent / f"{_title(run, tracks)}-{given.name}"
     what = given.make(run=run, tracks=tracks, out=out)
     each = imports_by_sequence(what) if tracks.is_dir() else [what]
+    found = []
     for one in each:
         with progress_bar(one.out.name, unit="frames") as show:
             scores = take(one, show)
-        if len(each) == 1:
-            print_scores(scores.people)
-        click.echo(f"{one.tracks.stem}: {headline(scores)}")
+        found.append({"run": str(one.out), "notes": list(scores.notes), "metrics": scores.to_json()})
+        if output.is_text:
+            if len(each) == 1:
+                print_scores(scores.people)
+            click.echo(f"{one.tracks.stem}: {headline(scores)}")
         for note in scores.notes:
-            tell_note(note)
-    click.echo("Status and place on the floor of these tracks are unknown.")
-    click.echo(what.out)
+            print_note(note)
+    unknown = "Status and position on the floor of these tracks are unknown."
+    output.lines({"out": what.out, "runs": found}, unknown, what.out)
 
 
 def _title(run: Path, tracks: Path) -> str:
@@ -169,7 +183,7 @@ def _title(run: Path, tracks: Path) -> str:
     return f"{about.scenario}-{about.seed}"
 
 
-@click.command("sim-to-real")
+@click.command("sim-to-real", cls=FieldsCommand)
 @click.argument("rendered", metavar="RENDERED...", nargs=-1, required=True, type=PATH)
 @click.option(
     "--real",
@@ -177,17 +191,19 @@ def _title(run: Path, tracks: Path) -> str:
     multiple=True,
     required=True,
     type=PATH,
-    help="A real clip, or a folder of some; can be given again.",
+    help="A real clip, or a folder of clips; can be given several times.",
 )
-@click.option("--out", type=PATH, default=Path("comparison.html"), show_default=True, help="The page.")
-@click.option("--json", "as_json", is_flag=True, help="Print all figures as JSON.")
-@click.option("--seed", type=WholeNumber(min=0), default=0, show_default=True, help="Of what is chosen.")
-def sim_to_real(rendered: Sequence[Path], real: Sequence[Path], out: Path, as_json: bool, seed: int) -> None:
-    """Set rendered thermal pictures beside real ones, and say how well a classifier separates them.
+@click.option(
+    "--out", type=PATH, default=Path("comparison.html"), show_default=True, help="HTML page to write."
+)
+@click.option("--seed", type=WholeNumber(min=0), default=0, show_default=True, help="Seed of the sampling.")
+@output_options
+def sim_to_real(rendered: Sequence[Path], real: Sequence[Path], out: Path, seed: int, output: Output) -> None:
+    """Measure the sim-to-real gap of rendered thermal images.
 
-    RENDERED are folders of runs with pictures, or sets of them. A real clip is a folder with pictures in it
-    or in thermal/, 8-bit grey, and gt.txt of the MOTChallenge format, or VOT's or OTB's. Both sides need two
-    scenes at least. Needs scikit-learn.
+    Reports how well a classifier separates rendered from real images. RENDERED are folders of runs with
+    images, or sets of runs. A real clip is a folder with 8-bit grey images, in it or in thermal/, and gt.txt
+    in MOTChallenge, VOT or OTB format. Each side needs two scenes or more. Needs scikit-learn.
     """
     from peopleboy.scenarios.report.page_parts import check_place
     from peopleboy.scenarios.sim_to_real.compare import compare_images as compare
@@ -196,13 +212,15 @@ def sim_to_real(rendered: Sequence[Path], real: Sequence[Path], out: Path, as_js
     check_place(out)
     found = compare(rendered, real, seed)
     write_comparison(found, out)
-    if as_json:
-        click.echo(json.dumps(found.to_json(), indent=2))
-        return
-    for name, side in (("rendered", found.rendered), ("real", found.real)):
-        for row in table_rows(name, side)[:1]:
-            click.echo(f"{name}: " + ", ".join(f"{h} {v}" for h, v in zip(HEADS[1:], row[1:], strict=True)))
-    click.echo(headline(found))
-    if found.lacking:
-        click.echo(f"{found.lacking}.")
-    click.echo(out)
+
+    def show() -> None:
+        for name, side in (("rendered", found.rendered), ("real", found.real)):
+            for row in table_rows(name, side)[:1]:
+                values = (f"{h} {v}" for h, v in zip(HEADS[1:], row[1:], strict=True))
+                click.echo(f"{name}: {', '.join(values)}")
+        click.echo(headline(found))
+        if found.lacking:
+            click.echo(f"{found.lacking}.")
+        click.echo(out)
+
+    output.results(found.to_json, show)

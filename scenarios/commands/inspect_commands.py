@@ -1,8 +1,12 @@
-"""Commands that inspect runs and the library: `view`, `report`, `evaluate`, `list`, `show` and others."""
+"""Commands that inspect runs and the library: `list`, `show`, `view`, `report`, `evaluate` and others."""
 
 from __future__ import annotations
 
+import shutil
+import sys
+import textwrap
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,23 +22,25 @@ from peopleboy.scenarios.commands.command_options import (
     WholeNumber,
     options_of,
     output_options,
-    tell_note,
+    print_note,
 )
 from peopleboy.scenarios.commands.completion import complete_scenario
+from peopleboy.wording import counted
 
 if TYPE_CHECKING:
+    from peopleboy.scenarios.files.library import LibraryEntry
     from peopleboy.scenarios.running.run_options import RunOptions
     from peopleboy.scenarios.scores.evaluate_runs import ScoreOptions
 
 
-@click.command()
+@click.command(cls=FieldsCommand)
 @click.argument("folder", metavar="RUN", type=PATH)
-@click.option("--web", is_flag=True, help="Serve it to a browser on this machine, until Ctrl-C.")
+@click.option("--web", is_flag=True, help="Serve the viewer to a browser on this machine, until Ctrl-C.")
 @click.option(
     "--port",
     type=WholeNumber(1, 65534),
     metavar="N",
-    help="With --web: the page's port; its data takes the next. Any two free ones if not given.",
+    help="With --web: port of the page; its data uses the next port.  [default: two free ports]",
 )
 def view(folder: Path, web: bool, port: int | None) -> None:
     """Open the recording of a run in the rerun viewer."""
@@ -47,14 +53,14 @@ def view(folder: Path, web: bool, port: int | None) -> None:
     from peopleboy.scenarios.recording.viewer import open_viewer, serve
 
     if port is not None and not web:
-        raise BadInput(f"--port {port}: is where --web serves; give --web too, or neither")
+        raise BadInput(f"--port {port}: is the port of --web; give --web too, or leave it out")
     recording = recording_in(folder)
     check_installed("view")
     if not is_whole(recording):
-        click.echo(f"peopleboy: {recording}: was cut off; what it holds is shown", err=True)
+        print_note(f"{recording}: the recording was cut off; the part that was written is shown")
     layers = [recording, *layers_in(folder)]
     if web:
-        serve(layers, lambda address: click.echo(f"{address} shows it; Ctrl-C ends that."), port)
+        serve(layers, lambda address: click.echo(f"{address} shows the recording; stop with Ctrl-C."), port)
     else:
         open_viewer(layers)
 
@@ -62,15 +68,16 @@ def view(folder: Path, web: bool, port: int | None) -> None:
 @click.command("scene-model", cls=FieldsCommand)
 @click.argument("folder", metavar="RUN", type=PATH)
 @options_of(
-    "scenarios.running.run_options:RunOptions", "out", "record", out="Folder to leave.  [default: RUN/scene]"
+    "scenarios.running.run_options:RunOptions", "out", "record", out="Output folder.  [default: RUN/scene]"
 )
-@click.option("--no-heat", is_flag=True, help="Find people by their shape alone, without the thermal image.")
-def scene_model(folder: Path, no_heat: bool, given: GivenOptions[RunOptions]) -> None:
-    """Find what was moved in a run, and which person moved it, in the depth images of its robot.
+@click.option("--no-thermal", is_flag=True, help="Find people by shape alone, without the thermal image.")
+@output_options
+def scene_model(folder: Path, no_thermal: bool, given: GivenOptions[RunOptions], output: Output) -> None:
+    """Find the things that people moved, from depth images.
 
-    The run needs images: run the scenario with --frames, and a camera `depth`. Leaves scene.jsonl, a line a
-    frame; static_map.ply, what stands, as points; background.png, its depth in the last view; and scene.rrd,
-    which `view` shows over the run's recording.
+    The run needs images: run the scenario with --frames and a camera `depth`. Writes scene.jsonl, a line per
+    frame; static_map.ply, the static scene as a point cloud; background.png, its depth in the last view; and
+    scene.rrd, which `view` shows over the run's recording.
     """
     from peopleboy.scenarios.finished_runs.run_scene_model import FOLDER, SceneModelOptions, run_scene_model
     from peopleboy.scenarios.progress_bar import progress_bar
@@ -81,44 +88,72 @@ def scene_model(folder: Path, no_heat: bool, given: GivenOptions[RunOptions]) ->
     place = given.out or folder / FOLDER
     check_named(place)
     if place.exists() and not (place / "scene.jsonl").is_file():
-        raise BadInput(f"{place}: is no folder of this command and will not be replaced; give another --out")
-    options = SceneModelOptions(has_heat=not no_heat, record=given.record is None)
+        raise BadInput(f"{place}: was not written by this command and is not replaced; give another --out")
+    options = SceneModelOptions(has_heat=not no_thermal, record=given.record is None)
     with writing_to(place), progress_bar(folder.name, unit="frames") as show:
         lines = run_scene_model(run, place, options, show)
-    for line in lines or ["Nothing was moved."]:
-        click.echo(line)
-    click.echo(place)
+    output.lines({"out": place, "moved": lines}, *(lines or ["Nothing was moved."]), place)
 
 
-@click.command("list")
-def list_command() -> None:
-    """List the scenarios of the library, and the suites."""
-    from peopleboy.scenarios.files.load import library
-    from peopleboy.scenarios.files.suite import load_suite, suite_names
+@click.command("list", cls=FieldsCommand)
+@click.argument("words", metavar="[WORD...]", nargs=-1)
+@output_options
+def list_command(words: tuple[str, ...], output: Output) -> None:
+    """List scenarios and suites with duration and people.
 
-    suites = {name: f"suite: {' '.join(load_suite(name).description.split())}" for name in suite_names()}
-    entries = library() | suites
-    width = max(map(len, entries))
-    for name, description in entries.items():
-        click.echo(f"{name:{width}} {description}")
+    With WORDs, only those are listed whose name or description contains all of them, for example
+    `peopleboy list crossing` or `peopleboy list suite`.
+    """
+    from peopleboy.scenarios.files.library import library, suites
+
+    entries = [entry for entry in (*library().values(), *suites().values()) if entry.matches(words)]
+    if not entries:
+        raise BadInput(f"list: no scenario or suite contains {' '.join(words)!r}; `peopleboy list` shows all")
+    output.results(lambda: [asdict(entry) for entry in entries], lambda: _print_entries(entries))
 
 
-@click.command()
+def _print_entries(entries: Sequence[LibraryEntry]) -> None:
+    """Print a line for each entry; on a terminal, descriptions are wrapped in their column."""
+    width = max(len(entry.name) for entry in entries)
+    head = f"{'name':{width}}  {'time':>6}  people  "
+    click.echo(f"{head}description")
+    columns = shutil.get_terminal_size().columns if sys.stdout.isatty() else 0
+    room = max(columns - len(head), 30)
+    for entry in entries:
+        if entry.runs is None:
+            facts = f"{entry.duration_s:4g} s  {entry.people:6}"
+        else:
+            facts = f"{'':6}  {'suite':>6}"
+        text = (
+            entry.description if entry.runs is None else f"{entry.description} {counted(entry.runs, 'run')}."
+        )
+        lines = textwrap.wrap(text, room) if columns else [text]
+        click.echo(f"{entry.name:{width}}  {facts}  {lines[0]}")
+        for line in lines[1:]:
+            click.echo(" " * len(head) + line)
+
+
+@click.command(cls=FieldsCommand)
 @click.argument("scenario", shell_complete=complete_scenario)
-@click.option("--seed", type=WholeNumber(min=0), help=f"What is drawn follows from it.  {SEED}")
+@click.option("--seed", type=WholeNumber(min=0), help=SEED)
 @click.option("--out", type=PATH, help="Picture to write.  [default: SCENARIO-plan.png]")
-def show(scenario: str, seed: int | None, out: Path | None) -> None:
-    """Draw the plan of a scenario, with paths and times."""
+@output_options
+def show(scenario: str, seed: int | None, out: Path | None, output: Output) -> None:
+    """Draw the plan of a scenario, with paths and times.
+
+    With --json, prints the resolved scenario too: every value, with all random draws of the seed.
+    """
     from peopleboy.scenarios.drawing.draw_plan import draw_plan
     from peopleboy.scenarios.files.load import load_scenario
 
     loaded = load_scenario(scenario)
     path = out if out is not None else Path(f"{loaded.name}-plan.png")
-    draw_plan(loaded, loaded.seed if seed is None else seed, path)
-    click.echo(path)
+    seed = loaded.seed if seed is None else seed
+    draw_plan(loaded, seed, path)
+    output.results(lambda: {"plan": str(path), "scenario": loaded.resolved(seed)}, lambda: click.echo(path))
 
 
-@click.command()
+@click.command(cls=FieldsCommand)
 def schema() -> None:
     """Print the JSON schema of scenario files, for editors."""
     import json
@@ -128,33 +163,37 @@ def schema() -> None:
     click.echo(json.dumps(json_schema(), indent=2))
 
 
-@click.command()
+@click.command(cls=FieldsCommand)
 @click.argument("runs", metavar="RUN...", nargs=-1, required=True, type=PATH)
 @click.option(
     "--out",
     type=PATH,
-    help="Page to write.  [default: RUN/report.html; report.html here for several]",
+    help="Page to write.  [default: RUN/report.html; report.html in this folder for several runs]",
 )
-def report(runs: Sequence[Path], out: Path | None) -> None:
-    """Write one HTML page about runs: who was tracked, hidden, lost and swapped, and why.
+@output_options
+def report(runs: Sequence[Path], out: Path | None, output: Output) -> None:
+    """Write an HTML report on tracks, occlusions and losses.
 
-    Two to four RUNs stand side by side; more are taken together by tracker. A folder that holds folders of
-    runs, such as that of a sweep, is taken together too.
+    Two to four RUNs are shown side by side. More RUNs, or a folder of runs, such as that of a sweep, are
+    summarised by tracker.
     """
     from peopleboy.scenarios.report.report_page import write_report
 
     page = out if out is not None else (runs[0] / "report.html" if len(runs) == 1 else Path("report.html"))
-    for line in write_report(runs, page):
-        click.echo(f"peopleboy: {line}", err=True)
-    click.echo(page)
+    notes = list(write_report(runs, page))
+    for line in notes:
+        print_note(line)
+    output.lines({"report": page, "notes": notes}, page)
 
 
 @click.command(cls=FieldsCommand)
 @click.argument("runs", nargs=-1, type=PATH)
 @click.option(
-    "--truth", type=PATH, help="MOTChallenge truth, such as RUN/truth/gt.txt; or one person's, VOT or OTB."
+    "--truth",
+    type=PATH,
+    help="Ground truth: MOTChallenge, such as RUN/truth/gt.txt, or VOT or OTB for one person.",
 )
-@click.option("--tracks", type=PATH, help="MOTChallenge results, such as RUN/tracks.txt.")
+@click.option("--tracks", type=PATH, help="Tracks in MOTChallenge format, such as RUN/tracks.txt.")
 @options_of("scenarios.scores.evaluate_runs:ScoreOptions", "min_visible", "camera", "boxes")
 @output_options
 def evaluate(
@@ -164,14 +203,13 @@ def evaluate(
     given: GivenOptions[ScoreOptions],
     output: Output,
 ) -> None:
-    """Score tracks against truth: one pair of files, or the folders of any number of runs.
+    """Score tracks against ground truth, from runs or files.
 
-    A folder that holds folders of runs, such as a suite's, stands for all of them. Several runs of one
-    tracker give mean and standard deviation over them, beside the figure of all their frames. Runs of several
-    trackers stand side by side, with how each differs from the first over runs of the same scenario and seed.
-    Where a tracker says where on the floor people stand, its errors are printed in metres; one that gives no
-    boxes is scored on the floor alone. Of runs in which the robot drove among people, it prints how
-    comfortable they were.
+    RUNS are folders of runs, or folders that hold them, such as that of a suite. Several runs of one tracker
+    give the score over all frames, and mean and standard deviation over the runs. Runs of several trackers
+    are printed side by side, with the difference of each from the first over runs of the same scenario and
+    seed. Position errors on the floor are in metres; a tracker without boxes is scored on the floor alone. If
+    the robot drove among people, comfort metrics are printed too.
     """
     from peopleboy.scenarios.run_folder.finished_run import runs_in
     from peopleboy.scenarios.scores.by_tracker import (
@@ -185,10 +223,10 @@ def evaluate(
 
     options = given.make()
     if options.camera is not None and not runs:
-        raise BadInput("evaluate: --camera goes with folders of runs; give --truth RUN/truth/CAMERA.gt.txt")
+        raise BadInput("evaluate: --camera is for folders of runs; give --truth RUN/truth/CAMERA.gt.txt")
     if options.boxes is not None and not runs:
         raise BadInput(
-            "evaluate: --boxes goes with folders of runs; boxes in --truth are of one kind; leave it out"
+            "evaluate: --boxes is for folders of runs; the boxes of --truth are of one kind; leave it out"
         )
     if bool(runs) == (truth is not None or tracks is not None):
         raise BadInput("evaluate: give folders of runs, or --truth with --tracks")
@@ -198,13 +236,13 @@ def evaluate(
     elif truth is None or tracks is None:
         raise BadInput("evaluate: --truth and --tracks go together")
     else:
-        scores = evaluate_files(truth, tracks, min_visible=options.min_visible, note=tell_note)
+        scores = evaluate_files(truth, tracks, min_visible=options.min_visible, note=print_note)
         groups = {str(tracks): [ScoredRun(str(tracks), str(tracks), None, scores)]}
     comfort = comfort_by_tracker(groups)
 
     def show() -> None:
-        print_runs(groups, note=tell_note)
+        print_runs(groups, note=print_note)
         print_comfort(comfort)
 
     comforts = {tracker: score.to_json() for tracker, score in comfort.items()}
-    output.figures(lambda: figures_of_all(groups) | ({"comfort": comforts} if comforts else {}), show)
+    output.results(lambda: figures_of_all(groups) | ({"comfort": comforts} if comforts else {}), show)

@@ -18,10 +18,10 @@ from peopleboy.scenarios.commands.command_options import (
     FieldsCommand,
     GivenOptions,
     Output,
-    WholeNumber,
     options_of,
     output_options,
-    tell_note,
+    print_note,
+    seeds_options,
     workers_options,
 )
 from peopleboy.scenarios.commands.completion import complete_scenario
@@ -40,13 +40,16 @@ if TYPE_CHECKING:
     "scenarios.running.run_options:RunOptions",
     *("seed", "out", "frames", "tracker", "boxes", "behaviour", "physics"),
     *("renderer", "record", "lossless", "overwrite"),
-    seed=f"Seed of everything random.  {SEED}",
-    out="Folder of the run.  [default: runs/SCENARIO-SEED, and -TRACKER, -BEHAVIOUR, -PHYSICS for others]",
+    seed=SEED,
+    out="Folder of the run.  [default: runs/SCENARIO-SEED, and -TRACKER, -BEHAVIOUR or -PHYSICS if they are "
+    "not those of the scenario]",
     tracker=TRACKER,
     behaviour=BEHAVIOUR,
 )
 @click.option(
-    "--live", is_flag=True, help="Show it in the rerun viewer as it goes, or on a page of this machine."
+    "--live",
+    is_flag=True,
+    help="Show the run in the rerun viewer while it goes on; without a screen, on a page of this machine.",
 )
 @workers_options
 @output_options
@@ -57,14 +60,14 @@ def run(
     workers: Workers,
     output: Output,
 ) -> None:
-    """Run a scenario headless, and leave a folder with truth, tracks, scores and a recording.
+    """Run a scenario: ground truth, tracks, scores, recording.
 
-    SCENARIO is a name from `peopleboy list` or the path of a YAML file; or a suite, such as dataset1, whose
-    runs have seeds of their own and leave no recordings. A suite that was killed goes on where it was.
-    --workers and --scheduler are for suites.
+    SCENARIO is a name from `peopleboy list`, the path of a YAML file, or a suite, such as dataset1. The runs
+    of a suite have seeds of their own and no recordings; a killed suite resumes when you give the command
+    again. --workers and --scheduler are for suites only.
     """
+    from peopleboy.scenarios.files.library import suite_names
     from peopleboy.scenarios.files.load import load_scenario
-    from peopleboy.scenarios.files.suite import suite_names
     from peopleboy.scenarios.recording.recording_file import check_installed
     from peopleboy.scenarios.recording.viewer import live_viewer
 
@@ -81,19 +84,23 @@ def run(
         loaded = options.applied_to(loaded)
     if live:
         check_installed("--live")
-    if live and (loaded is None or not options.record or not output.is_wordy):
+    if live and (loaded is None or not options.record or not output.is_text):
         raise BadInput(
-            "--live: shows the recording of one run, and prints where; give one scenario, without --no-rrd, "
-            "--json and --quiet"
+            "--live: shows the recording of a single run; give one scenario, without --no-recording, --json "
+            "and --quiet"
         )
     if options.lossless and (loaded is None or not options.record):
-        raise BadInput(f"{scenario}: --lossless is for the recording, which a suite and --no-rrd leave out")
+        raise BadInput(
+            f"{scenario}: --lossless is for the recording; suites and --no-recording write none, leave it out"
+        )
     if loaded is None:
         _run_suite(scenario, options, workers, output)
         return
     given_words = click.get_current_context().params
     if given_words["workers"] is not None or given_words["scheduler"] is not None:
-        raise BadInput(f"{scenario}: is one run, which has no use for --workers or --scheduler; leave it out")
+        raise BadInput(
+            f"{scenario}: is a single run; --workers and --scheduler are for suites, leave them out"
+        )
     with ExitStack() as stack:
         if live:
             options = replace(options, viewer=stack.enter_context(live_viewer(click.echo)))
@@ -101,7 +108,7 @@ def run(
 
 
 def _others(scenario: Scenario | None, given: GivenOptions[RunOptions]) -> str:
-    """Name what is not as in the scenario, as a folder's name ends."""
+    """Return the end of the folder's name: what differs from the scenario."""
     usual = () if scenario is None else (scenario.tracker, scenario.robot.behaviour, scenario.spec.physics)
     chosen = (given.tracker, given.behaviour, given.physics)
     others = [each for each in chosen if each is not None and each not in usual]
@@ -114,8 +121,8 @@ def _run_one(scenario: Scenario, options: RunOptions, output: Output) -> None:
     scores = _run_shown(scenario, options)
     about = {"run": str(options.out), "scenario": scenario.name, "seed": options.seed}
     about["tracker"] = tracker_name(scenario, options)
-    output.figures(
-        lambda: about | {"notes": list(scores.notes), "figures": scores.to_json()},
+    output.results(
+        lambda: about | {"notes": list(scores.notes), "metrics": scores.to_json()},
         lambda: _show(scores, options),
     )
 
@@ -132,10 +139,10 @@ def _show(scores: RunScores, options: RunOptions) -> None:
             print_drive(title, score.rows())
     click.echo(headline(scores))
     for note in scores.notes:
-        tell_note(note)
-    click.echo(f"{options.out / 'contact_sheet.png'} shows the key moments.")
+        print_note(note)
+    click.echo(f"Key moments: {options.out / 'contact_sheet.png'}")
     if is_recorded(options.record):
-        click.echo(f"peopleboy view {options.out} plays the recording.")
+        click.echo(f"Recording:   peopleboy view {options.out}")
 
 
 def _run_shown(scenario: Scenario, options: RunOptions) -> RunScores:
@@ -160,8 +167,8 @@ def _run_suite(name: str, options: RunOptions, workers: Workers, output: Output)
 
     folders = run_suite(name, options, workers)
     groups = score_by_tracker(folders)
-    output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups, note=tell_note))
-    if output.is_wordy:
+    output.results(lambda: figures_of_all(groups), lambda: print_runs(groups, note=print_note))
+    if output.is_text:
         for path in folders:
             click.echo(path)
 
@@ -171,17 +178,16 @@ _SEEN: Final = 0.3
 
 @click.command(cls=FieldsCommand)
 @click.argument("scenario", required=False, shell_complete=complete_scenario)
-@click.option("--seeds", type=WholeNumber(min=1), help="How many, from 0 on.  [default: 10]")
+@seeds_options(10)
 @click.option(
-    "--randomise",
-    metavar="N",
-    type=WholeNumber(min=1),
-    help="In place of a scenario: how many worlds drawn at random, as `render` has them.",
+    "--random-worlds",
+    is_flag=True,
+    help="Run a random world for each seed in place of a scenario, as `render` does.",
 )
 @options_of(
     "scenarios.running.run_options:RunOptions",
     *("out", "tracker", "boxes", "behaviour", "physics", "overwrite"),
-    out="Folder for the runs' folders.  [default: runs]",
+    out="Folder in which the runs' folders are written.  [default: runs]",
     tracker=TRACKER,
     behaviour=BEHAVIOUR,
     overwrite="Replace earlier runs.",
@@ -190,16 +196,17 @@ _SEEN: Final = 0.3
 @output_options
 def sweep(
     scenario: str | None,
-    seeds: int | None,
-    randomise: int | None,
+    seeds: range,
+    random_worlds: bool,
     given: GivenOptions[RunOptions],
     workers: Workers,
     output: Output,
 ) -> None:
-    """Run a scenario with many seeds, or many random worlds, without recordings, and score them together.
+    """Run and score many seeds of a scenario, or random worlds.
 
-    A killed call goes on where it was. For random worlds, where many people stand behind things, scores are
-    given for all people, and for those of whom more than 30 % is visible.
+    No recordings are written. A killed sweep resumes when you give the command again. In random worlds many
+    people are occluded; their scores are printed for all people, and for people of whom more than 30 % is
+    visible.
     """
     from peopleboy.scenarios.running.many_runs import sweep as run_seeds
     from peopleboy.scenarios.running.many_runs import sweep_worlds
@@ -208,62 +215,56 @@ def sweep(
     from peopleboy.scenarios.scores.show_scores import print_runs
 
     options = given.make(seed=0, out=given.out or Path("runs"))
-    if (scenario is None) == (randomise is None) or (randomise is not None and seeds is not None):
-        raise BadInput("sweep: give a scenario, with --seeds or without, or --randomise N")
+    if (scenario is None) is not random_worlds:
+        raise BadInput("sweep: give a scenario, or --random-worlds, but not both")
     if scenario is None:
-        runs = sweep_worlds(range(randomise or 0), options, workers)
+        runs = sweep_worlds(seeds, options, workers)
     else:
-        runs = run_seeds(scenario, range(10 if seeds is None else seeds), options, workers)
+        runs = run_seeds(scenario, seeds, options, workers)
     groups = score_by_tracker(runs)
-    if randomise is None:
-        output.figures(lambda: figures_of_all(groups), lambda: print_runs(groups, note=tell_note))
+    if not random_worlds:
+        output.results(lambda: figures_of_all(groups), lambda: print_runs(groups, note=print_note))
         return
     seen = score_by_tracker(runs, ScoreOptions(min_visible=_SEEN))
 
     def show() -> None:
-        print_runs(groups, note=tell_note)
-        print_runs(seen, f"people of whom more than {_SEEN:.0%} is seen")
+        print_runs(groups, note=print_note)
+        print_runs(seen, f"people of whom more than {_SEEN:.0%} is visible")
 
-    output.figures(lambda: figures_of_all(groups) | {"seen": figures_of_all(seen)}, show)
+    output.results(lambda: figures_of_all(groups) | {"visible": figures_of_all(seen)}, show)
 
 
 @click.command(cls=FieldsCommand)
+@click.argument("scenarios", metavar="[SCENARIO...]", nargs=-1, shell_complete=complete_scenario)
 @click.option(
     "--controllers",
     default="follow_person,follow_person@truth",
     show_default=True,
-    help="Behaviours, or module:Class of your own, each with @ and a tracker if it is to see by another one, "
-    "or by the truth.",
+    help="Controllers, separated by commas: a behaviour or module:Class, and after an @ the tracker it gets, "
+    "if not that of the scenario.",
 )
-@click.option(
-    "--scenario",
-    "scenarios",
-    multiple=True,
-    default=("single_follow",),
-    show_default=True,
-    help="Name or file; can be given again.",
-)
-@click.option("--seeds", type=WholeNumber(min=1), default=20, show_default=True, help="How many, from 0 on.")
+@seeds_options(20)
 @options_of(
     "scenarios.running.run_options:RunOptions",
     *("out", "boxes", "physics", "overwrite"),
     out="Folder for runs, tables and plots.  [default: runs/compare]",
-    boxes="What boxes of trackers of your own enclose: the torso, or the whole person.",
+    boxes="What the boxes of your own trackers enclose: the torso or the whole person.",
     overwrite="Replace earlier runs.",
 )
 @workers_options
 @output_options
 def compare(
-    controllers: str,
     scenarios: Sequence[str],
-    seeds: int,
+    controllers: str,
+    seeds: range,
     given: GivenOptions[RunOptions],
     workers: Workers,
     output: Output,
 ) -> None:
-    """Let controllers drive through the same scenes, and print how they did, with confidence intervals.
+    """Compare controllers on the same scenarios.
 
-    A killed call goes on where it was.
+    Prints metrics with confidence intervals, and writes tables and plots. SCENARIO is single_follow unless
+    you give others. A killed comparison resumes when you give the command again.
     """
     from peopleboy.scenarios.files.load import load_scenario
     from peopleboy.scenarios.running.compare_controllers import (
@@ -273,13 +274,14 @@ def compare(
         show_comparison,
     )
 
+    scenarios = scenarios or ("single_follow",)
     chosen = [parse_controller(text) for text in controllers.split(",")]
     names = [load_scenario(scenario).name for scenario in scenarios]
     out, found = given.out or Path("runs") / "compare", []
     for scenario, name in zip(scenarios, names, strict=True):
-        runs = compare(scenario, chosen, range(seeds), given.make(seed=0, out=out / name), workers)
+        runs = compare(scenario, chosen, seeds, given.make(seed=0, out=out / name), workers)
         found.append(keep_comparison(name, runs, out / name))
-        if output.is_wordy:
+        if output.is_text:
             show_comparison(name, runs)
             click.echo(out / name / "comparison.png")
-    output.figures(lambda: {"comparisons": found})
+    output.results(lambda: {"comparisons": found}, lambda: None)

@@ -1,4 +1,4 @@
-"""Commands that follow the sources and train models: `datasets`, `reproduce`, `tune`, `train`."""
+"""Commands for research: `datasets`, `reproduce`, `tune`, `train`."""
 
 from __future__ import annotations
 
@@ -15,8 +15,11 @@ from peopleboy.scenarios.commands.command_options import (
     PATH,
     FieldsCommand,
     GivenOptions,
-    films_option,
+    Output,
+    frame_cache_option,
     options_of,
+    output_options,
+    seeds_options,
     workers_options,
 )
 
@@ -26,44 +29,63 @@ if TYPE_CHECKING:
     from peopleboy.studies.reproductions.tune import TrainingFilms
 
 
-@click.command()
-@click.argument("suites", nargs=-1)
-@films_option
-def datasets(suites: Sequence[str], films: Path) -> None:
-    """Count what the data sets hold, beside table 3.1 of the thesis; their frames are rendered and kept.
+@click.command(cls=FieldsCommand)
+@click.argument("suites", metavar="[SUITE...]", nargs=-1)
+@frame_cache_option
+@output_options
+def datasets(suites: Sequence[str], frame_cache: Path, output: Output) -> None:
+    """Count frames and people of the thesis data sets.
 
-    SUITES are any of dataset1 to dataset4; without a name, all of them.
+    SUITE is one of dataset1 to dataset4; without a name, all of them. The counts are printed beside those of
+    table 3.1 of the thesis. Frames are rendered and kept.
     """
     from peopleboy.scenarios.scores.suite_table import THESIS
-    from peopleboy.studies.reproductions.runner import print_contents
+    from peopleboy.studies.reproductions.runner import contents_of, contents_to_json, print_contents
 
     for name in suites:
         if name not in THESIS:
-            raise BadInput(f"datasets: unknown data set {name!r}; there are {', '.join(THESIS)}")
-    print_contents(suites or tuple(THESIS), films)
+            raise BadInput(f"datasets: unknown data set {name!r}; choose from {', '.join(THESIS)}")
+    rows = contents_of(suites or tuple(THESIS), frame_cache)
+    output.results(lambda: contents_to_json(rows), lambda: print_contents(rows))
 
 
 @click.command(cls=FieldsCommand)
 @click.argument("names", metavar="[ID]...", nargs=-1)
-@options_of("studies.reproductions.runner:ReproduceOptions", "paper", "quick", "repeats", "out", "so_far")
-@films_option
+@options_of("studies.reproductions.runner:ReproduceOptions", "paper", "quick", "seeds", "out", "so_far")
+@frame_cache_option
 @workers_options
-@click.option("--list", "lists", is_flag=True, help="List tables and figures, and do nothing.")
+@click.option("--list", "lists", is_flag=True, help="List tables and figures; measure nothing.")
+@output_options
 def reproduce(
-    names: Sequence[str], given: GivenOptions[ReproduceOptions], films: Path, workers: Workers, lists: bool
+    names: Sequence[str],
+    given: GivenOptions[ReproduceOptions],
+    frame_cache: Path,
+    workers: Workers,
+    lists: bool,
+    output: Output,
 ) -> None:
-    """Measure every table and figure of the sources again, print them, and write one page about it.
+    """Reproduce tables and figures of the publications.
 
-    ID is one of `--list`, or its number: 4.9 stands for figures 4.9a and 4.9b. A killed call goes on where it
-    was when it is given again.
+    Prints them beside the published values, and writes one page about them. ID is one of `--list`, or its
+    number: 4.9 stands for figures 4.9a and 4.9b. A killed call resumes when you give the command again.
     """
-    from peopleboy.studies.reproductions.runner import list_experiments, reproduce_named
+    from peopleboy.studies.reproductions.catalogue import choose
+    from peopleboy.studies.reproductions.runner import (
+        print_experiments,
+        print_sections,
+        reproduce_named,
+    )
 
-    options = given.make(films=films)
+    options = given.make(films=frame_cache)
     if lists:
-        list_experiments(names, options.paper)
-    else:
-        click.echo(reproduce_named(names, options, workers))
+        chosen = choose(names, options.paper)
+        listed = [{"id": one.id, "source": one.source, "title": one.title} for one in chosen]
+        output.results(lambda: listed, lambda: print_experiments(chosen))
+        return
+    page, sections = reproduce_named(names, options, workers)
+    if output.is_text:
+        print_sections(sections)
+    output.lines({"page": page, "sections": [one.id for one in sections]}, page)
 
 
 @click.command(cls=FieldsCommand)
@@ -71,10 +93,11 @@ def reproduce(
     "--parameter",
     "names",
     multiple=True,
-    help="alpha, kappa, theta, U, B, psi_D, rho, lambda, n_k or rho_o; several by giving it again.  "
+    help="alpha, kappa, theta, U, B, psi_D, rho, lambda, n_k or rho_o; can be given several times.  "
     "[default: all]",
 )
-@options_of("studies.reproductions.tune:TrainingFilms", "seeds", "seconds")
+@seeds_options(4, first=100)
+@options_of("studies.reproductions.tune:TrainingFilms", "seconds")
 @click.option(
     "--out",
     type=PATH,
@@ -82,27 +105,37 @@ def reproduce(
     show_default=True,
     help="Folder of the page, the curves and the results.",
 )
-@films_option
+@frame_cache_option
 @workers_options
+@output_options
 def tune(
-    names: Sequence[str], given: GivenOptions[TrainingFilms], out: Path, films: Path, workers: Workers
+    names: Sequence[str],
+    given: GivenOptions[TrainingFilms],
+    seeds: range,
+    out: Path,
+    frame_cache: Path,
+    workers: Workers,
+    output: Output,
 ) -> None:
-    """Try other values of the thesis's parameters, one parameter at a time, by area accuracy.
+    """Tune the parameters of the thesis trackers, one at a time.
 
-    As in its sections 4.4 to 7.5, each with the tracker of its chapter. Films have seeds from 100 on, which
-    no figure is reported on. Leaves a curve of each parameter and a page. A killed call goes on where it was.
+    Each parameter is varied as in sections 4.4 to 7.5 of the thesis, with the tracker of its chapter, and
+    scored by area accuracy. No reported score uses seeds from 100 on. Writes a curve for each parameter and a
+    page. A killed call resumes when you give the command again.
     """
     from peopleboy.studies.reproductions.tune import chosen_parameters, print_tuned
     from peopleboy.studies.reproductions.tune import tune as tune_all
 
-    shown = given.make(cache=films.resolve())
+    shown = given.make(cache=frame_cache.resolve(), seeds=seeds)
     page, tuned = tune_all(chosen_parameters(names), shown, out, workers)
-    print_tuned(tuned)
-    click.echo(page)
+    if output.is_text:
+        print_tuned(tuned)
+    best = {one.parameter.name: {"published": one.parameter.printed, "best": one.best} for one in tuned}
+    output.lines({"page": page, "parameters": best}, page)
 
 
 class _Models(click.Group):
-    """One subcommand a model; a model's modules are imported when its own options are asked for."""
+    """A subcommand for each model; the modules of a model are imported when its options are needed."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
         """Name the models."""
@@ -115,7 +148,7 @@ class _Models(click.Group):
         from peopleboy.studies.training.specification import MODELS, load_specification
 
         if cmd_name not in MODELS:
-            raise BadInput(f"train: unknown model {cmd_name!r}; there are {', '.join(MODELS)}")
+            raise BadInput(f"train: unknown model {cmd_name!r}; choose from {', '.join(MODELS)}")
         return _command(cmd_name, *MODELS[cmd_name], load_specification(cmd_name))
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
@@ -128,9 +161,10 @@ class _Models(click.Group):
 
 @click.command(cls=_Models, subcommand_metavar="MODEL [OPTIONS]")
 def train() -> None:
-    """Train one of the models that the trackers use, on rendered sequences.
+    """Train a model of the trackers on rendered sequences.
 
-    Samples and weights are left in a folder; a killed call resumes. Needs pip install 'peopleboy[studies]'.
+    Writes samples and weights to a folder; a killed call resumes when you give the command again. Needs
+    pip install 'peopleboy[studies]'.
     """
 
 
@@ -138,20 +172,19 @@ def _command(model: str, target: str, help_text: str, specification: type[Any]) 
     """Make the command that trains a model."""
 
     @options_of(f"studies.training.{target}", *(each.name for each in fields(specification)))
-    @click.option(
-        "--out", type=PATH, help="Folder of samples and weights.  [default: one of the model's in runs]"
-    )
-    @click.option("--ship", is_flag=True, help="Put the weights in the place of the trackers' own.")
+    @click.option("--out", type=PATH, help="Folder of samples and weights.  [default: runs/MODEL]")
+    @click.option("--ship", is_flag=True, help="Replace the weights that the trackers use.")
     @workers_options
-    def train_model(given: GivenOptions[Any], out: Path | None, ship: bool, workers: Workers) -> None:
+    @output_options
+    def train_model(
+        given: GivenOptions[Any], out: Path | None, ship: bool, workers: Workers, output: Output
+    ) -> None:
         from peopleboy.studies.training.specification import train
 
         chosen = given.make()
         paths = train(chosen, out or chosen.default_folder(model), workers, ship=ship)
-        if specification.HINT:
-            click.echo(specification.HINT)
-        for path in paths:
-            click.echo(path)
+        hints = [specification.HINT] if specification.HINT else []
+        output.lines({"weights": [str(path) for path in paths], "hints": hints}, *hints, *paths)
 
     about = f"{help_text}\n\n{inspect.cleandoc(specification.__doc__ or '')}"
     return click.command(model, cls=FieldsCommand, help=about, short_help=help_text)(train_model)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import Command
 from peopleboy.geometry.pose2 import Pose2
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.environments.arguments import (
     check_actions,
     check_options,
@@ -44,19 +45,19 @@ from peopleboy.scenarios.environments.scene_picture import ScenePicture
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
 from peopleboy.scenarios.loop.tracker_by_name import make_checked_tracker, tracker_cameras
 from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.scores.drive_record import TARGET
 from peopleboy.scenarios.scores.following_metrics import following_task
 from peopleboy.sim.batch.sensing import Snapshot, take_snapshot
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.observation import Observation
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.view import BLIND
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
 from peopleboy.sim.world_config import WorldConfig
+from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import Tracker, explanation_of
 
@@ -65,6 +66,7 @@ if TYPE_CHECKING:
 
 DEFAULT_PX: Final = (320, 240)
 _SEEDS: Final = 2**31
+_ENDLESS: Final = 2**31
 _RANDOM_S: Final = 30.0  # episodes in random worlds
 
 
@@ -99,6 +101,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             what `python -m benchmarks.speed.environments` prints, beside how far the robot's way is off then.
         normalise: whether numbers are brought within -1..1, see `Normaliser` in
             `peopleboy.scenarios.environments.observations`.
+        max_episode_steps: steps after which an episode is truncated, if the scenario is not over before;
+            None for the scenario's duration alone. `gymnasium.make` has 1125 unless you give another.
 
     Raises:
         BadInput: an argument cannot be used.
@@ -120,6 +124,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         physics: str | None = None,
         physics_hz: int | None = None,
         normalise: bool = False,
+        max_episode_steps: int | None = None,
     ) -> None:
         self._world: World | None = None
         self._viewer: LivePicture | None = None
@@ -142,6 +147,9 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._physics_hz = usual.physics_hz if physics_hz is None else physics_hz
         replace(usual, physics_hz=self._physics_hz)  # refuses a rate that does not fit now
         self._take(first)
+        if max_episode_steps is not None and max_episode_steps < 1:
+            raise BadInput(f"max_episode_steps {max_episode_steps!r} must be 1 or more, or None")
+        self._max_steps = _ENDLESS if max_episode_steps is None else int(max_episode_steps)
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
         shown = shown_cameras(cameras, observation, self._robot)
         normaliser = Normaliser(self._robot) if normalise else None
@@ -182,7 +190,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         settings = EpisodeSettings(
             plan=self._scenario.plan,
             following=following_task(config, self._scenario.follow_config().keep_height),
-            frames=round(self._scenario.duration_s * config.control_hz),
+            frames=min(round(self._scenario.duration_s * config.control_hz), self._max_steps),
             dt_s=self._dt_s,
             limits=config.robot.drive.limits,
         )
@@ -244,7 +252,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         assert self._tracker is not None
         world, senses = self._running(even_over=True), snapshot.senses(row)
         assert isinstance(senses, Observation)
-        self._tracks = self._tracker.update(make_frame(senses, self._calibrations, self._before))
+        self._tracks = self._tracker.update(Frame.from_observation(senses, self._before, self._calibrations))
         self._before = senses.odometry
         box = world.box(TARGET) if world.config.people else None
         track = track_in(snapshot.scenes, row, self._tracks, box, self._track)

@@ -14,9 +14,9 @@ from gymnasium import spaces
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.scenarios.loop.loop import calibrations_of, thermal_box
+from peopleboy.scenarios.loop.loop import thermal_box
 from peopleboy.sim.batch.sensing import Snapshot
-from peopleboy.sim.cameras.camera_config import CameraConfig
+from peopleboy.sim.cameras.camera_config import CameraConfig, calibrations_of
 from peopleboy.sim.cameras.kinds import kind_of
 from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.robot.robot_body import WHEEL_DISTANCE_M

@@ -112,7 +112,6 @@ def _with_flags(columns: dict[str, Any], have: NDArray[np.bool_]) -> Infos:
 
 
 Flags = NDArray[np.bool_]
-_OF_GYMNASIUM = {"max_episode_steps", "autoreset_mode"}
 
 
 class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
@@ -143,9 +142,9 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
             raise BadInput(f"num_envs {num_envs!r}: must be 1 or more")
         if settings.get("render_mode") is not None:
             raise BadInput("render_mode: many worlds draw no images; leave it out, or take one environment")
-        for name in _OF_GYMNASIUM & settings.keys():
+        if "autoreset_mode" in settings:
             raise BadInput(
-                f"{name}: gymnasium's own ways to put worlds together have that; "
+                "autoreset_mode: gymnasium's own vector environments have that; "
                 "give vectorization_mode='sync' or 'async'"
             )
         if threads is not None and not (isinstance(threads, int | np.integer) and threads >= 1):

@@ -26,6 +26,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.camera_calibration import PanoramaCalibration
 from peopleboy.scenarios.export.replay import (
     CORNER_PX,
     OUTSIDE,
@@ -34,7 +35,7 @@ from peopleboy.scenarios.export.replay import (
     keypoints_from_corner,
 )
 from peopleboy.scenarios.export.splits import by_split
-from peopleboy.scenarios.loop.loop import Tick, calibration_of
+from peopleboy.scenarios.loop.loop import Tick
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import (
     image_file,
@@ -47,7 +48,6 @@ from peopleboy.sim.cameras.kinds import image_folders, with_boxes
 from peopleboy.sim.geometry.pinhole import CameraGeometry, Matrix, Pinhole
 from peopleboy.sim.people.body.skeleton import JOINT_NAMES
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 
 _PERSON = 1
 _LICENCE: Final = {"id": 1, "name": "MIT", "url": "https://opensource.org/license/mit"}  # the project's
@@ -235,7 +235,7 @@ def _camera(camera: CameraGeometry) -> dict[str, Any]:
     about: dict[str, Any] = {"width": camera.width, "height": camera.height}
     if isinstance(camera, Pinhole):
         about["intrinsics"] = _intrinsics(camera).tolist()
-    calibration = calibration_of(camera)
+    calibration = camera.calibration
     if isinstance(calibration, PanoramaCalibration):
         about["panorama"] = asdict(calibration)
     return about | {"robot_from_camera": camera.robot_from_camera.tolist()}

@@ -33,7 +33,7 @@ class ExportOptions:
     camera: Annotated[
         str | None,
         Field(
-            description="Camera whose images and boxes mot, yolo, viper or mp4 hold.  [default: thermal; "
+            description="Camera whose images and boxes mot, yolo, viper and mp4 contain.  [default: thermal; "
             "mp4: thermal and colour]"
         ),
         Metavar("NAME"),
@@ -42,14 +42,14 @@ class ExportOptions:
         float | None,
         Field(
             ge=0.0,
-            description="Least width and height of boxes of yolo and yolo-pose, in pixels; 0 for all.  "
+            description="Minimum width and height of boxes in yolo and yolo-pose, in pixels; 0 keeps all.  "
             "[default: 3]",
         ),
     ] = None
     boxes: Annotated[
         BoxKind | None,
         Field(
-            description="What boxes of mot's truth enclose: the torso, or all of a person.  [default: torso]"
+            description="What the ground truth boxes of mot enclose: torso or whole person.  [default: torso]"
         ),
     ] = None
     epoch: Annotated[
@@ -64,7 +64,7 @@ class ExportOptions:
         Literal["humble", "jazzy"] | None,
         Field(description="ROS distribution whose message types mcap has.  [default: jazzy]"),
     ] = None
-    out: Annotated[Path, Field(description="Folder to leave.")]
+    out: Annotated[Path, Field(description="Output folder.")]
     overwrite: Annotated[bool, Field(description="Replace an earlier export in the folder.")] = False
 
 

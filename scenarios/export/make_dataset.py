@@ -31,7 +31,6 @@ from peopleboy.scenarios.run_folder.folder import versions
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import RunTask, play, unfinished
 from peopleboy.scenarios.running.run_options import RunOptions
-from peopleboy.settings import Metavar
 from peopleboy.sim.physics.physics_engine import check_physics
 
 
@@ -63,8 +62,8 @@ class SetContents:
     is_random: bool = False
 
 
-def of_scenarios(scenarios: Sequence[str], seeds: int) -> SetContents:
-    """Hold some scenarios, by name or path, with so many seeds each, from 0 on.
+def of_scenarios(scenarios: Sequence[str], seeds: range) -> SetContents:
+    """Return the contents of a set of scenarios, by name or path, each with all seeds.
 
     Raises:
         BadInput: a scenario cannot be played, or two have one name.
@@ -75,59 +74,55 @@ def of_scenarios(scenarios: Sequence[str], seeds: int) -> SetContents:
         raise BadInput(f"render: {', '.join(names)}: two scenarios have the same name; give each once")
     return SetContents(
         members=tuple(
-            Member(scenario, seed, f"{scenario.name}-{seed}") for scenario in loaded for seed in range(seeds)
+            Member(scenario, seed, f"{scenario.name}-{seed}") for scenario in loaded for seed in seeds
         ),
         asked=tuple(scenarios),
-        about={"scenarios": names, "seeds": seeds},
+        about={"scenarios": names} | _about(seeds),
         lacking=lacking_splits(seeds),
     )
 
 
-def of_worlds(count: int, first: int) -> SetContents:
-    """Hold so many worlds drawn at random, each by a seed of its own, from `first` on."""
-    seeds = range(first, first + count)
+def of_worlds(seeds: range) -> SetContents:
+    """Return the contents of a set of random worlds, one for each seed."""
     worlds = [random_scenario(seed) for seed in seeds]
-    empty = [split for split in SPLITS if split not in map(split_of, seeds)]
-    are = "are" if len(empty) > 1 else "is"
     return SetContents(
         members=tuple(Member(world, seed, world.name) for world, seed in zip(worlds, seeds, strict=True)),
-        asked=("--randomise", str(count), "--seed", str(first)),
-        about={"randomise": count, "seed": first},
-        lacking=f"{' and '.join(empty)} {are} empty; give --randomise 7" if empty else "",
+        asked=("--random-worlds",),
+        about={"random_worlds": True} | _about(seeds),
+        lacking=lacking_splits(seeds),
         is_random=True,
     )
 
 
+def _about(seeds: range) -> dict[str, int]:
+    return {"seeds": len(seeds), "first_seed": seeds.start}
+
+
 DRAWN: Final = "drawn.json"
-"""The file in which a set of random worlds says what was drawn for each."""
+"""The file with the values that were drawn for each random world of a set."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SetOptions:
-    """What a set holds, and how it is rendered: scenarios with many seeds, or random worlds."""
+    """Contents of a set, scenarios with many seeds or random worlds, and how it is rendered.
+
+    Attributes:
+        seeds: of the runs of each scenario, or of the random worlds.
+    """
 
     scenarios: tuple[str, ...] = ()
-    frames: Annotated[bool, Field(description="Write every image too, as for `run`; else truth alone.")] = (
-        False
-    )
-    seeds: Annotated[
-        int | None,
-        Field(ge=1, description="How many, from 0 on; from 7 on every split has runs.  [default: 100]"),
-    ] = None
-    randomise: Annotated[
-        int | None,
-        Field(ge=1, description="In place of scenarios: how many worlds, each drawn at random."),
-        Metavar("N"),
-    ] = None
-    seed: Annotated[
-        int | None,
-        Field(ge=0, description="Of the first random world; the next one has the next.  [default: 0]"),
-    ] = None
+    frames: Annotated[
+        bool, Field(description="Write the images too, as `run --frames` does; otherwise ground truth only.")
+    ] = False
+    random_worlds: Annotated[
+        bool, Field(description="Render a random world for each seed in place of scenarios.")
+    ] = False
+    seeds: range = range(100)
     out: Annotated[
         Path | None,
         Field(description="Folder of the set.  [default: sets/SCENARIO-SCENARIO..., or sets/worlds]"),
     ] = None
-    tracker: Annotated[str, Field(description="Tracker that steers robots that follow people.")] = "truth"
+    tracker: Annotated[str, Field(description="Tracker of robots that follow people.")] = "truth"
 
     def contents(self) -> tuple[SetContents, str]:
         """Choose the runs, and return them with the usual name of the set.
@@ -135,16 +130,12 @@ class SetOptions:
         Raises:
             BadInput: options contradict each other, or a scenario cannot be played.
         """
-        if self.randomise is None:
-            if self.seed is not None or not self.scenarios:
-                raise BadInput("render: give scenarios, or --randomise N, which --seed goes with")
-            contents = of_scenarios(self.scenarios, 100 if self.seeds is None else self.seeds)
-            return contents, "-".join(contents.about["scenarios"])
-        if self.seeds is not None or self.scenarios:
-            raise BadInput(
-                "render: --randomise draws worlds in place of scenarios and --seeds; leave these out"
-            )
-        return of_worlds(self.randomise, self.seed or 0), "worlds"
+        if bool(self.scenarios) is self.random_worlds:
+            raise BadInput("render: give scenarios, or --random-worlds, but not both")
+        if self.random_worlds:
+            return of_worlds(self.seeds), "worlds"
+        contents = of_scenarios(self.scenarios, self.seeds)
+        return contents, "-".join(contents.about["scenarios"])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -167,9 +158,20 @@ class RenderedSet:
     size_mb: float
     lacking: str
 
+    def to_json(self) -> dict[str, Any]:
+        """Return what there is to say about the set as JSON can hold it."""
+        return {
+            "folder": str(self.folder),
+            "runs": [run.name for run in self.runs],
+            "size_mb": self.size_mb,
+            "checks": [asdict(check) for check in self.checks],
+            "statistics": {name: each.to_json() for name, each in self.statistics.items()},
+            "lacking": self.lacking,
+        }
+
     @property
     def is_sound(self) -> bool:
-        """Whether every check holds."""
+        """Whether every check passes."""
         return not any(check.failures for check in self.checks)
 
 
@@ -242,7 +244,7 @@ def _claim(folder: Path) -> None:
     """
     check_named(folder)
     if folder.exists() and (not folder.is_dir() or (any(folder.iterdir()) and not is_set(folder))):
-        raise BadInput(f"{folder}: holds something that is no rendered set; give another --out")
+        raise BadInput(f"{folder}: contains something other than a rendered set; give another --out")
     with writing_to(folder):
         (folder / "splits").mkdir(parents=True, exist_ok=True)
 

@@ -33,14 +33,15 @@ def split_file(folder: Path, split: str) -> Path:
     return folder / "splits" / f"{split}.txt"
 
 
-def lacking_splits(seeds: int) -> str:
-    """Return which splits have no run with so many seeds, and how many they need; nothing if all have one."""
-    firsts = {split: _TURNS.index(split) for split in SPLITS if _TURNS.index(split) >= seeds}
-    if not firsts:
+def lacking_splits(seeds: range) -> str:
+    """Return which splits have no run, and how many seeds would do; empty if each has one."""
+    empty = [split for split in SPLITS if split not in map(split_of, seeds)]
+    if not empty:
         return ""
-    are, first = ("are", "the first are seeds") if len(firsts) > 1 else ("is", "the first is seed")
-    numbers = " and ".join(map(str, firsts.values()))
-    return f"{' and '.join(firsts)} {are} empty: {first} {numbers}; give --seeds {max(firsts.values()) + 1}"
+    count = len(seeds)
+    while not set(SPLITS) <= set(map(split_of, range(seeds.start, seeds.start + count))):
+        count += 1
+    return f"{' and '.join(empty)} {'are' if len(empty) > 1 else 'is'} empty; give --seeds {count}"
 
 
 def read_split(run: Path) -> str | None:

@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
+import logging
 from pathlib import Path
 from typing import Any
 
 from peopleboy.bad_input import BadInput, found_in
+from peopleboy.scenarios.files.library import LIBRARY, SUITES
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.scenario import Scenario, make_scenario
 from peopleboy.scenarios.files.scenario_file import ScenarioSpec
 from peopleboy.scenarios.files.validation import validated
 from peopleboy.wording import hint
 
-LIBRARY = Path(__file__).parents[1] / "library"
-SUITES = Path(__file__).parents[1] / "suites"
+_LOG = logging.getLogger(__name__)
 
 
-def load_scenario(name_or_path: str | Path) -> Scenario:
-    """Load a scenario by its library name, or by the path of a YAML file.
+def load_scenario(name_or_path: str | Path | Scenario) -> Scenario:
+    """Load a scenario by its library name, or by the path of a YAML file; one that is loaded is returned.
 
     Raises:
         BadInput: there is no such scenario, or the file is wrong: file, key, value and what would be right.
     """
+    if isinstance(name_or_path, Scenario):
+        return name_or_path
     path = _find(name_or_path)
+    _LOG.info("scenario %s from %s", path.stem, path)
     return parse_scenario(read_yaml(path), source=_shown(path), folder=path.parent)
 
 
@@ -39,13 +43,6 @@ def parse_scenario(data: dict[Any, Any], *, source: str, folder: Path) -> Scenar
     """
     with found_in(file=source):
         return make_scenario(validated(ScenarioSpec, _filled_in(data)), folder)
-
-
-def library() -> dict[str, str]:
-    """Names and descriptions of the scenarios that come with PeopleBoy, by name."""
-    data = [_filled_in(read_yaml(path)) for path in sorted(LIBRARY.glob("*.yaml"))]
-    specs = [validated(ScenarioSpec, each) for each in data]
-    return {spec.name: " ".join(spec.description.split()) for spec in specs}
 
 
 def _filled_in(data: dict[Any, Any], via: tuple[str, ...] = ()) -> dict[Any, Any]:

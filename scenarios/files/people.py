@@ -10,6 +10,7 @@ from typing import Annotated, Any, Final
 import numpy as np
 from pydantic import Field, with_config
 
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.validation import STRICT, Given
 from peopleboy.settings import Name, meaning_of
 from peopleboy.sim.people.appearance.traits import usual_clothes
@@ -17,7 +18,6 @@ from peopleboy.sim.people.body.anthropometry import Build, Sex
 from peopleboy.sim.people.body.clothes import Clothes, random_clothes
 from peopleboy.sim.people.person_config import SPEEDS_M_S, ActorConfig, PersonConfig, WalkConfig, Waypoint
 from peopleboy.sim.people.walking.path import abreast
-from peopleboy.sim.random_streams import stream
 
 # Stature of adults [m]: mean and standard deviation (NCD-RisC 2016, young adults of central Europe, rounded).
 _STATURE_M: Final = {"female": (1.66, 0.06), "male": (1.79, 0.07)}

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from importlib import import_module
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from peopleboy.bad_input import BadInput, Key, found_in
@@ -14,6 +16,7 @@ from peopleboy.behaviours.corridor.corridor_from_image import CorridorCamera
 from peopleboy.behaviours.corridor.follow_corridor import FollowCorridorConfig
 from peopleboy.behaviours.following.follow_person import FollowConfig
 from peopleboy.behaviours.make_behaviour import is_own, make_behaviour
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.check import Ground, check_scenario, make_ground
 from peopleboy.scenarios.files.own_files import read_own_files
 from peopleboy.scenarios.files.people import PersonSpec, assign_distinct_colours, make_config, resolve_person
@@ -26,8 +29,8 @@ from peopleboy.sim.places.floor_plan import FloorPlan
 from peopleboy.sim.places.make_place import make_place
 from peopleboy.sim.places.place import Place, air_of
 from peopleboy.sim.places.place_config import lay_out
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world_config import WorldConfig
+from peopleboy.wording import counted
 
 RENDERERS = ("raycast", "bullet")
 
@@ -53,6 +56,20 @@ class Scenario:
     files: Mapping[str, bytes]
     drive: tuple[Command, ...] | None = None
     own_behaviour: str | None = None
+
+    def __repr__(self) -> str:
+        """Say name, duration and number of people."""
+        people = counted(len(_everybody(self.spec)), "person", "people")
+        return f"Scenario({self.name!r}, {self.duration_s:g} s, {people}, robot: {self.robot.behaviour})"
+
+    def _repr_png_(self) -> bytes:
+        """Draw the plan, for notebooks."""
+        # By name, as drawings import scenarios, and scenarios load without matplotlib.
+        draw_plan = import_module("peopleboy.scenarios.drawing.draw_plan").draw_plan
+        with TemporaryDirectory() as folder:
+            path = Path(folder) / "plan.png"
+            draw_plan(self, self.seed, path)
+            return path.read_bytes()
 
     @property
     def name(self) -> str:

@@ -10,7 +10,8 @@ from typing import Annotated, Any
 from pydantic import Field, with_config
 
 from peopleboy.bad_input import BadInput, found_in
-from peopleboy.scenarios.files.load import SUITES, load_scenario
+from peopleboy.scenarios.files.library import SUITES, suite_names
+from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.recorded_drives import read_drive
 from peopleboy.scenarios.files.scenario import Scenario
@@ -59,11 +60,6 @@ class SuiteRun:
     def name(self) -> str:
         """Its folder's name."""
         return f"{self.scenario.name}-{self.seed}"
-
-
-def suite_names() -> list[str]:
-    """Names of the suites that come with PeopleBoy."""
-    return sorted(path.stem for path in SUITES.glob("*.yaml"))
 
 
 def load_suite(name: str) -> SuiteSpec:

@@ -123,8 +123,8 @@ class TrackImport:
 
     run: Path
     tracks: Path
-    name: Annotated[str, Field(description="What their tracker is called.")]
-    out: Annotated[Path, Field(description="Folder to leave.")]
+    name: Annotated[str, Field(description="Name of their tracker.")]
+    out: Annotated[Path, Field(description="Output folder.")]
     camera: Annotated[str, Field(description="Camera in whose images the boxes are.")] = THERMAL
     boxes: Annotated[BoxKind, meaning_of(RunOptions, "boxes")] = BoxKind.TORSO
     record: Annotated[bool, meaning_of(RunOptions, "record")] = True

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.scenarios.loop.loop import calibrations_of, odometry_way
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.cameras.kinds import image_folders
-from peopleboy.tracker.frame import DEPTH, DEPTH_AMPLITUDE, DEPTH_COLOUR, THERMAL, Frame
+from peopleboy.tracker.frame import DEPTH, DEPTH_AMPLITUDE, DEPTH_COLOUR, THERMAL, Frame, Odometry
 from peopleboy.tracker.scene_model.scene import Change, Happening
 
 IMAGES: Final = (DEPTH, DEPTH_COLOUR, DEPTH_AMPLITUDE, THERMAL)
@@ -53,7 +53,7 @@ def run_frames(run: FinishedRun) -> Iterator[Frame]:
         if DEPTH not in images:
             continue
         now = Pose2(*(row[f"odometry_{name}"] for name in ("x_m", "y_m", "heading_rad")))
-        odometry = None if before is None else odometry_way(before, now)
+        odometry = None if before is None else Odometry.between(before, now)
         yield Frame(images=images, calibrations=calibrations, time_s=row["time_s"], odometry=odometry)
         before = now
 

@@ -132,9 +132,9 @@ class FootageLog:
         self._means = f"at {views.rate_hz:g} Hz, tracker {options.tracker}"
         self._stack = ExitStack()
         self._film: FilmWriter | None = None
-        if options.film:
+        if options.video:
             path, rate_hz = folder / "overlay.mp4", round(max(views.rate_hz, 1.0))
-            self._film = self._stack.enter_context(FilmWriter(path, rate_hz, "--film"))
+            self._film = self._stack.enter_context(FilmWriter(path, rate_hz, "--video"))
         self._results = self._stack.enter_context(
             (folder / "tracks.txt").open("w", encoding="utf-8", newline="\n")
         )

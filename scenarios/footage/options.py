@@ -38,9 +38,11 @@ class RgbdCamera:
         float, Field(alias="camera_height_m", description="Height of the depth camera above the floor.")
     ] = 1.2
     pitch_deg: Annotated[float, Field(description="Tilt of the depth camera; positive looks down.")] = 0.0
-    focal_px: Annotated[float | None, Field(description="Focal length of its pictures; or the next.")] = None
+    focal_px: Annotated[
+        float | None, Field(description="Focal length of the depth camera; or give --vertical-fov-deg.")
+    ] = None
     vertical_fov_deg: Annotated[
-        float | None, Field(description="From top to bottom of its pictures.  [default: 43]")
+        float | None, Field(description="Vertical field of view of the depth camera.  [default: 43]")
     ] = None
 
     def __post_init__(self) -> None:
@@ -125,8 +127,11 @@ class TrackOptions:
     """
 
     footage: Path
-    out: Annotated[Path, Field(description="Folder to leave.")]
-    colour: Annotated[Path | None, Field(description="The same view in colour, as many pictures.")] = None
+    out: Annotated[Path, Field(description="Output folder.")]
+    colour: Annotated[
+        Path | None,
+        Field(description="Folder of colour images, one for each thermal image."),
+    ] = None
     radiometry: Radiometry = field(default_factory=Radiometry)
     rgbd: RgbdOptions | None = None
     rate_hz: Annotated[
@@ -134,24 +139,24 @@ class TrackOptions:
         Field(
             ge=0.1,
             le=1000.0,
-            description="Pictures a second.  [default: the video's own, or seqinfo.ini's; 15 otherwise]",
+            description="Frame rate.  [default: that of the video or of seqinfo.ini; otherwise 15]",
         ),
     ] = None
-    tracker: Annotated[str, Field(description="Name of the tracker.")] = DEFAULT_TRACKER
+    tracker: Annotated[str, Field(description="Tracker.")] = DEFAULT_TRACKER
     truth: Annotated[
         Path | None,
-        Field(description="VOT, OTB or MOTChallenge truth.  [default: what lies beside the pictures]"),
+        Field(description="Ground truth: VOT, OTB or MOTChallenge.  [default: the file beside the images]"),
     ] = None
     boxes: Annotated[
         BoxKind | None,
         Field(
-            description="What our trackers' boxes enclose: the torso, or the whole person.  [default: as the "
-            "truth's; whole without truth]"
+            description="What the tracker's boxes enclose: torso or whole person.  [default: as the ground "
+            "truth's; whole without ground truth]"
         ),
     ] = None
     start: Box | str | None = None
-    seed: Annotated[int, Field(ge=0, description="Seed of everything random.")] = 0
-    film: Annotated[bool, Field(description="Write overlay.mp4 too; needs the package av.")] = False
+    seed: Annotated[int, Field(ge=0, description="Seed of all random numbers.")] = 0
+    video: Annotated[bool, Field(description="Write overlay.mp4 too; needs the package av.")] = False
     overwrite: Annotated[bool, Field(description="Replace an earlier run in the folder.")] = False
 
     @property

@@ -14,7 +14,6 @@ from peopleboy.scenarios.footage.options import RgbdOptions, TrackOptions
 from peopleboy.scenarios.footage.views import Views, open_views
 from peopleboy.scenarios.run_folder.atomic_output import atomic_folder, check_named
 from peopleboy.scenarios.run_folder.folder import versions
-from peopleboy.sim.random_streams import stream
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.evaluation.evaluate import Scores
@@ -132,7 +131,7 @@ def _kind_of(options: TrackOptions, truth: GivenTruth | None) -> BoxKind | None:
 def _tracker_of(
     options: TrackOptions, views: Views, truth: GivenTruth | None, kind: BoxKind | None
 ) -> Tracker:
-    tracker = make_tracker(options.tracker, stream(options.seed, "tracker"))
+    tracker = make_tracker(options.tracker, options.seed)
     for camera in tracker.cameras:
         if camera not in views.cameras:
             raise BadInput(f"--tracker {options.tracker}: {_lack(camera, options)}")
@@ -183,7 +182,7 @@ def outcome_lines(tracked: Tracked, options: TrackOptions) -> tuple[str, str]:
     sheet = options.out / "contact_sheet.png"
     if not tracked.tracks:
         shown = f"Nobody was found. Look at {sheet}: {_what_to_look_at(options)}"
-    elif options.film:
+    elif options.video:
         shown = f"{sheet} and {options.out / 'overlay.mp4'} show them."
     else:
         shown = f"{sheet} shows them."

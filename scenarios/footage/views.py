@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.scenarios.drawing.overlay import Picture, show_thermal
 from peopleboy.scenarios.footage.options import (
     DEFAULT_RATE_HZ,
@@ -24,7 +25,7 @@ from peopleboy.tracker.footage.grey import Radiometry, check_plausible, grey_mak
 from peopleboy.tracker.footage.image_sequences import PictureFolder, open_footage
 from peopleboy.tracker.footage.read_picture import read_picture, read_row, size_of
 from peopleboy.tracker.footage.sequence_info import find_info, load_odometry, rate_in
-from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, THERMAL, Frame, Odometry, PinholeCalibration
+from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, THERMAL, Frame, Odometry
 from peopleboy.tracker.trackers import BY_CONTRAST
 
 

@@ -2,63 +2,28 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import lru_cache, partial, singledispatch
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.behaviours.behaviour import Behaviour, Command
+from peopleboy.behaviours.make_behaviour import make_behaviour
 from peopleboy.behaviours.percept import Percept, SeenPerson
-from peopleboy.geometry.pose2 import Pose2
+from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.own_code import at_frame
-from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.geometry.panorama import Panorama
-from peopleboy.sim.geometry.pinhole import Pinhole
+from peopleboy.sim.cameras.camera_config import CameraConfig, calibrations_of
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, WHEEL_DISTANCE_M
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.boxes import image_shares
 from peopleboy.tracker.contour.box_interaction import standing_box
-from peopleboy.tracker.frame import THERMAL, Calibration, Frame, Odometry, PinholeCalibration
-from peopleboy.tracker.panorama_calibration import PanoramaCalibration
+from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.track import Box, Status, Track
-from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again
-
-
-def calibrations_of(cameras: Mapping[str, CameraConfig]) -> Mapping[str, Calibration]:
-    """Return the calibration of each camera by its name; geometries without one are left out."""
-    found = {name: calibration_of(config.camera) for name, config in cameras.items()}
-    return {name: calibration for name, calibration in found.items() if calibration is not None}
-
-
-@singledispatch
-def calibration_of(geometry: object) -> Calibration | None:  # noqa: ARG001
-    """Return a tracker of a camera's geometry; a new kind of geometry registers here."""
-    return None
-
-
-@calibration_of.register
-@lru_cache(maxsize=16)
-def _(geometry: Pinhole) -> Calibration:
-    return PinholeCalibration(geometry.intrinsics, geometry.robot_from_camera)
-
-
-@calibration_of.register
-@lru_cache(maxsize=16)
-def _(geometry: Panorama) -> Calibration:
-    mirror = geometry.mirror
-    return PanoramaCalibration(
-        width=geometry.width,
-        height=geometry.height,
-        focal_px=geometry.focal_px,
-        axis_rad=mirror.axis_rad,
-        ring_radius_m=mirror.ring_radius_m,
-        ring_height_m=mirror.ring_height_m,
-    )
+from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again, make_tracker
 
 
 def thermal_box(track: Track, calibration: Calibration) -> Box | None:
@@ -75,10 +40,6 @@ def thermal_box(track: Track, calibration: Calibration) -> Box | None:
         return track.boxes[THERMAL]
     return None if track.place is None else standing_box(track.place, calibration)
 
-
-# Ways between two images beyond what the drive can do in a quarter of a second are jumps of the odometry.
-FARTHEST_TURN_RAD = math.radians(40.0)
-FARTHEST_WAY_M = 0.2
 
 Images = Mapping[str, NDArray[Any]]
 
@@ -175,20 +136,32 @@ class Perception:
         before = None if newest is None else newest.odometry
         self._newest, self._images = observation, images
         try:
-            self.tracks = self._tracker.update(make_frame(observation, self._calibrations, before))
+            self.tracks = self._tracker.update(
+                Frame.from_observation(observation, before, self._calibrations)
+            )
         except TrackerDown as error:  # a robot among people outlives its tracker
             self.tracks = ()
             return tell((), fault=f"the tracker failed: {error}")
         return tell(self.tracks)
 
 
-def closed_loop(world: Stage, tracker: Tracker, behaviour: Behaviour, frames: int) -> Iterator[Tick]:
+def closed_loop(
+    world: Stage, tracker: Tracker | str, behaviour: Behaviour | str, frames: int
+) -> Iterator[Tick]:
     """Run the loop for a number of frames, from the world's present instant on.
+
+    Args:
+        world: such as `World("crossing_2")`.
+        tracker: a tracker, or the name of one, made with seed 0.
+        behaviour: a behaviour, or the name of one.
+        frames: how many, at 15 a second.
 
     Raises:
         BadInput: tracker or behaviour gave what cannot be used; it is said at which frame.
         OwnCodeFailed: one that is checked failed.
     """
+    tracker = make_tracker(tracker) if isinstance(tracker, str) else tracker
+    behaviour = make_behaviour(behaviour) if isinstance(behaviour, str) else behaviour
     perception = Perception(tracker, calibrations_of(world.cameras))
     for frame in range(1, frames + 1):
         with at_frame(frame):
@@ -208,26 +181,6 @@ def closed_loop(world: Stage, tracker: Tracker, behaviour: Behaviour, frames: in
         yield tick
         if frame < frames:
             world.step(command.linear_m_s, command.angular_rad_s, is_emergency=command.is_emergency)
-
-
-def make_frame(
-    observation: Observation, calibrations: Mapping[str, Calibration], before: Pose2 | None
-) -> Frame:
-    """Return the tracker its images, and how the odometry moved since the pose before (None: unknown)."""
-    return Frame(
-        images=observation.images,
-        calibrations=calibrations,
-        time_s=observation.time_s,
-        odometry=None if before is None else odometry_way(before, observation.odometry),
-    )
-
-
-def odometry_way(before: Pose2, now: Pose2) -> Odometry | None:
-    """Return how the odometry moved; a jump that no wheels can make is unknown."""
-    motion = now.relative_to(before)
-    if abs(motion.heading) > FARTHEST_TURN_RAD or math.hypot(motion.x, motion.y) > FARTHEST_WAY_M:
-        return None
-    return Odometry.from_motion(motion)
 
 
 def make_percept(

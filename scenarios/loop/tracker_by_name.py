@@ -7,9 +7,7 @@ from collections.abc import Callable, Mapping
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.robot import ORACLE
-from peopleboy.scenarios.loop.loop import calibrations_of
-from peopleboy.sim.cameras.camera_config import CameraConfig
-from peopleboy.sim.random_streams import stream
+from peopleboy.sim.cameras.camera_config import CameraConfig, calibrations_of
 from peopleboy.sim.truth.scenes import is_seen
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.tracker.checked_tracker import CheckedTracker
@@ -103,4 +101,4 @@ def _make(name: str, seed: int) -> Tracker:
     if ":" not in name and name not in TRACKERS:
         known = ", ".join((*TRACKERS, ORACLE))
         raise BadInput(f"unknown tracker {name!r}; there are: {known}, and your own as module:Class")
-    return make_tracker(name, stream(seed, "tracker"))
+    return make_tracker(name, seed)

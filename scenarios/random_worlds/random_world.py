@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Final
 
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.check import Ground
 from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.files.people import PersonSpec
@@ -30,7 +31,6 @@ from peopleboy.scenarios.random_worlds.draw_scene import (
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.places.furniture.thing_config import KINDS
 from peopleboy.sim.places.pieces import Kind
-from peopleboy.sim.random_streams import stream
 
 _WAYPOINT_TRIES: Final = 12
 _NEAREST_M: Final = 1.0  # to the robot, at first

@@ -87,7 +87,7 @@ def is_whole(recording: Path) -> bool:
 
 def _check(recording: Path) -> None:
     if not recording.is_file():
-        raise BadInput(f"{recording}: there is no recording; run the scenario without --no-rrd")
+        raise BadInput(f"{recording}: there is no recording; run the scenario without --no-recording")
     try:
         with recording.open("rb") as file:
             is_recording = file.read(len(_HEAD)) == _HEAD

@@ -32,7 +32,6 @@ from peopleboy.scenarios.drawing.overlay import (
     enlarge,
 )
 from peopleboy.scenarios.drawing.palette import track_colour
-from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.scenarios.report.columns import Column, are_same_scene
 from peopleboy.scenarios.report.findings.run_findings import BadMoment, RunFindings, worst_moments
 from peopleboy.scenarios.report.findings.sentences import seconds
@@ -40,6 +39,7 @@ from peopleboy.scenarios.report.page_parts import data_address
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import image_file
 from peopleboy.scenarios.run_folder.run_tables import Row, read_explanation
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.cameras.kinds import kind_of, layers_of
 from peopleboy.sim.geometry.pinhole import CameraGeometry
 from peopleboy.tracker.attention.attend import Focus

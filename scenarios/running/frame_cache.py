@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import logging
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import asdict, astuple, dataclass, field
 from functools import cache
@@ -22,8 +23,10 @@ from numpy.typing import NDArray
 
 from peopleboy import sim
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibration
+from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.loop import closed_loop, make_frame
+from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.run_folder.atomic_output import atomic, writing_to
 from peopleboy.scenarios.run_folder.folder import gt_lines, versions
 from peopleboy.scenarios.run_folder.run_files import true_boxes
@@ -32,7 +35,7 @@ from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.observation import Observation
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.footage.box_kinds import BoxKind
-from peopleboy.tracker.frame import Calibration, Frame, Odometry, PinholeCalibration
+from peopleboy.tracker.frame import Frame, Odometry
 from peopleboy.tracker.track import Track
 
 MOTION = ("advance_m", "aside_m", "turn_rad")
@@ -45,6 +48,9 @@ _FRAMES = pa.schema(
         *(pa.field(camera, pa.binary()) for camera in SEEN),
     ]
 )
+
+
+_LOG = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +83,7 @@ class Film:
 
 
 def film(
-    scenario: Scenario, seed: int, folder: Path, report: Callable[[int, int], None] | None = None
+    scenario: str | Path | Scenario, seed: int, folder: Path, report: Callable[[int, int], None] | None = None
 ) -> Film:
     """Find the frames of a run, or render them.
 
@@ -85,7 +91,7 @@ def film(
     finished is made anew; several processes may make the same one.
 
     Args:
-        scenario: what is played; its robot must not depend on a tracker.
+        scenario: a name, a path or a loaded scenario, whose robot does not depend on a tracker.
         seed: of the run.
         folder: where films are kept, each in a folder of its own.
         report: called with the number of frames rendered and of all frames.
@@ -93,6 +99,7 @@ def film(
     Raises:
         BadInput: the robot follows what a tracker sees, and has no recorded drive.
     """
+    scenario = load_scenario(scenario)
     goes_by_sight = scenario.own_behaviour or scenario.robot.behaviour not in ("stand", "scripted")
     if goes_by_sight and scenario.drive is None:
         raise BadInput(
@@ -100,7 +107,10 @@ def film(
             "take a scenario whose robot stands or is scripted"
         )
     home = folder / f"{scenario.name}-{seed}-{film_key(scenario, seed)[:12]}"
-    if not (home / "about.json").is_file():
+    if (home / "about.json").is_file():
+        _LOG.info("frames of %s, seed %d, are in %s", scenario.name, seed, home)
+    else:
+        _LOG.info("rendering the frames of %s, seed %d", scenario.name, seed)
         _shoot(scenario, seed, home, report)
     return open_film(home)
 
@@ -165,7 +175,7 @@ class _Blind:
 def _shoot(scenario: Scenario, seed: int, home: Path, report: Callable[[int, int], None] | None) -> None:
     """Render a film beside its place, and put it there when it is whole."""
     with atomic(home, stays=(home / "about.json").is_file) as part:  # another process may be quicker
-        with writing_to(home.parent, "--films"):
+        with writing_to(home.parent, "--frame-cache"):
             part.mkdir(parents=True)
         about = _render(scenario, seed, part, report)
         (part / "about.json").write_text(json.dumps(about) + "\n", encoding="utf-8")
@@ -188,7 +198,7 @@ def _render(
         images: list[dict[str, Any]] = []
         people: list[dict[str, Any]] = []
         for tick in closed_loop(world, _Blind(), scenario.make_behaviour(), count):
-            images.append(_row(tick.observation, make_frame(tick.observation, {}, before)))
+            images.append(_row(tick.observation, Frame.from_observation(tick.observation, before, {})))
             people += truth_rows(tick)
             boxes.writelines(gt_lines(tick))
             before = tick.observation.odometry

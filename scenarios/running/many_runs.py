@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import shutil
 import time
 from collections.abc import Iterable, Iterator, Sequence
@@ -49,6 +50,9 @@ class RunTask:
             run(self.scenario, options, lambda tick, _frames: tell(tick.frame))
 
 
+_LOG = logging.getLogger(__name__)
+
+
 def unfinished(tasks: Sequence[RunTask]) -> list[RunTask]:
     """Leave out the runs that are there already, so that a killed call goes on.
 
@@ -58,6 +62,7 @@ def unfinished(tasks: Sequence[RunTask]) -> list[RunTask]:
     for task in tasks:
         tracker_cameras(tracker_name(task.scenario, task.options))  # refuses an unknown name
     waiting = [task for task in tasks if not is_finished(task.scenario, task.options)]
+    _LOG.info("%d of %d runs are complete already", len(tasks) - len(waiting), len(tasks))
     for task in waiting:
         check_out(task.options.out, "run", overwrite=True)
     return waiting

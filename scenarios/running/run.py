@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
@@ -14,6 +16,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import STOP, Command
 from peopleboy.own_code import traceback_in
 from peopleboy.scenarios.drawing.contact_sheet import ContactSheet
+from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.own_files import are_kept, keep_own_files
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.scenario_file import FaultSpec
@@ -40,6 +43,7 @@ from peopleboy.tracker.trackers import knows_again
 
 if TYPE_CHECKING:
     from peopleboy.scenarios.recording.recorder import Recorder
+_LOG = logging.getLogger(__name__)
 
 
 class Watchers:
@@ -97,15 +101,15 @@ def tracker_name(scenario: Scenario, options: RunOptions) -> str:
 
 
 def run(
-    scenario: Scenario,
-    options: RunOptions,
+    scenario: str | Path | Scenario,
+    options: RunOptions | None = None,
     report: Callable[[Tick, int], None] = lambda _tick, _frames: None,
 ) -> RunScores:
     """Run a scenario from start to end and write its folder.
 
     Args:
-        scenario: what to run.
-        options: how.
+        scenario: a name from the library, the path of a YAML file, or a loaded scenario.
+        options: how to run it; None for the scenario's own seed and the folder runs/SCENARIO-SEED.
         report: called after every tick with the number of all ticks, such as by a progress bar.
 
     Returns:
@@ -116,6 +120,9 @@ def run(
             cannot be used, and the folder says that the run failed.
         OwnCodeFailed: tracker or behaviour raised an error; the folder says so, with the traceback.
     """
+    scenario = load_scenario(scenario)
+    if options is None:
+        options = RunOptions(seed=scenario.seed, out=Path("runs") / f"{scenario.name}-{scenario.seed}")
     if options.seed < 0:
         raise BadInput(f"--seed {options.seed}: must be 0 or more")
     scenario = options.applied_to(scenario)
@@ -138,6 +145,10 @@ def run(
     } | ({"mounted_for_tracker": mounted} if mounted else {})
     if scenario.own_behaviour is not None:
         about["behaviour"] = scenario.own_behaviour
+    _LOG.info(
+        "%s: seed %d, tracker %s, cameras %s, physics %s",
+        *(scenario.name, options.seed, name, ", ".join(config.robot.cameras), config.physics),
+    )
     with ExitStack() as stack:
         stack.enter_context(left_by_sigterm())
         world = stack.enter_context(World(config))
@@ -172,6 +183,8 @@ def run(
         faults, is_secret = scenario.spec.faults, scenario.drive is not None
         watchers = Watchers(config, title, recorder, options.boxes, faults=faults, is_secret=is_secret)
         frames = round(scenario.duration_s * config.control_hz)
+        _LOG.info("%s: the world is built; running %d frames", scenario.name, frames)
+        began_s = time.monotonic()
         stage = FaultySensors(world, faults, config.robot.sonar.farthest_m)
         checked = CheckedTracker(tracker, f"tracker {name!r}", config.robot.cameras)
         eyes = FaultyTracker(checked, faults)
@@ -180,6 +193,8 @@ def run(
             folder.write(tick, [event.to_json() for event in events])
             report(tick, frames)
         folder.flush()
+        took_s = time.monotonic() - began_s
+        _LOG.info("%s: %.1f s, %.0f frames/s", scenario.name, took_s, frames / max(took_s, 1e-3))
         drive, following, corridor, comfort = watchers.drive.record(), None, None, None
         if scenario.robot.behaviour in FOLLOWERS and config.people:
             task = following_task(config, scenario.follow_config().keep_height)
@@ -191,6 +206,7 @@ def run(
         scores = score_run(options.out, frames, following, corridor, comfort, options.boxes, name)
         watchers.save(options.out)
         folder.complete(scores.to_json())
+        _LOG.info("wrote %s", options.out)
     return scores
 
 

@@ -1,4 +1,4 @@
-"""How scenarios are run: by which tracker and behaviour, and what is kept."""
+"""How scenarios are run: tracker, behaviour, physics, and which files are written."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ if TYPE_CHECKING:
 class RunOptions:
     """How to run a scenario.
 
-    Suites, sweeps and comparisons take the same, and choose `seed` and `out` for each of their runs.
+    Suites, sweeps and comparisons use the same options, and choose `seed` and `out` for each run.
 
     Attributes:
-        viewer: address of a viewer that shows the recording while it is made; None for none.
+        viewer: address of a viewer that shows the recording during the run; None for none.
     """
 
-    seed: Annotated[int, Field(ge=0, description="Seed of everything random.")]
+    seed: Annotated[int, Field(ge=0, description="Seed of all random numbers.")]
     out: Annotated[Path, Field(description="Folder of the run.")]
-    frames: Annotated[bool, Field(description="Write every image of every camera as PNG too.")] = False
-    tracker: Annotated[str | None, Field(description="Tracker that the robot sees people by.")] = None
+    frames: Annotated[bool, Field(description="Write the images of all cameras as PNG files.")] = False
+    tracker: Annotated[str | None, Field(description="Tracker.")] = None
     boxes: Annotated[
         BoxKind,
         Field(
-            description="What the tracker's boxes enclose, and the truth's by which they are scored: the "
+            description="What the tracker's boxes enclose, and the true boxes they are scored against: the "
             "torso, or the whole person, as most detectors do."
         ),
     ] = BoxKind.TORSO
@@ -39,24 +39,24 @@ class RunOptions:
     physics: Annotated[
         Literal["bullet", "kinematic"] | None,
         Field(
-            description="What moves the robot: PyBullet, or rolling without slip, which needs no PyBullet.  "
+            description="Physics: bullet is PyBullet; kinematic rolls without slip and needs no PyBullet.  "
             "[default: the scenario's]"
         ),
     ] = None
-    renderer: Annotated[str, Field(description="raycast, or bullet (slow reference).")] = "raycast"
-    record: Annotated[bool, Field(alias="no_rrd", description="Write no rerun recording.")] = True
+    renderer: Annotated[str, Field(description="Renderer: raycast, or bullet, a slow reference.")] = "raycast"
+    record: Annotated[bool, Field(alias="no_recording", description="Write no rerun recording.")] = True
     lossless: Annotated[
         bool,
         Field(
-            description="Keep the recording's images as they are, in 12 times the space; else they are JPEG "
-            "of quality 45."
+            description="Store the recording's images without loss, in 12 times the space; otherwise as "
+            "JPEG of quality 45."
         ),
     ] = False
     viewer: str | None = None
     overwrite: Annotated[bool, Field(description="Replace an earlier run in the folder.")] = False
 
     def applied_to(self, scenario: Scenario) -> Scenario:
-        """Return a scenario with the behaviour and the physics that are asked for.
+        """Return a scenario with the behaviour and the physics of these options.
 
         Raises:
             BadInput: there is no such behaviour.

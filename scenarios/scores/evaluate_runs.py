@@ -249,29 +249,29 @@ def evaluate_files(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScoreOptions:
-    """Which people and boxes of runs are scored; with thermal boxes come places on the floor."""
+    """Which people and boxes of runs are scored; thermal boxes come with positions on the floor."""
 
     min_visible: Annotated[
         float,
         Field(
             ge=0.0,
             lt=1.0,
-            description="People count if more than this share of them is seen; 0.3 leaves out slivers at the "
-            "border.",
+            description="Score people of whom more than this fraction is visible; 0.3 ignores slivers at the "
+            "image border.",
         ),
     ] = MIN_VISIBLE
     camera: Annotated[
         str | None,
         Field(
-            description="Camera in whose images boxes are scored.  [default: thermal, or the only one in "
-            "which there are some]"
+            description="Camera in whose images boxes are scored.  [default: thermal, or the only one that "
+            "has boxes]"
         ),
     ] = None
     boxes: Annotated[
         BoxKind | None,
         Field(
-            description="Which of the truth's boxes are the reference: as wide as the torso, or as all of a "
-            "person.  [default: what each run was scored by]"
+            description="Ground truth boxes to score against: torso or whole person.  [default: those that "
+            "each run was scored against]"
         ),
     ] = None
 

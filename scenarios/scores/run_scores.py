@@ -52,6 +52,10 @@ class RunScores:
     by: BoxReference | None = None
     notes: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        """Summarise the run."""
+        return f"RunScores({headline(self)!r})"
+
     def to_json(self) -> dict[str, Any]:
         """Return all figures as JSON can hold them: None for what is undefined."""
         groups: dict[str, Any] = {} if self.by is None else {"scored_by": self.by.to_json()}

@@ -1,12 +1,14 @@
 """The settings of the cameras: where each sits, how often it takes an image, and how that is formed."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Annotated, ClassVar, Final, Literal, Self, get_args
 
 from pydantic import Field
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.settings import Share
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.geometry.pinhole import CameraGeometry, Pinhole
@@ -365,3 +367,9 @@ class DepthConfig(LightConfig):
         """The same camera with so many times the noise, of depth and of colour."""
         brighter = LightConfig.noisier(self, factor)
         return replace(brighter, scale=factor * self.scale)
+
+
+def calibrations_of(cameras: Mapping[str, CameraConfig]) -> Mapping[str, Calibration]:
+    """Return the calibration of each camera by its name; cameras whose geometry has none are left out."""
+    found = {name: config.camera.calibration for name, config in cameras.items()}
+    return {name: calibration for name, calibration in found.items() if calibration is not None}

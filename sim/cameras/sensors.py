@@ -6,6 +6,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.cameras.camera_config import ColourConfig, DepthConfig, PanoramaConfig, ThermalConfig
 from peopleboy.sim.cameras.colour import colour_image, expose
 from peopleboy.sim.cameras.depth import (
@@ -23,7 +24,6 @@ from peopleboy.sim.cameras.imaging.electronics import Gain, compress, sharpen
 from peopleboy.sim.cameras.imaging.noise import Drift, random_words, skip_gaussian
 from peopleboy.sim.cameras.panoramic import finer, panorama_image, roll_up, unroll
 from peopleboy.sim.cameras.thermal import detect, make_detector, surface_image
-from peopleboy.sim.random_streams import stream
 
 Image = NDArray[Any]
 

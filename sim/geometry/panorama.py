@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Annotated
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import ArrayLike
 from pydantic import Field
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.camera_calibration import PanoramaCalibration
 from peopleboy.settings import IN_DEGREES, ByName
 from peopleboy.sim.geometry.pinhole import CameraGeometry, Matrix, Pinhole
 
@@ -125,6 +127,11 @@ class Panorama:
         """(4, 4) optical frame to robot frame; read-only."""
         return Pinhole(position_m=(0.0, 0.0, self.mirror.ring_height_m)).robot_from_camera
 
+    @property
+    def calibration(self) -> PanoramaCalibration:
+        """What a tracker needs to know of the camera."""
+        return _calibration(self)
+
     def bearing(self, columns: ArrayLike) -> Matrix:
         """[rad] where columns look, from the robot's nose, positive to the left."""
         return np.asarray(math.pi - math.tau * (np.asarray(columns) + 0.5) / self.width, np.float64)
@@ -148,6 +155,18 @@ class Panorama:
         above = self.mirror.axis_rad - np.arctan2(y, np.hypot(x, z) - self.mirror.ring_radius_m)
         radius = self.focal_px * np.tan(np.where(np.abs(above) < math.pi / 2.0, above, np.nan))
         return np.stack([u, self.height - 0.5 - radius], axis=-1)
+
+
+@lru_cache(maxsize=16)
+def _calibration(camera: Panorama) -> PanoramaCalibration:
+    return PanoramaCalibration(
+        width=camera.width,
+        height=camera.height,
+        focal_px=camera.focal_px,
+        axis_rad=camera.mirror.axis_rad,
+        ring_radius_m=camera.mirror.ring_radius_m,
+        ring_height_m=camera.mirror.ring_height_m,
+    )
 
 
 def around_px(camera: CameraGeometry) -> float:

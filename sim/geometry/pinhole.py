@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibration
 from peopleboy.settings import IN_DEGREES, Position
 
 Matrix = NDArray[np.float64]
@@ -66,6 +67,11 @@ class Pinhole:
         """(4, 4) optical frame to robot frame; read-only."""
         return _robot_from_camera(self)
 
+    @property
+    def calibration(self) -> PinholeCalibration:
+        """What a tracker needs to know of the camera."""
+        return _calibration(self)
+
     def project(self, camera_points: Matrix) -> Matrix:
         """Project points of the optical frame to the image.
 
@@ -94,6 +100,11 @@ def _robot_from_camera(camera: Pinhole) -> Matrix:
     pose[:3, 3] = camera.position_m
     pose.setflags(write=False)
     return pose
+
+
+@lru_cache(maxsize=16)
+def _calibration(camera: Pinhole) -> PinholeCalibration:
+    return PinholeCalibration(camera.intrinsics, camera.robot_from_camera)
 
 
 def invert_pose(pose: Matrix) -> Matrix:
@@ -132,6 +143,11 @@ class CameraGeometry(Protocol):
     @property
     def robot_from_camera(self) -> Matrix:
         """(4, 4) optical frame to robot frame; read-only."""
+        ...
+
+    @property
+    def calibration(self) -> Calibration | None:
+        """What a tracker needs to know of the camera; None if trackers cannot use such a geometry."""
         ...
 
     def project(self, camera_points: Matrix) -> Matrix:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.geometry.poses import quaternions
 from peopleboy.sim.people.appearance.finisher import Finisher, appearance_stream
 from peopleboy.sim.people.person import Person
@@ -24,7 +25,6 @@ from peopleboy.sim.people.walking.walker import Present
 from peopleboy.sim.physics.physics_engine import Physics
 from peopleboy.sim.places.moving import Action, Mover, ThingState, ease
 from peopleboy.sim.places.place import Place, air_of, is_outdoors
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import Detail, Material
 from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Shape, ShapeKind
 

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
+from peopleboy.random_streams import stream
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.vectors import remainder
 from peopleboy.sim.physics.physics_engine import Physics
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.robot.robot_body import (
     NAME,
     URDF,

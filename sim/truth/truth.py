@@ -181,6 +181,11 @@ class PersonTruth:
     joints_px: Matrix
     joint_is_visible: NDArray[np.bool_]
 
+    def __repr__(self) -> str:
+        """Say who, how far and how visible."""
+        visible = f"{self.visible_fraction:.0%} visible"
+        return f"PersonTruth({self.id} {self.name!r}, {self.distance_m:.1f} m, {visible})"
+
     @property
     def inside_fraction(self) -> float:
         """Share of the whole silhouette that lies inside the image, hidden or not."""
@@ -243,6 +248,10 @@ class Truth:
     things: tuple[ThingTruth, ...]
     owners: Owners
     background_m: Callable[[], NDArray[np.float32]]
+
+    def __repr__(self) -> str:
+        """List the people."""
+        return f"Truth(time_s={self.time_s:.3f}, people: {list(self.people)})"
 
 
 def counted_m(camera: CameraGeometry) -> tuple[float, float]:

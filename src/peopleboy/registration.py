@@ -1,4 +1,4 @@
-"""The environments by name, for `gymnasium.make` after `import peopleboy`."""
+"""Names of the environments, for `gymnasium.make` after `import peopleboy`."""
 
 from __future__ import annotations
 
@@ -14,12 +14,21 @@ ENVIRONMENTS: Final[Mapping[str, Mapping[str, str]]] = {
 }
 """Each environment's scenario and task by its name."""
 
+MAX_EPISODE_STEPS: Final = 1125
+"""Steps of an episode: 75 s, the duration of these scenarios, at 15 Hz."""
+
 _ENTRY: Final = "peopleboy.scenarios.environments.environment:PeopleBoyEnv"
 _VECTOR_ENTRY: Final = "peopleboy.scenarios.environments.vector_environment:PeopleBoyVectorEnv"
 
 
 def register_environments() -> None:
-    """Tell gymnasium the environments that it does not know yet; making one imports what it needs."""
+    """Register the environments with gymnasium; what an environment needs is imported when it is made."""
     for name, settings in ENVIRONMENTS.items():
         if name not in registry:
-            register(name, entry_point=_ENTRY, vector_entry_point=_VECTOR_ENTRY, kwargs=dict(settings))
+            register(
+                name,
+                entry_point=_ENTRY,
+                vector_entry_point=_VECTOR_ENTRY,
+                max_episode_steps=MAX_EPISODE_STEPS,
+                kwargs=dict(settings),
+            )

@@ -95,12 +95,19 @@ class ByName:
     known: Mapping[str, Any]
 
 
+class _Positional:
+    """Marks a setting that commands take as an argument, not as an option."""
+
+
 @dataclass(frozen=True, slots=True)
 class Metavar:
     """What stands for the value of an option in a command's help."""
 
     text: str
 
+
+POSITIONAL: Final = _Positional()
+"""Metadata of a setting that a command takes as an argument, such as the scenario."""
 
 IN_DEGREES: Final = _InDegrees()
 """Metadata of a field that ends in `_rad`: its key ends in `_deg`, and its limits are in degrees."""
@@ -138,6 +145,11 @@ class Setting:
     def is_in_degrees(self) -> bool:
         """Whether the key is in degrees and the field in radians."""
         return IN_DEGREES in self.metadata
+
+    @property
+    def is_positional(self) -> bool:
+        """Whether commands take it as an argument."""
+        return POSITIONAL in self.metadata
 
     def from_key(self, value: Any) -> Any:
         """Convert a value of the key to one of the field.

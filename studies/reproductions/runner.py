@@ -7,7 +7,7 @@ import math
 import shlex
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Annotated, Any, Final
 
@@ -156,19 +156,19 @@ class ReproduceOptions:
     paper: Annotated[
         str | None,
         Field(
-            description="Only what is of one source: thesis, of 2007; 2005, its evaluation; panoramic, of "
+            description="Results of one source only: thesis, of 2007; 2005, its evaluation; panoramic, of "
             "2003; situation, a thesis on depth and colour."
         ),
     ] = None
     quick: Annotated[
-        bool, Field(description="A little of everything, in minutes; the page says of what.")
+        bool, Field(description="A small part of everything, in minutes; the page lists it.")
     ] = False
-    repeats: Annotated[
+    seeds: Annotated[
         int | None,
         Field(
             ge=1,
-            description="How many random streams, or seeds, everything is repeated with; a later call with "
-            "more uses what is there.  [default: 10, as in the sources]",
+            description="Number of seeds, or random streams, of every result; a later call with more reuses "
+            "what is there.  [default: 10, as in the sources]",
         ),
     ] = None
     out: Annotated[
@@ -182,19 +182,19 @@ class ReproduceOptions:
     so_far: Annotated[
         bool,
         Field(
-            description="Do no work: write the page of what the folder has, each part with as many repeats "
-            "as it has."
+            description="Measure nothing: write the page from the results in the folder, each with the seeds "
+            "it has."
         ),
     ] = False
 
     def __post_init__(self) -> None:
-        """Refuse a quick run with a number of repeats.
+        """Refuse a quick run with a number of seeds.
 
         Raises:
             BadInput: both are given.
         """
-        if self.quick and self.repeats is not None:
-            raise BadInput("reproduce: --quick has its own number of repeats; give either it or --repeats")
+        if self.quick and self.seeds is not None:
+            raise BadInput("reproduce: --quick has its own number of seeds; give either --quick or --seeds")
 
     @property
     def folder(self) -> Path:
@@ -202,8 +202,10 @@ class ReproduceOptions:
         return self.out or Path("runs") / ("reproduce-quick" if self.quick else "reproduce")
 
 
-def reproduce_named(names: Sequence[str], options: ReproduceOptions, workers: Workers) -> Path:
-    """Reproduce what has these names in a source, or all, print it, and return the page.
+def reproduce_named(
+    names: Sequence[str], options: ReproduceOptions, workers: Workers
+) -> tuple[Path, Sequence[Section]]:
+    """Reproduce the results of these names, or all, and return the page and its sections.
 
     Args:
         names: ids or numbers; all there are if left out.
@@ -214,24 +216,22 @@ def reproduce_named(names: Sequence[str], options: ReproduceOptions, workers: Wo
         BadInput: an unknown name, or a folder or cluster that cannot be used.
         TasksFailed: some units failed, after all else was done.
     """
-    paper, repeats = options.paper, None if options.quick else options.repeats or REPEATS
+    paper, repeats = options.paper, None if options.quick else options.seeds or REPEATS
     experiments = choose(names, paper)
     # Workers may have another working directory.
     cache = options.films.resolve()
     plan = quick_plan(cache) if repeats is None else full_plan(cache, repeats)
     chosen = [] if paper is None else ["--paper", paper]
-    fewer = [] if repeats == REPEATS else ["--quick"] if repeats is None else ["--repeats", str(repeats)]
+    fewer = [] if repeats == REPEATS else ["--quick"] if repeats is None else ["--seeds", str(repeats)]
     command = shlex.join(["peopleboy", "reproduce", *chosen, *fewer, *names])
     means = Means(out=options.folder, workers=workers, command=command)
-    page, sections = reproduce(experiments, plan, means, so_far=options.so_far)
-    print_sections(sections)
-    return page
+    return reproduce(experiments, plan, means, so_far=options.so_far)
 
 
-def list_experiments(names: Sequence[str], paper: str | None) -> None:
-    """Print ids, where they are from, and what they are about."""
-    rows = [(one.id, one.source, one.title) for one in choose(names, paper)]
-    Console().print(rich_table(("id", "source", "what"), rows, pad_edge=True))
+def print_experiments(experiments: Sequence[Experiment]) -> None:
+    """Print ids, sources and titles."""
+    rows = [(one.id, one.source, one.title) for one in experiments]
+    Console().print(rich_table(("id", "source", "title"), rows, pad_edge=True))
 
 
 def rich_table(
@@ -298,19 +298,28 @@ def count_suite(name: str, films: Path) -> Content:
     return add_up(count(shot.people(), shot.frames, _RATE_HZ) for shot in films_of(name, films))
 
 
-def print_contents(names: Sequence[str], films: Path) -> None:
-    """Print what data sets hold, each beside the thesis's of the same name."""
-    ours = [count_suite(name, films) for name in names]
+def contents_of(names: Sequence[str], films: Path) -> dict[str, Content]:
+    """Count what data sets contain, by name."""
+    return {name: count_suite(name, films) for name in names}
+
+
+def contents_to_json(ours: Mapping[str, Content]) -> dict[str, Any]:
+    """Return the contents of data sets, each beside that of the thesis."""
+    return {name: {"ours": asdict(one), "thesis": asdict(THESIS[name])} for name, one in ours.items()}
+
+
+def print_contents(ours: Mapping[str, Content]) -> None:
+    """Print the contents of data sets, each beside that of the thesis."""
     rows = [
         (
             one.name.replace("_", " "),
             *(
                 f"{getattr(content, one.name)} ({getattr(THESIS[name], one.name)})"
-                for name, content in zip(names, ours, strict=True)
+                for name, content in ours.items()
             ),
         )
         for one in fields(Content)
     ]
     title = {"title": "thesis, table 3.1: ours (theirs)", "title_justify": "left"}
-    table = rich_table(("", *names), rows, left=1, **title)
+    table = rich_table(("", *ours), rows, left=1, **title)
     (Console() if sys.stdout.isatty() else Console(width=120)).print(table)

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.stats import bootstrap, norm, ttest_ind_from_stats, ttest_rel
 from scipy.stats import t as student
 
-from peopleboy.sim.random_streams import stream
+from peopleboy.random_streams import stream
 from peopleboy.studies.reproductions.experiment import Floats, Jackknife, Values
 from peopleboy.studies.reproductions.image_errors import ErrorSummary, ImageErrors
 

@@ -108,17 +108,18 @@ class TrainingFilms:
 
     Attributes:
         cache: where rendered frames are kept.
+        seeds: of the clips of each scenario.
     """
 
     cache: Path
-    seeds: Annotated[int, Field(ge=1, description="Films of each scenario.")] = 4
-    seconds: Annotated[float, Field(ge=5.0, description="How long a film is at most.")] = 45.0
+    seeds: range = range(FIRST_SEED, FIRST_SEED + 4)
+    seconds: Annotated[float, Field(ge=5.0, description="Maximum duration of a clip, in seconds.")] = 45.0
 
     def plays(self, scenario: str) -> list[SuiteRun]:
         """List the clips of a scenario."""
         whole = load_scenario(scenario)
         cut = whole.lasting(min(self.seconds, whole.duration_s))
-        return [SuiteRun(cut, FIRST_SEED + number) for number in range(self.seeds)]
+        return [SuiteRun(cut, seed) for seed in self.seeds]
 
     def units(self, parameter: Parameter, value: str) -> list[Unit]:
         """List the work of one value: every clip once, each with its own random stream."""
@@ -200,7 +201,7 @@ def tune(
     tuned = [_tuned(one, films, store) for one in parameters]
     plain = {one.parameter.name: one.plain() for one in tuned}
     (out / FIGURES).write_text(json.dumps(plain, indent=1) + "\n", encoding="utf-8")
-    seeds = f"{FIRST_SEED} to {FIRST_SEED + films.seeds - 1}"
+    seeds = f"{films.seeds.start} to {films.seeds.stop - 1}"
     return write_tuned_page(out, tuned, f"Seeds {seeds}, {films.seconds:g} s of each film at most."), tuned
 
 

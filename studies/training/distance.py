@@ -15,8 +15,9 @@ from pydantic import Field
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.scenarios.running.frame_cache import film_key
+from peopleboy.settings import POSITIONAL
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.truth.scenes import ImageFreeTruth
 from peopleboy.sim.world_config import WorldConfig
 from peopleboy.studies.training.samples import Arrays, SampleTask, Split, Tasks, sample_folder
@@ -269,9 +270,11 @@ class DistanceTraining(Specification[list[DistanceSamples]]):
 
     HINT: ClassVar[str] = "`peopleboy reproduce --paper panoramic` measures it by the paper's experiments"
 
-    sequences: Annotated[int, Field(ge=1, description="Runs of the scenario.")] = 10
-    scenario: Annotated[str, Field(description="Scenario, by name or path.")] = "room_long"
-    epochs: Annotated[int, Field(ge=1, description="How often the network goes through its samples.")] = 2000
+    sequences: Annotated[
+        int, Field(ge=1, alias="seeds", description="Number of seeds, each a run of the scenario.")
+    ] = 10
+    scenario: Annotated[str, POSITIONAL, Field(description="Scenario, by name or path.")] = "room_long"
+    epochs: Annotated[int, Field(ge=1, description="Training epochs.")] = 2000
 
     def default_folder(self, model: str) -> Path:
         """Return a folder of the scenario's own."""

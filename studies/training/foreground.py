@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.studies.training.optimiser import Optimiser, Weights, he_weights
 from peopleboy.studies.training.panorama_sequences import (
     PanoramaSequence,
@@ -25,7 +26,6 @@ from peopleboy.studies.training.panorama_sequences import (
 from peopleboy.studies.training.random_scenes import FIRST_SEED
 from peopleboy.studies.training.samples import Split, Tasks
 from peopleboy.studies.training.specification import Specification, report
-from peopleboy.tracker.frame import Calibration
 from peopleboy.tracker.networks.mask_network import BLOCK, DILATIONS, INPUTS, OUTPUTS, MaskNetwork
 from peopleboy.tracker.panoramic.panorama_view import view_of
 from peopleboy.tracker.panoramic.people_foreground import FILE, Foreground, ForegroundModel
@@ -61,9 +61,11 @@ class ForegroundTraining(Specification[Tasks]):
     input is one that it has helped to make itself, as when it is used.
     """
 
-    sequences: Annotated[int, Field(ge=1, description="Scenes to train on.")] = 400
-    validation: Annotated[int, Field(ge=0, description="Other scenes, to evaluate it.")] = 20
-    rounds: Annotated[int, Field(ge=1, description="How often a hundred of the scenes are trained on.")] = 12
+    sequences: Annotated[
+        int, Field(ge=1, alias="seeds", description="Number of random scenes to train on.")
+    ] = 400
+    validation: Annotated[int, Field(ge=0, description="Number of other scenes for validation.")] = 20
+    rounds: Annotated[int, Field(ge=1, description="Training rounds, each on a hundred of the scenes.")] = 12
 
     def tasks(self, out: Path) -> Tasks:
         """Render the scenes; they are many, so that files are read when they are needed."""

@@ -14,9 +14,9 @@ from pydantic import Field
 from rich.console import Console
 
 from peopleboy.bad_input import BadInput
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import closed_loop
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.studies.training.samples import (
     Arrays,
@@ -239,7 +239,9 @@ class OcclusionTraining(Specification[PairSamples]):
     SHIPPED_IN: ClassVar[Path] = TABLES
     HINT: ClassVar[str] = "`peopleboy reproduce 7.1 7.2 7.3 7.4` measures it by the thesis's experiments"
 
-    sequences: Annotated[int, Field(ge=1, description="Runs of each scenario.")] = 5
+    sequences: Annotated[
+        int, Field(ge=1, alias="seeds", description="Number of seeds, each a run of every scenario.")
+    ] = 5
     tracker: Annotated[Literal["contour", "thesis"], Field(description="Tracker to train.")] = "contour"
 
     def default_folder(self, model: str) -> Path:

@@ -10,17 +10,17 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
+from peopleboy.geometry.camera_calibration import PanoramaCalibration
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.scenarios.running.blind_drive import blind_drive
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.studies.training.random_scenes import random_scene
 from peopleboy.studies.training.samples import Arrays, SampleTask
 from peopleboy.tracker.frame import PANORAMA, Odometry
-from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 
 Floats = NDArray[np.float64]
 

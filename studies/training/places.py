@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from peopleboy.geometry.camera_calibration import PanoramaCalibration
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.run_folder.atomic_output import writing_to
 from peopleboy.studies.training.optimiser import Optimiser, Weights, shuffled
@@ -31,7 +32,6 @@ from peopleboy.studies.training.samples import Arrays, SampleTask, Split, Tasks,
 from peopleboy.studies.training.specification import Specification
 from peopleboy.tracker.networks.inference import DenseNetwork
 from peopleboy.tracker.networks.weights_archive import SHIPPED
-from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
 from peopleboy.tracker.panoramic.people.figure_patch import PATCH, Map
 from peopleboy.tracker.panoramic.people.panorama_patches import PanoramaScene, promising_places
@@ -200,9 +200,11 @@ def _beside(one: _Standing, rng: np.random.Generator) -> Floats:
 class PlacesTraining(Specification[Split[PlaceSamples]]):
     """Train on scenes drawn at random, after `peopleboy train foreground --ship`, which it builds on."""
 
-    sequences: Annotated[int, Field(ge=2, description="Scenes to train on.")] = 400
+    sequences: Annotated[
+        int, Field(ge=2, alias="seeds", description="Number of random scenes to train on.")
+    ] = 400
     rendered: Annotated[
-        Path, Field(description="Folder of rendered scenes, which `train foreground` uses, too.")
+        Path, Field(description="Folder of rendered scenes, shared with `train foreground`.")
     ] = Path("runs/foreground/sequences")
 
     def tasks(self, out: Path) -> Tasks:

@@ -16,8 +16,8 @@ from pydantic import Field
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.scenarios.running.blind_drive import blind_drive
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.studies.training.random_scenes import FIRST_SEED, random_scene
 from peopleboy.studies.training.samples import Arrays, SampleTask, Split, Tasks, load_samples, sample_folder
@@ -205,7 +205,9 @@ def _jittered(window: Box, rng: np.random.Generator) -> Box:
 class WindowsTraining(Specification[Split[WindowSamples]]):
     """Train machines for near and far windows, by colour alone and with depth, on scenes drawn at random."""
 
-    sequences: Annotated[int, Field(ge=1, description="Scenes to train on.")] = 300
+    sequences: Annotated[
+        int, Field(ge=1, alias="seeds", description="Number of random scenes to train on.")
+    ] = 300
 
     def tasks(self, out: Path) -> Tasks:
         """Run scenes, and keep windows."""

@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from peopleboy.scenarios.files.load import library, load_scenario
+from peopleboy.scenarios.files.library import library
+from peopleboy.scenarios.files.load import load_scenario
 
 ROOT = Path(__file__).parents[2]
 README, RESULTS = (ROOT / name for name in ("README.md", "docs/results.md"))

@@ -39,7 +39,7 @@ def scene(tmp_path: Path) -> Path:
 
 @pytest.mark.slow
 def test_all_three_pairs_of_eyes_find_a_person_in_plain_sight(scene: Path) -> None:
-    done = CliRunner().invoke(price_of_perception.main, ["--scenario", str(scene), "--seeds", "1"])
+    done = CliRunner().invoke(price_of_perception.main, [str(scene), "--seeds", "1"])
     assert done.exit_code == 0, done.output
     lines = done.output.splitlines()
     assert lines[1].split() == ["truth", "tracks", "pixels"]
@@ -76,7 +76,7 @@ def test_a_follower_is_trained_kept_without_pickles_and_compared(scene: Path, tm
     from examples import train_follower
 
     kept = tmp_path / "follower.npz"
-    options = ["--scenario", str(scene), "--seeds", "1", "--out", str(kept)]
+    options = [str(scene), "--seeds", "1", "--out", str(kept)]
     assert CliRunner().invoke(train_follower.main, [*options, "--steps", "0"]).exit_code == 2
     trained = CliRunner().invoke(train_follower.main, [*options, "--steps", "1"])
     assert trained.exit_code == 0, trained.output

@@ -121,7 +121,7 @@ def test_training_repeats_whoever_does_it_and_its_weights_are_compared(
     scene.write_text(TINY, encoding="utf-8")
     kept = [tmp_path / "a.npz", tmp_path / "b.npz"]
     for file in kept:
-        options = ["--generations", "1", "--members", "4", "--scenario", str(scene), "--out", str(file)]
+        options = ["--generations", "1", "--members", "4", str(scene), "--out", str(file)]
         done = CliRunner().invoke(train.main, options)
         assert done.exit_code == 0, done.output
     assert np.array_equal(*(load_weights(file) for file in kept))

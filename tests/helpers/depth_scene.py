@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from peopleboy.tracker.frame import PinholeCalibration
+from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
 from tests.helpers.images.as_taken import as_taken
 

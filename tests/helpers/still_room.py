@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Frame, Odometry, PinholeCalibration
+from peopleboy.geometry.camera_calibration import PinholeCalibration
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Frame, Odometry
 
 HEIGHT, WIDTH, FOCAL_PX, CAMERA_M = 120, 160, 140.0, 1.2
 WALL_M = 5.0

@@ -102,7 +102,7 @@ def test_its_recording_draws_what_both_trackers_see_by(came: Path) -> None:
 @pytest.mark.thorough
 def test_the_same_run_in_a_fresh_process_gives_the_same_tracks(came: Path, tmp_path: Path) -> None:
     out = tmp_path / "again"
-    call = ["run", came.parent / "scene.yaml", "--tracker", "handover", "--out", out, "--no-rrd"]
+    call = ["run", came.parent / "scene.yaml", "--tracker", "handover", "--out", out, "--no-recording"]
     subprocess.run([sys.executable, "-m", "peopleboy", *map(str, call)], check=True, capture_output=True)
     for name in ("tracks.txt", "tracks/panorama.txt", "tracks.parquet", "truth.parquet"):
         assert (out / name).read_bytes() == (came / name).read_bytes(), name

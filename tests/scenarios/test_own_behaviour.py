@@ -60,7 +60,7 @@ def about(folder: Path) -> dict[str, Any]:
 @pytest.mark.slow
 def test_it_drives_a_run_which_is_scored_and_reported_as_others_are(home: Path) -> None:
     name = write_creeper(home, "creeper_run")
-    assert run_cli("run", "brief.yaml", "--behaviour", name, "--tracker", "truth", "--no-rrd") == 0
+    assert run_cli("run", "brief.yaml", "--behaviour", name, "--tracker", "truth", "--no-recording") == 0
     folder = home / "runs" / "brief-0-truth-creeper_run.Creeper"
     assert about(folder)["behaviour"] == name
     robot = pq.read_table(folder / "robot.parquet")
@@ -100,7 +100,7 @@ def test_it_is_compared_with_others_by_the_scenario_s_own_task(
 ) -> None:
     name = write_creeper(home, "creeper_compare")
     controllers = f"follow_person@truth,{name}@truth"
-    options = ("--scenario", "brief.yaml", "--seeds", "1", "--workers", "1", "--out", "compared")
+    options = ("brief.yaml", "--seeds", "1", "--workers", "1", "--out", "compared")
     assert run_cli("compare", "--controllers", controllers, *options) == 0
     assert f"{name}@truth" in capsys.readouterr().out
     kept = json.loads((home / "compared" / "brief" / "comparison.json").read_text(encoding="utf-8"))
@@ -140,7 +140,7 @@ def test_an_error_of_it_ends_the_run_in_a_marked_folder_with_its_traceback(
     home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     name = write_creeper(home, "creeper_fails", "percept.nothing")
-    options = ("--behaviour", name, "--tracker", "truth", "--no-rrd", "--out", "run")
+    options = ("--behaviour", name, "--tracker", "truth", "--no-recording", "--out", "run")
     assert run_cli("run", "brief.yaml", *options) == 1
     told = capsys.readouterr().err
     assert_names(told, f"frame 3: behaviour '{name}' failed", "creeper_fails.py, line 14", "run/run.json")

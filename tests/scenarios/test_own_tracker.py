@@ -16,6 +16,7 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rerun.chunk import RrdReader
 
+from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.registry import Entry
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import thermal_box
@@ -25,7 +26,7 @@ from peopleboy.scenarios.scores.evaluate_runs import BoxReference, read_referenc
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.kinds import KINDS
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.tracker.frame import Frame, PinholeCalibration
+from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import FloorPlace, Status, Track
 from peopleboy.tracker.trackers import TRACKERS, make_tracker
 from tests.helpers.calls.refused import refused
@@ -145,8 +146,7 @@ def test_one_in_a_module_of_one_s_own_is_found_by_name_in_the_working_directory(
         encoding="utf-8",
     )
     monkeypatch.chdir(tmp_path)
-    rng = np.random.default_rng(0)
-    assert make_tracker("mine_for_test:Blind", rng).cameras == ("rear",)
+    assert make_tracker("mine_for_test:Blind").cameras == ("rear",)
     for name, wrong in [
         ("mine_for_test:Nobody", "no 'Nobody'"),
         ("mine_for_test:Other", "`update(frame)`"),
@@ -155,7 +155,7 @@ def test_one_in_a_module_of_one_s_own_is_found_by_name_in_the_working_directory(
         (":Blind", "cannot be imported"),
     ]:
         with refused(f"tracker '{name}'", wrong):
-            make_tracker(name, rng)
+            make_tracker(name)
 
 
 class Peeping(Reckoner):

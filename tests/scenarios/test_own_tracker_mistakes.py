@@ -88,7 +88,7 @@ def test_a_wrong_value_is_told_in_a_line_with_what_would_be_right(
     answer: str, home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     name = write_tracker(home, answer, f"wrong_{list(WRONG).index(answer)}")
-    told = refusal(capsys, "run", "brief.yaml", "--tracker", name, "--no-rrd", "--out", "run")
+    told = refusal(capsys, "run", "brief.yaml", "--tracker", name, "--no-recording", "--out", "run")
     assert_names(told, f"frame 3: tracker '{name}': ", *WRONG[answer])
     about = json.loads(Path("run/run.json").read_text(encoding="utf-8"))
     assert (about["status"], about["frames"]) == ("failed", 2)
@@ -112,7 +112,7 @@ def test_numbers_of_numpy_are_right_ones(home: Path) -> None:
         "(track(id=np.int64(4), boxes={'thermal': tuple(np.arange(4))}, confidence=np.float32(0.5)),)",
         "numpy_one",
     )
-    assert run_cli("run", "brief.yaml", "--tracker", name, "--no-rrd", "--out", "run") == 0
+    assert run_cli("run", "brief.yaml", "--tracker", name, "--no-recording", "--out", "run") == 0
 
 
 def test_an_error_of_theirs_ends_the_run_in_a_marked_folder_with_its_traceback(
@@ -138,7 +138,7 @@ def test_who_writes_into_an_image_spoils_none_and_is_told_so(
     home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     name = write_tracker(home, "frame.grey('thermal').fill(0)", "writing")
-    assert run_cli("run", "brief.yaml", "--tracker", name, "--no-rrd", "--out", "run") == 1
+    assert run_cli("run", "brief.yaml", "--tracker", name, "--no-recording", "--out", "run") == 1
     assert_names(
         capsys.readouterr().err, f"frame 3: tracker '{name}' failed", "read-only", "writing.py, line 21"
     )
@@ -151,7 +151,7 @@ def test_an_error_is_told_by_the_line_of_theirs_and_none_ends_the_program(
     answer: str, says: str, home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     name = write_tracker(home, answer, f"elsewhere_{len(answer)}")  # both are raised in Python's own library
-    assert run_cli("run", "brief.yaml", "--tracker", name, "--no-rrd", "--out", "run") == 1
+    assert run_cli("run", "brief.yaml", "--tracker", name, "--no-recording", "--out", "run") == 1
     assert_names(capsys.readouterr().err, says, f"elsewhere_{len(answer)}.py, line 21")
 
 

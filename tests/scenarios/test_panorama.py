@@ -17,10 +17,10 @@ import yaml
 from pycocotools.coco import COCO
 from rerun.chunk import RrdReader
 
+from peopleboy.geometry.camera_calibration import PanoramaCalibration
 from peopleboy.scenarios.drawing.overlay import box_parts
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.loop import calibration_of
 from peopleboy.scenarios.report.findings.run_findings import analyse_run
 from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.scores.evaluate_runs import BoxReference, ScoreOptions, evaluate_runs
@@ -29,7 +29,6 @@ from peopleboy.sim.geometry.panorama import MIRRORS, Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.evaluation.table import to_json
 from peopleboy.tracker.footage.box_kinds import BoxKind
-from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from tests.helpers.calls.command_line import refusal
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.runs.exported import SCENE, export, run_cli
@@ -182,7 +181,7 @@ def test_exports_say_the_truth_of_who_stands_across_the_seam(tracked: Path, tmp_
     (video,) = coco.dataset["videos"]
     assert video["thermal_span_c"] is None
     told = PanoramaCalibration(**video["cameras"]["panorama"]["panorama"])
-    assert told == calibration_of(Panorama())
+    assert told == Panorama().calibration
     thermal = json.loads((tmp_path / "coco/annotations/person_keypoints.json").read_text())["videos"][0]
     assert thermal["thermal_span_c"] == [24.0, 36.0]
     for frame, row in across:

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from peopleboy.scenarios.files.load import LIBRARY, load_scenario
+from peopleboy.scenarios.files.library import LIBRARY
+from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.kinds import THERMAL_PRESETS
 from peopleboy.sim.world import World

@@ -46,6 +46,10 @@ class Ring:
         return Pinhole(width=1, height=self.height, position_m=self.position_m, yaw_rad=turn)
 
     @property
+    def calibration(self) -> None:
+        return None
+
+    @property
     def robot_from_camera(self) -> Matrix:
         return self.column((self.width - 1) / 2.0).robot_from_camera
 

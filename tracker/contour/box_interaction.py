@@ -22,11 +22,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.geometry.small_matrices import solve
 from peopleboy.tracker.contour.contour_config import BoxConfig, TrackerConfig
 from peopleboy.tracker.contour.particles import CROWN, Floats, H, W, X, Y
 from peopleboy.tracker.elementary import exponential, logarithm
-from peopleboy.tracker.frame import Calibration
 from peopleboy.tracker.track import Box, FloorPlace, Status
 
 Regions = Floats

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibration
 from peopleboy.tracker.camera_mount import Mount, mount_of
 from peopleboy.tracker.contour.appearance.appearance_model import likelihood
 from peopleboy.tracker.contour.box_interaction import (
@@ -52,7 +53,7 @@ from peopleboy.tracker.contour.particle_filter import (
 )
 from peopleboy.tracker.contour.particles import Floats, draw_around
 from peopleboy.tracker.contour.tracked_person import FORGET_S, Streak, TrackedPerson, initiate_person
-from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, PinholeCalibration
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, check_frame
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
 FIRST_STEP_S = 1 / 15
@@ -115,6 +116,7 @@ class ContourTracker:
         Raises:
             BadInput: time that does not go forward.
         """
+        check_frame(frame)
         dt_s = self._time_step(frame.time_s)
         image = frame.grey(THERMAL)
         mount = self._mount_for(frame.calibrations.get(THERMAL), image.shape[0])

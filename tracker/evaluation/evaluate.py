@@ -68,6 +68,14 @@ class Scores(Sums):
     mot: MotMetrics
     floor: FloorErrors = NOWHERE
 
+    def __repr__(self) -> str:
+        """Give the scores that are quoted most."""
+        clear, identity = self.mot.clear, self.mot.identity
+        return (
+            f"Scores({self.counts.frames} frames: HOTA {self.mot.hota.hota:.1f} %, MOTA {clear.mota:.1f} %, "
+            f"IDF1 {identity.idf1:.1f} %, {clear.switches} identity switches)"
+        )
+
 
 def evaluate(
     truth: TrueBoxes,

@@ -10,6 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.boxes import Floats
+from peopleboy.tracker.frame import THERMAL
+from peopleboy.tracker.track import Track, confirmed
 
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
@@ -51,6 +53,11 @@ class Rows:
             settled.setflags(write=False)
             object.__setattr__(self, name, settled)
 
+    def __repr__(self) -> str:
+        """Count the boxes."""
+        ids = len(np.unique(self.id))
+        return f"{type(self).__name__}({len(self)} boxes, {ids} ids, last frame {self.last_frame})"
+
     def __len__(self) -> int:
         return len(self.frame)
 
@@ -81,7 +88,7 @@ class Rows:
         return int(self.frame[-1]) if len(self) else 0
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class TrueBoxes(Rows):
     """The people of one sequence, the *targets*: one row per frame and person.
 
@@ -99,7 +106,7 @@ class TrueBoxes(Rows):
     around_px: float = math.inf
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class TrackBoxes(Rows):
     """What a tracker claims in one sequence, the *candidates*: one row per frame and track id.
 
@@ -110,6 +117,20 @@ class TrackBoxes(Rows):
     source: ClassVar[str] = "tracks"
 
     confidence: Floats
+
+    @classmethod
+    def from_tracks(cls, frames: Iterable[Iterable[Track]], camera: str = THERMAL) -> Self:
+        """Take the confirmed tracks of each frame, the first of which is frame 1.
+
+        Args:
+            frames: what the tracker's `update` returned for one frame after the other.
+            camera: in whose image the boxes are.
+        """
+        return cls.from_rows(
+            (number, track.id, box, track.confidence)
+            for number, tracks in enumerate(frames, 1)
+            for track, box in confirmed(tracks, camera)
+        )
 
 
 def as_columns(values: Mapping[str, ArrayLike]) -> dict[str, Floats]:

@@ -93,11 +93,13 @@ class Radiometry:
 
     span_c: Annotated[
         tuple[float, float] | None,
-        Field(alias="temperature_range", description="degC that 0 and 255 of 8-bit pictures stand for."),
+        Field(
+            alias="temperature_range", description="Temperatures [degC] of grey 0 and 255 in 8-bit images."
+        ),
         Metavar("LOW HIGH"),
     ] = None
     scale: tuple[float, float] | None = None
-    is_inverted: Annotated[bool, Field(alias="black_hot", description="Warm things are dark.")] = False
+    is_inverted: Annotated[bool, Field(alias="black_hot", description="Warm pixels are dark.")] = False
 
     def __post_init__(self) -> None:
         if self.span_c is not None and self.scale is not None:

@@ -8,7 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Floats, Frame, PinholeCalibration
+from peopleboy.geometry.camera_calibration import PinholeCalibration
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Floats, Frame
 from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.rgbd.observation_model import BINS, Body, bin_of_colour, box_at
 from peopleboy.tracker.rgbd.pre_detection import PreDetection

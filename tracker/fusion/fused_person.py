@@ -8,8 +8,9 @@ from typing import Final
 
 import numpy as np
 
+from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.tracker.frame import THERMAL, Floats, Frame, PinholeCalibration
+from peopleboy.tracker.frame import THERMAL, Floats, Frame
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.panoramic.people.floor_motion import FloorMotion
 from peopleboy.tracker.rgbd.observation_model import similarity

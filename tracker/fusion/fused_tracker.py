@@ -10,10 +10,11 @@ from typing import Final
 
 import numpy as np
 
+from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
 from peopleboy.tracker.contour.explanation import ContourExplanation
-from peopleboy.tracker.frame import DEPTH, PANORAMA, THERMAL, Calibration, Frame
+from peopleboy.tracker.frame import DEPTH, PANORAMA, THERMAL, Frame, check_frame
 from peopleboy.tracker.fusion.depth_visibility import depth_visibility
 from peopleboy.tracker.fusion.fused_explanations import BothExplanations, FusedExplanation
 from peopleboy.tracker.fusion.fused_person import (
@@ -93,6 +94,7 @@ class ThermalDepthTracker:
         Raises:
             BadInput: as both trackers say of images that are there.
         """
+        check_frame(frame)
         if frame.odometry is not None:
             self._pose = self._pose.integrate(frame.odometry.motion)
         dt_s, self._time_s = min(frame.time_s - self._time_s, _LONGEST_STEP_S), frame.time_s
@@ -305,6 +307,7 @@ class FusedTracker:
         Raises:
             BadInput: as its parts say of images that are there.
         """
+        check_frame(frame)
         if PANORAMA not in frame.calibrations:
             return self._ahead.update(frame)
         if self._round is None:

@@ -8,9 +8,10 @@ from dataclasses import replace
 from functools import partial
 from typing import Final, Protocol
 
+from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.tracker.contour.box_interaction import standing_box
 from peopleboy.tracker.contour.explanation import ContourExplanation
-from peopleboy.tracker.frame import PANORAMA, THERMAL, Calibration, Frame
+from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame, check_frame
 from peopleboy.tracker.fusion.fused_explanations import BothExplanations
 from peopleboy.tracker.fusion.handover_links import (
     GATE,
@@ -225,6 +226,7 @@ class HandoverTracker:
         Raises:
             BadInput: as both trackers say.
         """
+        check_frame(frame)
         around = self._panoramic.update(frame)
         warm = [track for track in self._thermal.update(frame) if track.status is not Status.TENTATIVE]
         self._warm = tuple(warm)

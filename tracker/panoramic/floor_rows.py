@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.geometry.small_matrices import solve
-from peopleboy.tracker.frame import Calibration
 
 Linear = NDArray[np.float32]
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.frame import Calibration
+from peopleboy.geometry.camera_calibration import Calibration
 
 _SAME_M, _SAME_DEG = 0.01, 0.1
 

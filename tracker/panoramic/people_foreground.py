@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.tracker.frame import Calibration, Odometry
+from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.networks.mask_network import BLOCK, DILATIONS, INPUTS, OUTPUTS, TOGETHER, MaskNetwork
 from peopleboy.tracker.networks.weights_archive import SHIPPED, ArraySpec, WeightsArchive
 from peopleboy.tracker.panoramic.background_memory import compare, first_memory, learn, move_along

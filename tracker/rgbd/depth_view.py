@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.frame import Calibration, Floats, PinholeCalibration
+from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibration
+from peopleboy.tracker.frame import Floats
 
 Depth = NDArray[np.uint16]
 """(H, W) [mm] along the optical axis, 0 where there is no reading."""

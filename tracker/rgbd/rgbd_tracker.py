@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from peopleboy.bad_input import BadInput
-from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Calibration, Floats, Frame, PinholeCalibration
+from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibration
+from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Floats, Frame, check_frame
 from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.rgbd.human_windows import range_of, window_of
 from peopleboy.tracker.rgbd.hypothesis import Detection, Hypothesis
@@ -93,6 +94,7 @@ class RgbdTracker:
         Raises:
             BadInput: no depth image in the first frame, one without colour of its size, or no calibration.
         """
+        check_frame(frame)
         before = None if DEPTH in frame.images else self._seen
         self._seen = view = self._view(frame) if before is None else before
         management = Management(

@@ -10,16 +10,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.geometry.small_matrices import inverse
-from peopleboy.tracker.frame import (
-    DEPTH,
-    DEPTH_AMPLITUDE,
-    DEPTH_COLOUR,
-    THERMAL,
-    Floats,
-    Frame,
-    PinholeCalibration,
-)
+from peopleboy.tracker.frame import DEPTH, DEPTH_AMPLITUDE, DEPTH_COLOUR, THERMAL, Floats, Frame
 from peopleboy.tracker.scene_model.scene import Metres
 
 UNSEEN, COLD, WARM = -1, 0, 1

@@ -10,7 +10,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.frame import COLOUR, THERMAL, Floats, Frame, PinholeCalibration
+from peopleboy.geometry.camera_calibration import PinholeCalibration
+from peopleboy.tracker.frame import COLOUR, THERMAL, Floats, Frame
 from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 # From the image of one camera to that of another one beside it, on the same robot.

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.tracker.boxes import intersection, iou, outline
 from peopleboy.tracker.detector.detections import Detections
-from peopleboy.tracker.frame import COLOUR, THERMAL, Calibration, Frame, Odometry
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry, check_frame
 from peopleboy.tracker.track import Box, FloorPlace, Track
 from peopleboy.tracker.tracking.association import (
     CLEAR,
@@ -107,6 +108,7 @@ class DetectionTracker:
         Raises:
             BadInput: time that does not go forward.
         """
+        check_frame(frame)
         rows, columns = frame.grey(THERMAL).shape
         view = self._viewpoint(frame.calibrations.get(THERMAL), (rows, columns))
         whole = outline(frame.grey(THERMAL))

@@ -8,11 +8,12 @@ from typing import Protocol
 import cv2
 import numpy as np
 
+from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.tracker.boxes import area, iou, shared_of_smaller
 from peopleboy.tracker.camera_mount import mount_of
 from peopleboy.tracker.detector.detections import NO_DETECTIONS, Detections
 from peopleboy.tracker.detector.detector import PeopleDetector
-from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, FreshImages, Odometry, PinholeCalibration, joined
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, FreshImages, Odometry, joined
 from peopleboy.tracker.tracking.appearance import transfer_boxes
 from peopleboy.tracker.tracking.config import ColourDetectionConfig, DetectionTrackerConfig
 from peopleboy.tracker.tracking.viewpoint import Viewpoint

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.frame import Calibration, PinholeCalibration
+from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibration
 from peopleboy.tracker.tracking.config import STATURE_M
 
 Floats = NDArray[np.float64]

@@ -22,7 +22,6 @@ from peopleboy.scenarios.drawing.plan_sheet import Labels, draw_floor, draw_wall
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.studies.training.panorama_sequences import panorama_calibration, render_panoramas
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
@@ -201,7 +200,7 @@ def _spots(scenario: Scenario, seed: int, name: str) -> Iterator[tuple[int, tupl
     config = scenario.world(seed)
     frames = round(scenario.duration_s * config.control_hz)
     with World(config) as world:
-        tracker = make_tracker(name, stream(seed, "tracker"))
+        tracker = make_tracker(name, seed)
         for tick in closed_loop(world, tracker, Stand(), frames):
             for track in tick.tracks if tick.frame % EVERY == 0 else ():
                 if track.status in (Status.TRACKED, Status.PARTLY_OCCLUDED) and track.place is not None:

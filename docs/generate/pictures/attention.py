@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 from docs.generate.pictures.paper import show
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
 from peopleboy.scenarios.running.blind_drive import blind_drive
-from peopleboy.sim.random_streams import stream
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.tracker.attention.attend import Focus
 from peopleboy.tracker.attention.people.attentive_config import AttentiveConfig
 from peopleboy.tracker.attention.people.attentive_explanation import Attended
@@ -66,11 +65,11 @@ def absence() -> Figure:
 def _watch() -> _Film:
     scenario, film = load_scenario(SCENARIO), _Film()
     calibrations = calibrations_of(scenario.world(SEED).robot.cameras)
-    tracker = make_tracker("attentive", stream(SEED, "tracker"))
+    tracker = make_tracker("attentive", SEED)
     assert isinstance(tracker, AttentiveTracker)
     before, look, seen = None, None, 0
     for world, observation in blind_drive(scenario, SEED):
-        frame = make_frame(observation, calibrations, before)
+        frame = Frame.from_observation(observation, before, calibrations)
         before, tracks = observation.odometry, tracker.update(frame)
         attended = tracker.explanation.attended
         if attended is None:

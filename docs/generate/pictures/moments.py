@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from peopleboy.behaviours.scripted import Stand
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.tracker.contour.explanation import ContourExplanation
 from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
@@ -25,7 +24,7 @@ def ticks(
 ) -> Iterator[tuple[World, Tick]]:
     """Play the first frames of a scenario with a standing robot, as `peopleboy run` does."""
     with World(load_scenario(scenario).world(seed)) as world:
-        eyes = make_tracker(tracker, stream(seed, "tracker"))
+        eyes = make_tracker(tracker, seed)
         for tick in closed_loop(world, eyes, Stand(), frames):
             yield world, tick
 

@@ -10,8 +10,8 @@ from matplotlib.patches import Rectangle
 from docs.generate.pictures.paper import show
 from peopleboy.scenarios.drawing.palette import track_colour
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.scenarios.running.blind_drive import blind_drive
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.cameras.depth import show_depth
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
 from peopleboy.tracker.rgbd.depth_view import DepthView
@@ -47,7 +47,7 @@ def steps() -> Figure:
 def _watch() -> tuple[Frame, DepthView, tuple[Track, ...], RgbdExplanation]:
     scenario = load_scenario(SCENARIO).mounting((DEPTH,))
     calibrations = calibrations_of(scenario.world(SEED).robot.cameras)
-    tracker = make_tracker("rgbd", np.random.default_rng(SEED))
+    tracker = make_tracker("rgbd", SEED)
     assert isinstance(tracker, RgbdTracker)
     for _, observation in blind_drive(scenario, SEED):
         images = {name: observation.images[name] for name in (DEPTH, DEPTH_COLOUR)}

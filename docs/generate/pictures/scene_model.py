@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from docs.generate.pictures.paper import show
 from peopleboy.scenarios.drawing.palette import person_colour, track_colour
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
 from peopleboy.scenarios.running.blind_drive import blind_drive
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.studies.reproductions.experiments.scenes import with_preset
 from peopleboy.tracker.frame import DEPTH_COLOUR, Frame
 from peopleboy.tracker.scene_model.scene import Metres, VistaScene
@@ -44,7 +44,7 @@ def _watch() -> list[tuple[Frame, VistaScene]]:
     calibrations = calibrations_of(scenario.world(SEED).robot.cameras)
     model, before, found = SceneModel(SceneConfig()), None, []
     for _, observation in blind_drive(scenario, SEED):
-        frame = make_frame(observation, calibrations, before)
+        frame = Frame.from_observation(observation, before, calibrations)
         before = observation.odometry
         scene = model.update(frame)
         if any(abs(observation.time_s - time_s) < 1e-6 for time_s in TIMES_S):

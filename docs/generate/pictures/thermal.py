@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from docs.generate.pictures.moments import world_at
 from docs.generate.pictures.paper import panels, plot, show
+from peopleboy.random_streams import stream
 from peopleboy.sim.cameras.camera_config import ColourConfig, ThermalConfig
 from peopleboy.sim.cameras.imaging.electronics import Gain, compress, encode_8bit, sharpen, show_scene
 from peopleboy.sim.cameras.imaging.noise import Drift
@@ -24,7 +25,6 @@ from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.furniture.thing_config import KINDS
 from peopleboy.sim.places.make_place import build_place
 from peopleboy.sim.places.place_config import straight_corridor
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Detail
 from peopleboy.sim.world import World

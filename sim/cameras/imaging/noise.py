@@ -8,8 +8,8 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.cameras.camera_config import ThermalConfig
-from peopleboy.sim.random_streams import stream
 
 _LEVELS = 4096
 

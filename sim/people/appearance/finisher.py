@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.people.appearance.clothing import OPEN, Worn, add_trimmings, paint_cloth, paint_shoes
 from peopleboy.sim.people.appearance.faces import paint_face, paint_hair, paint_skin
 from peopleboy.sim.people.appearance.textures import Mesh, crumple, make_mesh
@@ -15,7 +16,6 @@ from peopleboy.sim.people.body.clothes import Garment
 from peopleboy.sim.people.body.manner import Manner, draw_manner
 from peopleboy.sim.people.body.outfit import Outfit, draw_outfit
 from peopleboy.sim.people.person_config import PersonConfig
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import COLOURS, Finish, Material, Rgb
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 

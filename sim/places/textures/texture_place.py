@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.places.extent import Extent, fixture_extent
 from peopleboy.sim.places.place import Fixture, Place
 from peopleboy.sim.places.textures.coverings import (
@@ -18,7 +19,6 @@ from peopleboy.sim.places.textures.coverings import (
 )
 from peopleboy.sim.places.textures.sunlight import frame_doors, shine_on, warm_by
 from peopleboy.sim.places.textures.surface_texture import Clouds, SurfaceTexture, begin, draw_clouds
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import Covering, Material, Painting
 
 # How things stand out from their temperature: warmer above than below, uneven, worn.

@@ -16,10 +16,9 @@ import numpy as np
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.loop import closed_loop, make_frame
+from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.loop.tracker_by_name import OracleTracker, make_named_tracker
 from peopleboy.scenarios.running.engine.store import Result
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth, Truth
 from peopleboy.studies.reproductions.experiment import Floats, Line, Samples, as_columns, ratio
 from peopleboy.studies.reproductions.experiments.playback import Moment, play
@@ -30,7 +29,7 @@ from peopleboy.tracker.attention.attention_config import PRINTED, AttentionConfi
 from peopleboy.tracker.attention.image_sums import ImageSums
 from peopleboy.tracker.attention.part_model import check_box
 from peopleboy.tracker.boxes import iou
-from peopleboy.tracker.frame import COLOUR, THERMAL
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.track import Box, Status, Track
 from peopleboy.tracker.trackers import make_tracker
 
@@ -202,7 +201,7 @@ def play_focus(scenario: Scenario, seed: int, every: int = EVERY) -> Iterator[Mo
         oracle, behaviour = OracleTracker(lambda: world.truth()), scenario.make_behaviour()
         for tick in closed_loop(world, oracle, behaviour, round(scenario.duration_s * config.control_hz)):
             if tick.frame % every == 1:
-                frame = make_frame(tick.observation, {}, None)
+                frame = Frame.from_observation(tick.observation, None, {})
                 frame.rgb(COLOUR)  # drawn now, as the world goes on
                 yield Moment(tick.frame, frame, world.truth(COLOUR), tick.observation)
 
@@ -284,7 +283,7 @@ def watch_absence(scenario: str, seed: int, names: Sequence[str]) -> Result:
         another person had its track then, "late_s", the time from when it is visible again until it has its
         track, None for never, and "found_s" the same until it has any.
     """
-    trackers = {name: make_tracker(name, stream(seed, "tracker")) for name in names}
+    trackers = {name: make_tracker(name, seed) for name in names}
     tracked: dict[str, list[dict[int, str]]] = {name: [] for name in names}
     visible: list[float] = []
     leader, played = "", load_scenario(scenario)

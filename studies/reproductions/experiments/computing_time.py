@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from peopleboy.sim.random_streams import stream
+from peopleboy.random_streams import stream
 from peopleboy.studies.reproductions.experiment import Line, Samples
 from peopleboy.studies.reproductions.tracker_settings import TrackerSetting
 from peopleboy.studies.reproductions.units import Measurement, Unit

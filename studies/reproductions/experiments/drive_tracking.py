@@ -9,10 +9,10 @@ from typing import Any, Final
 
 import numpy as np
 
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.scenarios.running.engine.store import Result
-from peopleboy.sim.random_streams import stream
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.studies.reproductions.experiments.drive_scores import (
     RADIUS_M,
     DriveScore,

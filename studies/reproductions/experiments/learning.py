@@ -9,8 +9,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.running.engine.store import Result
-from peopleboy.sim.random_streams import stream
 from peopleboy.studies.reproductions.experiment import Line, Samples
 from peopleboy.studies.reproductions.plan import Plan
 from peopleboy.studies.reproductions.statistics import SHARE, TRAINING_SHARE

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
 from peopleboy.scenarios.running.blind_drive import blind_drive
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.frame import Frame
@@ -62,7 +62,7 @@ def play(
             continue
         number += 1
         if (number - 1) % every == 0:
-            frame = make_frame(observation, calibrations, before)
+            frame = Frame.from_observation(observation, before, calibrations)
             for name in images:
                 frame.images.get(name)
             yield Moment(number, frame, world.truth(camera), observation)

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.finished_runs.run_frames import IMAGES
 from peopleboy.scenarios.finished_runs.true_events import PersonNames, TrueEvent, matching
 from peopleboy.scenarios.running.engine.store import Result
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.events import ThingLog
 from peopleboy.sim.truth.truth import Backgrounds, Truth
 from peopleboy.studies.reproductions.experiment import Line, Row, Samples, as_columns, mean, ratio

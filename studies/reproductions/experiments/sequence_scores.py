@@ -12,11 +12,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.suite import SuiteRun
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.running.frame_cache import Film, film, frames_of
 from peopleboy.scenarios.scores.suite_table import count
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import COUNTED_FARTHEST_M, COUNTED_NEAREST_M
 from peopleboy.studies.reproductions.experiments.playback import unbroken
 from peopleboy.studies.reproductions.tracker_settings import TrackerSetting

@@ -14,9 +14,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.running.engine.store import Result
-from peopleboy.sim.random_streams import stream
 from peopleboy.studies.reproductions.experiment import Line, Row, Samples, as_columns, ratio
 from peopleboy.studies.reproductions.experiments.drive_scores import FloorPerson
 from peopleboy.studies.reproductions.experiments.drive_tracking import (

@@ -15,10 +15,10 @@ from scipy.optimize import least_squares
 
 from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.cameras.camera_config import PanoramaConfig
 from peopleboy.sim.cameras.kinds import flat_geometry
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world_config import WorldConfig
 from peopleboy.studies.reproductions.image_errors import ErrorSummary
 from peopleboy.studies.training.distance import panoramas

@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.studies.reproductions.canvas import (
     BLACK,

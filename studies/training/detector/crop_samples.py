@@ -116,7 +116,9 @@ class CropTraining(Specification[CropData]):
     VERSIONS: ClassVar[int]
     """Of each image to train on."""
 
-    sequences: Annotated[int, Field(ge=5, le=2000, description="Worlds to train on.")] = 600
+    sequences: Annotated[
+        int, Field(ge=5, le=2000, alias="seeds", description="Number of random worlds to train on.")
+    ] = 600
 
     def default_folder(self, model: str) -> Path:  # noqa: ARG002
         """Return the folder that all models of the detector share."""

@@ -82,17 +82,19 @@ class CascadeTraining(Specification[Tasks]):
     A tenth is held back, to calibrate scores.
     """
 
-    sequences: Annotated[int, Field(ge=5, le=2000, description="Worlds to train on.")] = 600
+    sequences: Annotated[
+        int, Field(ge=5, le=2000, alias="seeds", description="Number of random worlds to train on.")
+    ] = 600
     windows: Annotated[
         tuple[WindowKind, ...],
         Field(
-            description="Train trees for people who are mostly in the image, or cut off; the others stay as "
-            "they are."
+            description="Train trees for people who are mostly inside the image, or cut off by its border; "
+            "other trees stay as they are."
         ),
     ] = tuple(WindowKind)
     only_boxes: Annotated[
         bool,
-        Field(description="Train the regression of boxes alone; trees that score windows stay as they are."),
+        Field(description="Train box regression only; trees that score windows stay as they are."),
     ] = False
 
     def default_folder(self, model: str) -> Path:  # noqa: ARG002

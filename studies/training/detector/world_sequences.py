@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
-from peopleboy.scenarios.loop.loop import calibrations_of
 from peopleboy.scenarios.running.blind_drive import blind_drive
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.people.body.skeleton import Posture
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.studies.training.detector.worlds import world_of

@@ -9,10 +9,10 @@ from typing import Any, Final
 
 import numpy as np
 
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.random_worlds.distribution import ODDS, RANGES, SHARES, Distribution
 from peopleboy.scenarios.random_worlds.draw_scene import is_valid, rounded
 from peopleboy.scenarios.random_worlds.random_world import random_world
-from peopleboy.sim.random_streams import stream
 
 World = dict[str, Any]
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.geometry.camera_calibration import PanoramaCalibration
 from peopleboy.tracker.frame import Frame, Odometry
-from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.panorama_view import view_of
 from peopleboy.tracker.panoramic.people.figure_patch import (
     ACROSS,

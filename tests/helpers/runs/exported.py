@@ -41,7 +41,7 @@ def make_run(scene: dict[str, Any], folder: Path, *options: object) -> Path:
     """Run a scene; the folder is made."""
     path = folder.parent / f"{scene['name']}.yaml"
     path.write_text(yaml.safe_dump(scene), encoding="utf-8")
-    assert run_cli("run", path, "--out", folder, "--no-rrd", *options) == 0
+    assert run_cli("run", path, "--out", folder, "--no-recording", *options) == 0
     return folder
 
 

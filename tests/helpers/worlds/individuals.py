@@ -2,10 +2,10 @@
 
 from dataclasses import replace
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.people.appearance.finisher import Finisher
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
-from peopleboy.sim.random_streams import stream
 
 
 def make_individual(

@@ -10,7 +10,8 @@ import pytest
 import yaml
 
 from peopleboy.scenarios.drawing.draw_plan import draw_plan
-from peopleboy.scenarios.files.load import LIBRARY, library, load_scenario, parse_scenario
+from peopleboy.scenarios.files.library import LIBRARY, library
+from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.scenarios.files.robot import RobotSpec
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.scenario_file import json_schema, to_data
@@ -53,7 +54,7 @@ def test_the_library_holds_the_eight_scenarios_with_descriptions() -> None:
         "fast_turn",
         "dark_room",
     }
-    assert all(description and "\n" not in description for description in library().values())
+    assert all(entry.description and "\n" not in entry.description for entry in library().values())
 
 
 @every_scenario

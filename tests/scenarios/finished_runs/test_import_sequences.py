@@ -40,7 +40,7 @@ def exported(runs: Path) -> Path:
 def test_results_in_the_layout_of_an_export_come_back_as_runs_with_the_same_tracks(
     runs: Path, exported: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run_cli("import-tracks", runs, exported, "--name", "mine", "--no-rrd") == 0
+    assert run_cli("import-tracks", runs, exported, "--name", "mine", "--no-recording") == 0
     told = capsys.readouterr().out
     adopted = open_whole_runs([runs.parent / "runs-mine" / name for name in SEQUENCES])
     for run, name, source in zip(adopted, SEQUENCES, ("first", "second"), strict=True):

@@ -123,7 +123,7 @@ def test_what_cannot_be_of_the_run_is_refused_in_a_line_and_leaves_nothing(
 
 def test_boxes_may_be_in_the_image_of_another_camera(driven: Path, tmp_path: Path) -> None:
     (tmp_path / "theirs.txt").write_text("1,1,9,9,9,9,1,-1,-1,-1\n", encoding="utf-8")
-    options = ("--name", "mine", "--camera", "colour", "--no-rrd", "--out", tmp_path / "out")
+    options = ("--name", "mine", "--camera", "colour", "--no-recording", "--out", tmp_path / "out")
     assert run_cli("import-tracks", driven, tmp_path / "theirs.txt", *options) == 0
     assert run_cli("evaluate", tmp_path / "out", "--camera", "colour") == 0
     assert not (tmp_path / "out" / "recording.rrd").exists()

@@ -52,7 +52,14 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run with images."""
     folder = tmp_path_factory.mktemp("watch")
     (folder / "one_box.yaml").write_text(SCENARIO)
-    arguments = ["run", str(folder / "one_box.yaml"), "--frames", "--no-rrd", "--out", str(folder / "run")]
+    arguments = [
+        "run",
+        str(folder / "one_box.yaml"),
+        "--frames",
+        "--no-recording",
+        "--out",
+        str(folder / "run"),
+    ]
     CliRunner().invoke(cli, arguments, catch_exceptions=False)
     return folder / "run"
 
@@ -69,7 +76,14 @@ def test_a_slower_camera_need_not_have_taken_an_image_when_something_happened(tm
         .replace("tof}", "tof, rate_hz: 5}")
     )
     (tmp_path / "slower.yaml").write_text(scenario)
-    arguments = ["run", str(tmp_path / "slower.yaml"), "--frames", "--no-rrd", "--out", str(tmp_path / "run")]
+    arguments = [
+        "run",
+        str(tmp_path / "slower.yaml"),
+        "--frames",
+        "--no-recording",
+        "--out",
+        str(tmp_path / "run"),
+    ]
     CliRunner().invoke(cli, arguments, catch_exceptions=False)
     watch(str(tmp_path / "run"))
     (vanished,) = true_events(open_run(tmp_path / "run"))

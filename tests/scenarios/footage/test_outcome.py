@@ -79,7 +79,7 @@ def test_one_is_not_a_plural(tmp_path):
 def test_with_a_film_the_last_line_names_it(tmp_path):
     pytest.importorskip("av")
     clip = write_folder(tmp_path / "clip", 3)
-    told = call(clip, "--out", tmp_path / "out", "--start", START, "--film").stdout
+    told = call(clip, "--out", tmp_path / "out", "--start", START, "--video").stdout
     film = tmp_path / "out" / "overlay.mp4"
     assert_names(told.splitlines()[-1], tmp_path / "out" / "contact_sheet.png", film)
     assert film.is_file()

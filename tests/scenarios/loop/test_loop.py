@@ -1,5 +1,6 @@
 from peopleboy.scenarios.files.load import parse_scenario
-from peopleboy.scenarios.loop.loop import Perception, calibrations_of, thermal_box
+from peopleboy.scenarios.loop.loop import Perception, thermal_box
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import World
 from peopleboy.tracker.contour.box_interaction import standing_box

@@ -123,7 +123,7 @@ def test_histograms_count_every_value() -> None:
 def test_a_set_of_random_worlds_says_what_was_drawn_and_is_the_same_in_another_process(
     tmp_path: Path,
 ) -> None:
-    order = ["render", "--randomise", "1", "--seed", "12", "--workers", "1", "--out"]
+    order = ["render", "--random-worlds", "--seeds", "1", "--first-seed", "12", "--workers", "1", "--out"]
     assert run_cli(*order, tmp_path / "here") == 0
     subprocess.run([sys.executable, "-m", "peopleboy", *order, str(tmp_path / "there")], check=True)
     files = [path for path in sorted((tmp_path / "here").rglob("*")) if path.is_file()]
@@ -137,34 +137,31 @@ def test_a_set_of_random_worlds_says_what_was_drawn_and_is_the_same_in_another_p
     played = yaml.safe_load((here / "world_12" / "scenario.yaml").read_text())
     assert json.loads((here / "drawn.json").read_text())["world_12"] == drawn_values(played)
     about, sheet = json.loads((here / "dataset.json").read_text()), (here / "README.md").read_text()
-    assert (about["randomise"], about["seed"]) == (1, 12)
-    assert "peopleboy render --randomise 1 --seed 12" in sheet
+    assert (about["random_worlds"], about["seeds"], about["first_seed"]) == (True, 1, 12)
+    assert "peopleboy render --random-worlds --seeds 1 --first-seed 12" in sheet
     assert all(spread.what in sheet for name, spread in RANGES.items() if name in drawn_values(played))
-    assert "train and test are empty; give --randomise 7" in sheet
+    assert "train and test are empty; give --seeds 3" in sheet
     assert (here / "splits" / "val.txt").read_text() == "world_12\n"
 
 
 @pytest.mark.thorough
 def test_seven_worlds_in_a_row_have_all_splits() -> None:
-    assert of_worlds(7, 3).lacking == ""
+    assert of_worlds(range(3, 10)).lacking == ""
 
 
 @pytest.mark.parametrize(
     "order",
     [
         ("render",),
-        ("render", "crossing_2", "--randomise", 2),
-        ("render", "--randomise", 2, "--seeds", 3),
-        ("render", "crossing_2", "--seed", 3),
+        ("render", "crossing_2", "--random-worlds"),
         ("sweep",),
-        ("sweep", "crossing_2", "--randomise", 2),
-        ("sweep", "--randomise", 2, "--seeds", 3),
+        ("sweep", "crossing_2", "--random-worlds"),
     ],
 )
 def test_random_worlds_and_scenarios_do_not_go_together(
     order: tuple[object, ...], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert_names(refusal(capsys, *order), order[0], "--randomise")
+    assert_names(refusal(capsys, *order), order[0], "--random-worlds")
 
 
 @pytest.mark.slow

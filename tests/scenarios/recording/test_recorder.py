@@ -21,7 +21,6 @@ from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.recording.recording_file import pack
 from peopleboy.scenarios.recording.rows import PIXEL_STEP
 from peopleboy.sim.cameras.kinds import colour_from_thermal
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.contour.measurement.section_evidence import section_lines
@@ -240,7 +239,7 @@ def test_a_minute_with_four_people_fits_into_eleven_megabytes(tmp_path: Path) ->
     scenario = load_scenario("crossing_4")
     config = scenario.world(0)
     with World(config) as world:
-        tracker = make_tracker("contour", stream(0, "tracker"))
+        tracker = make_tracker("contour")
         loop = closed_loop(world, tracker, scenario.make_behaviour(), 75)
         ticks = [replace(tick, truths=dict(tick.truths)) for tick in loop]
     assert np.mean([len(tick.tracks) for tick in ticks[15:]]) > 3.0

@@ -142,7 +142,7 @@ def test_a_viewer_that_fails_is_told_from_one_that_was_closed(
     assert str(run / "recording.rrd") in refusal(capsys, "view", run)
 
 
-@pytest.mark.parametrize("arguments", [("crossing_2", "--no-rrd"), ("dataset1",)])
+@pytest.mark.parametrize("arguments", [("crossing_2", "--no-recording"), ("dataset1",)])
 def test_there_is_nothing_to_show_live_without_the_recording_of_one_run(
     arguments: tuple[str, ...], capsys: pytest.CaptureFixture[str]
 ) -> None:

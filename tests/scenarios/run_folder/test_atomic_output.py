@@ -138,7 +138,7 @@ def test_a_place_that_cannot_be_written_is_named_as_it_was_given(tmp_path, comma
     place.parent.touch()
     with pytest.raises(BadInput) as caught:
         (FOLDERS | OTHERS)[command](place)
-    option = "--films" if command == "datasets" else "--out"
+    option = "--frame-cache" if command == "datasets" else "--out"
     assert str(caught.value) == f"{place}: cannot write here: Not a directory; give another {option}"
 
 

@@ -9,8 +9,8 @@ import pytest
 from peopleboy.behaviours.behaviour import Command
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.recorded_drives import read_drive, write_drive
-from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
 from peopleboy.scenarios.running.frame_cache import Film, film, film_key, frames_of, open_film
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.world import World
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
@@ -30,7 +30,7 @@ def played() -> Iterator[Frame]:
         calibrations = calibrations_of(world.cameras)
         for k in range(39):
             seen = world.observe()
-            yield make_frame(seen, calibrations, before)
+            yield Frame.from_observation(seen, before, calibrations)
             before = seen.odometry
             # The script turns the robot from second 2 on; nothing is in its way.
             world.step(0.0, np.radians(90.0) if 30 <= k < 37.5 else 0.0)

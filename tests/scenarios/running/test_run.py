@@ -10,7 +10,8 @@ import pyarrow.parquet as pq
 import pytest
 import yaml
 
-from peopleboy.scenarios.files.load import LIBRARY, load_scenario, parse_scenario
+from peopleboy.scenarios.files.library import LIBRARY
+from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.scenarios.running.run import run
 from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_files, evaluate_runs
@@ -89,7 +90,7 @@ def test_a_fresh_process_gives_the_same_bytes_and_another_seed_does_not(
 ) -> None:
     scenario = str(write_scene(tmp_path / "tiny.yaml"))
     same, other = (
-        ["run", scenario, "--out", str(tmp_path / name), "--seed", seed, "--frames", "--no-rrd"]
+        ["run", scenario, "--out", str(tmp_path / name), "--seed", seed, "--frames", "--no-recording"]
         for name, seed in (("same", "5"), ("other", "6"))
     )
     subprocess.run([sys.executable, "-m", "peopleboy", *same], check=True, capture_output=True, cwd=tmp_path)
@@ -107,7 +108,7 @@ def test_it_is_said_by_which_span_the_tracker_got_its_grey(finished: Path) -> No
 
 
 def test_the_resolved_scenario_gives_the_same_world_again(finished: Path, tmp_path: Path) -> None:
-    assert run_cli("run", finished / "scenario.yaml", "--out", tmp_path / "again", "--no-rrd") == 0
+    assert run_cli("run", finished / "scenario.yaml", "--out", tmp_path / "again", "--no-recording") == 0
     again = digests(tmp_path / "again")
     assert {name: again[name] for name in ("truth/gt.txt", "tracks.txt")} == {
         name: digests(finished)[name] for name in ("truth/gt.txt", "tracks.txt")
@@ -142,7 +143,7 @@ def test_people_of_whom_little_is_seen_can_be_left_out(tmp_path: Path) -> None:
 
 def test_nobody_is_a_sensible_run(tmp_path: Path) -> None:
     path = write_scene(tmp_path / "tiny.yaml", people=[], duration_s=0.4)
-    assert run_cli("run", path, "--out", tmp_path / "run", "--no-rrd") == 0
+    assert run_cli("run", path, "--out", tmp_path / "run", "--no-recording") == 0
     assert (tmp_path / "run" / "truth" / "gt.txt").read_text() == ""
 
 
@@ -186,7 +187,15 @@ def test_a_run_told_to_end_says_so_and_is_no_failure_of_its_tracker(tmp_path: Pa
         "oracle.OracleTracker.update = lambda *_: os.kill(os.getpid(), signal.SIGTERM)\n"
         "main(sys.argv[1:])"
     )
-    call = ["run", "single_stationary", "--tracker", "truth", "--no-rrd", "--out", str(tmp_path / "run")]
+    call = [
+        "run",
+        "single_stationary",
+        "--tracker",
+        "truth",
+        "--no-recording",
+        "--out",
+        str(tmp_path / "run"),
+    ]
     assert subprocess.run([sys.executable, "-c", script, *call], check=False).returncode == 143
     assert json.loads((tmp_path / "run" / "run.json").read_text())["status"] == "cut off"
 
@@ -238,7 +247,7 @@ def test_another_tracker_has_a_folder_of_its_own(tmp_path: Path, monkeypatch: py
     monkeypatch.chdir(tmp_path)
     path = write_scene(tmp_path / "tiny.yaml", duration_s=0.2)
     for tracker in ("detection", "paper"):
-        assert run_cli("run", path, "--tracker", tracker, "--no-rrd") == 0
+        assert run_cli("run", path, "--tracker", tracker, "--no-recording") == 0
     assert {folder.name for folder in (tmp_path / "runs").iterdir()} == {"tiny-0", "tiny-0-paper"}
 
 
@@ -284,8 +293,8 @@ def test_an_earlier_run_is_replaced_only_when_asked_and_other_folders_never(
     assert_names(refusal(capsys, "run", scenario, "--out", keep, "--overwrite"), keep)
     assert (keep / "thesis.txt").exists()
     out = tmp_path / "run"
-    assert run_cli("run", scenario, "--out", out, "--no-rrd") == 0
-    assert run_cli("run", scenario, "--out", out, "--no-rrd", "--overwrite", "--seed", 1) == 0
+    assert run_cli("run", scenario, "--out", out, "--no-recording") == 0
+    assert run_cli("run", scenario, "--out", out, "--no-recording", "--overwrite", "--seed", 1) == 0
     assert json.loads((out / "run.json").read_text())["seed"] == 1
 
 

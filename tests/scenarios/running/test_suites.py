@@ -9,8 +9,10 @@ from click.testing import CliRunner
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.cli import cli
+from peopleboy.scenarios.files import library as listed
 from peopleboy.scenarios.files import suite as suites
-from peopleboy.scenarios.files.suite import EntrySpec, SuiteSpec, load_suite, runs_of, suite_names
+from peopleboy.scenarios.files.library import suite_names
+from peopleboy.scenarios.files.suite import EntrySpec, SuiteSpec, load_suite, runs_of
 from peopleboy.scenarios.running import many_runs as module
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import run_suite
@@ -91,6 +93,7 @@ def test_a_suite_file_with_a_mistake_is_refused(tmp_path: Path, monkeypatch: pyt
     (tmp_path / "odd.yaml").write_text(
         "name: odd\ndescription: x\nruns: [{scenario: crossing_2, seed: [0]}]\n"
     )
-    monkeypatch.setattr(suites, "SUITES", tmp_path)
+    for home in (suites, listed):
+        monkeypatch.setattr(home, "SUITES", tmp_path)
     with refused("suites/odd.yaml", "'seed'", "'seeds'"):
         load_suite("odd")

@@ -133,13 +133,13 @@ def test_run_sweep_and_compare_print_one_document_or_nothing(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     scene = folder / "tiny.yaml"
-    told = document(capsys, "run", scene, "--tracker", "truth", "--out", tmp_path / "run", "--no-rrd")
+    told = document(capsys, "run", scene, "--tracker", "truth", "--out", tmp_path / "run", "--no-recording")
     assert told["figures"] == json.loads((tmp_path / "run" / "metrics.json").read_text(encoding="utf-8"))
     assert (told["scenario"], told["seed"], told["tracker"]) == ("tiny", 0, "truth")
     many = ("--seeds", "1", "--workers", "1", "--out", tmp_path / "many")
     swept = document(capsys, "sweep", scene, "--tracker", "truth", *many)
     assert swept["trackers"]["truth"]["all_frames"]["thesis"] == told["figures"]["thesis"]
-    compare = ("compare", "--controllers", "follow_person@truth", "--scenario", scene, *many)
+    compare = ("compare", "--controllers", "follow_person@truth", scene, *many)
     (compared,) = document(capsys, *compare)["comparisons"]
     assert compared["scenario"] == "tiny"
     for command in (("sweep", scene, "--tracker", "truth", *many), compare, ("evaluate", folder / "one")):

@@ -74,7 +74,7 @@ def test_perfect_boxes_of_whole_people_are_perfect_and_scored_so_again(
     seen: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = seen.parent / "whole"
-    options = ("--name", "theirs", "--boxes", "whole", "--no-rrd", "--out", out)
+    options = ("--name", "theirs", "--boxes", "whole", "--no-recording", "--out", out)
     assert run_cli("import-tracks", seen, perfect(seen), *options) == 0
     metrics = said(out)
     assert metrics["scored_by"] == {"camera": "thermal", "boxes": "whole"}
@@ -106,7 +106,7 @@ def test_boxes_that_are_corners_are_said_to_be(
         lines.append(",".join([frame, number, left, top, f"{right:.2f}", f"{bottom:.2f}", *rest]))
     corners.write_text("\n".join(lines) + "\n", encoding="utf-8")
     out = seen.parent / f"corners_{kind}"
-    options = ("--name", "theirs", "--boxes", kind, "--no-rrd", "--out", out)
+    options = ("--name", "theirs", "--boxes", kind, "--no-recording", "--out", out)
     assert run_cli("import-tracks", seen, corners, *options) == 0
     (note,) = figures(capsys, out)["notes"]
     assert_names(note, "no corners", "left, top, width and height")
@@ -128,7 +128,7 @@ def test_boxes_where_nobody_is_are_of_no_kind(tmp_path: Path, capsys: pytest.Cap
     ghost = tmp_path / "ghost.txt"
     ghost.write_text("3,1,20,10,12,50,1,-1,-1,-1\n", encoding="utf-8")
     out = tmp_path / "haunted"
-    assert run_cli("import-tracks", empty, ghost, "--name", "seer", "--no-rrd", "--out", out) == 0
+    assert run_cli("import-tracks", empty, ghost, "--name", "seer", "--no-recording", "--out", out) == 0
     assert figures(capsys, out)["notes"] == []
 
 
@@ -145,7 +145,7 @@ def test_a_slow_camera_has_its_images_counted_as_in_an_export(
     )
     theirs = home / "low.txt"
     theirs.write_text("".join(f"{line}\n" for line in by_image), encoding="utf-8")
-    options = ("--name", "slow", "--camera", "low", "--no-rrd", "--out", home / "slow")
+    options = ("--name", "slow", "--camera", "low", "--no-recording", "--out", home / "slow")
     assert run_cli("import-tracks", seen, theirs, *options) == 0
     kept = (home / "slow" / "tracks" / "low.txt").read_text(encoding="utf-8").splitlines()
     assert [line.split(",")[:6] for line in kept] == [line.split(",")[:6] for line in by_frame]

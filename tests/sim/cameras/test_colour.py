@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.cameras.camera_config import ColourConfig
 from peopleboy.sim.cameras.colour import colour_image, expose
 from peopleboy.sim.cameras.imaging.camera_view import make_material_table
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.materials import Material, Pattern, PatternKind
 from tests.helpers.images.camera_view import camera_view

@@ -3,6 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.imaging.camera_view import make_material_table
 from peopleboy.sim.cameras.imaging.electronics import encode_8bit
@@ -14,7 +15,6 @@ from peopleboy.sim.cameras.thermal import (
     surface_image,
 )
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.materials import Material
 from tests.helpers.images.camera_view import camera_view

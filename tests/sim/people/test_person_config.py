@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pytest
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.people.body.clothes import (
     BOTTOMS,
     HAIR,
@@ -14,7 +15,6 @@ from peopleboy.sim.people.body.clothes import (
 )
 from peopleboy.sim.people.body.skeleton import Posture
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import COLOURS, PatternKind
 from tests.helpers.calls.refused import refused
 from tests.helpers.worlds.walkers import make_person, settle

@@ -3,7 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from peopleboy.scenarios.files.load import LIBRARY, load_scenario
+from peopleboy.scenarios.files.library import LIBRARY
+from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.shapes.bounds import FAR_M
 from tests.helpers.some_of import some_of
 from tests.helpers.worlds.boxes import fighting_faces, first_hit, upright_boxes

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.physics.bullet import Bullet
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, SONAR_POSITION_M
 from peopleboy.sim.robot.robot_config import SonarConfig
 from peopleboy.sim.robot.sonar import SonarRing, cone_rays

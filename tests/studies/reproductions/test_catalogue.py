@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from peopleboy.sim.random_streams import stream
+from peopleboy.random_streams import stream
 from peopleboy.studies.reproductions.catalogue import EXPERIMENTS, PAPERS, choose, paper_of, read_source
 from peopleboy.studies.reproductions.experiments.tracking import TrackerTrial, sequence_units
 from peopleboy.studies.reproductions.plan import full_plan
@@ -203,7 +203,7 @@ def test_fewer_repeats_are_part_of_more(tmp_path: Path) -> None:
 
 
 def test_a_quick_run_has_its_own_repeats(capsys: pytest.CaptureFixture[str]) -> None:
-    assert "either it or --repeats" in refusal(capsys, "reproduce", "--quick", "--repeats", "2")
+    assert "give either --quick or --seeds" in refusal(capsys, "reproduce", "--quick", "--seeds", "2")
 
 
 def test_the_command_lists_what_there_is(capsys: pytest.CaptureFixture[str]) -> None:

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from peopleboy.geometry.camera_calibration import PinholeCalibration
+from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.suite import SuiteRun
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.scenarios.running.frame_cache import Film, film
-from peopleboy.sim.random_streams import stream
 from peopleboy.studies.reproductions.experiment import Line, Samples
 from peopleboy.studies.reproductions.experiments import sequence_scores
 from peopleboy.studies.reproductions.experiments.sequence_scores import (
@@ -50,7 +51,7 @@ from peopleboy.studies.reproductions.units import Measurement, Unfinished
 from peopleboy.tracker.evaluation.area_metrics import PaperMetrics
 from peopleboy.tracker.evaluation.evaluate import evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
-from peopleboy.tracker.frame import THERMAL, Frame, PinholeCalibration
+from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.track import FloorPlace, Status, Track
 from peopleboy.tracker.trackers import Tracker
 

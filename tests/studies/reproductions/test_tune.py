@@ -76,7 +76,7 @@ def test_only_an_interval_makes_another_value_better(one: Tuned, best: str, verd
 
 @pytest.mark.slow
 def test_curves_and_a_page_are_left_and_what_is_done_is_not_done_again(tmp_path: Path) -> None:
-    films = TrainingFilms(cache=tmp_path / "films", seeds=1, seconds=1.5)
+    films = TrainingFilms(cache=tmp_path / "films", seeds=range(100, 101), seconds=1.5)
     page, (found,) = tune([RHO], films, tmp_path / "out", Workers())
     assert set(found.accuracy) == set(RHO.values)
     assert "rho.svg" in page.read_text()

@@ -1,12 +1,10 @@
 import json
 from pathlib import Path
 
-import numpy as np
 import pyarrow.parquet as pq
 import pytest
 import yaml
 
-from peopleboy.scenarios.loop.loop import calibration_of
 from peopleboy.sim.geometry.panorama import MIRRORS, Panorama
 from peopleboy.studies.training.distance import DistanceTraining
 from peopleboy.tracker.panoramic.panorama_view import choose_view
@@ -47,9 +45,8 @@ def train(scenario: Path, out: Path) -> int:
     return run_cli(
         "train",
         "distance",
-        "--scenario",
         scenario,
-        "--sequences",
+        "--seeds",
         1,
         "--epochs",
         500,
@@ -94,7 +91,9 @@ def test_a_run_is_tracked_with_the_network_near_the_truth(
     shipped = {lesson / "distance-stroll.npz": DistanceModel.load(lesson / "distance-stroll.npz")}
     monkeypatch.setattr(distance_network, "shipped_models", lambda: shipped)
     out = tmp_path / "run"
-    assert run_cli("run", write(tmp_path), "--tracker", "panoramic-paper", "--out", out, "--no-rrd") == 0
+    assert (
+        run_cli("run", write(tmp_path), "--tracker", "panoramic-paper", "--out", out, "--no-recording") == 0
+    )
     tracks = pq.read_table(out / "tracks.parquet").to_pylist()
     assert {row["id"] for row in tracks} == {1}
     seen = [row["frame"] for row in tracks]
@@ -106,7 +105,7 @@ def test_a_run_is_tracked_with_the_network_near_the_truth(
 @pytest.mark.parametrize("mirror", MIRRORS)
 def test_a_network_for_every_mirror_that_has_a_name_comes_with_the_tracker(mirror: str) -> None:
     camera = Panorama(mirror=MIRRORS[mirror])
-    calibration = calibration_of(camera)
+    calibration = camera.calibration
     assert calibration is not None
     views = [model.view for model in shipped_models().values()]
     assert (
@@ -116,7 +115,7 @@ def test_a_network_for_every_mirror_that_has_a_name_comes_with_the_tracker(mirro
             "narrow": "at 1.71 m that looks 8.1 to 34.9 deg down",
         }.values()
     )
-    tracker = make_tracker("panoramic-paper", np.random.default_rng(0))
+    tracker = make_tracker("panoramic-paper")
     assert isinstance(tracker, PanoramicPaperTracker)
     tracker.check_cameras({"panorama": calibration})
 
@@ -177,9 +176,7 @@ def test_a_scenario_from_which_nothing_can_be_learned_is_refused_and_leaves_noth
     why: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     make, words = REFUSED[why]
-    told = refusal(
-        capsys, "train", "distance", "--scenario", make(tmp_path), "--out", tmp_path / "out", "--sequences", 1
-    )
+    told = refusal(capsys, "train", "distance", make(tmp_path), "--out", tmp_path / "out", "--seeds", 1)
     assert words in told
     assert not (tmp_path / "out").exists()
 

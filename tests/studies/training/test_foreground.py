@@ -13,7 +13,7 @@ from tests.helpers.calls.refused import refused
 
 
 def train(out: Path) -> int:
-    size = ("--sequences", 1, "--validation", 1, "--rounds", 1, "--workers", 1)
+    size = ("--seeds", 1, "--validation", 1, "--rounds", 1, "--workers", 1)
     return run_cli("train", "foreground", *size, "--out", out)
 
 

@@ -86,7 +86,7 @@ def train(folder: Path, *more: object) -> int:
     return run_cli(
         "train",
         "places",
-        "--sequences",
+        "--seeds",
         2,
         "--workers",
         1,

@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.tracker.attention.attention_config import PRINTED
 from peopleboy.tracker.attention.people.attentive_config import AS_FOUND, AttentiveConfig
 from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
 from peopleboy.tracker.attention.people.person_views import PersonView, box_in
 from peopleboy.tracker.attention.people.recogniser import ByColour, ByFocus, ColourLook
-from peopleboy.tracker.frame import COLOUR, PANORAMA, THERMAL, Frame, PinholeCalibration
+from peopleboy.tracker.frame import COLOUR, PANORAMA, THERMAL, Frame
 from peopleboy.tracker.track import FloorPlace, Status, Track
 from peopleboy.tracker.trackers import TRACKERS, knows_again, make_tracker
 from tests.helpers.calls.refused import refused
@@ -170,10 +171,10 @@ def test_without_colours_it_is_refused_in_one_line():
 
 @pytest.mark.parametrize("name", [name for name in TRACKERS if name.startswith("attentive")])
 def test_the_registered_ones_know_people_again_and_want_colours(name):
-    tracker = make_tracker(name, np.random.default_rng(0))
+    tracker = make_tracker(name)
     assert knows_again(tracker)
     assert {THERMAL, COLOUR} <= set(tracker.cameras)
-    assert not knows_again(make_tracker("contour", np.random.default_rng(0)))
+    assert not knows_again(make_tracker("contour"))
 
 
 def test_settings_out_of_range_are_refused():

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.tracker.contour.box_interaction import (
     PERSON_M,
     WIDEST_RAD,
@@ -21,7 +22,6 @@ from peopleboy.tracker.contour.box_interaction import (
 )
 from peopleboy.tracker.contour.contour_config import BoxConfig, InteractionConfig, TrackerConfig
 from peopleboy.tracker.contour.variants import PAPER, THESIS
-from peopleboy.tracker.frame import PinholeCalibration
 from peopleboy.tracker.track import FloorPlace, Status
 
 CONFIG = TrackerConfig()

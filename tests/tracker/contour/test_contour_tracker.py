@@ -5,7 +5,6 @@ from itertools import chain, pairwise, repeat
 import numpy as np
 import pytest
 
-from peopleboy.scenarios.loop.loop import calibration_of
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.contour import contour_tracker
 from peopleboy.tracker.contour.contour_config import InteractionConfig
@@ -21,7 +20,7 @@ from tests.helpers.images.contours import middle, semi_height
 from tests.helpers.images.drawn_people import blank, draw_person
 from tests.helpers.some_of import some_of
 
-ROBOTS_OWN = calibration_of(Pinhole())
+ROBOTS_OWN = Pinhole().calibration
 APART = replace(CONTOUR, interaction=InteractionConfig(detector_penalty=1e-9, detector_overlap=0.3))
 
 
@@ -224,7 +223,7 @@ def test_who_cannot_be_compared_yet_has_a_new_number_until_it_is_known_again(mon
 @pytest.mark.slow
 @pytest.mark.parametrize("name", VARIANTS)
 def test_every_contour_tracker_gives_finite_tracks_with_ids_of_their_own(name):
-    tracker = make_tracker(name, np.random.default_rng(3))
+    tracker = make_tracker(name, 3)
     for i in range(30, 90, 2):
         tracks = tracker.update(passing(i))
         assert len({track.id for track in tracks}) == len(tracks)

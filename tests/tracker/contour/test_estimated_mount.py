@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 
-from peopleboy.scenarios.loop.loop import calibration_of
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.contour.estimated_mount import MountBelief, believed_from, is_learnable
 from peopleboy.tracker.contour.particle_filter import is_within
@@ -21,7 +20,7 @@ LIMITS = CONTOUR.detector.limits
 def standing(geometry: Pinhole, distance_m: float, stature_m: float = 1.72) -> np.ndarray:
     """State (9,) of somebody on the floor, as a camera sees it."""
     ends = np.array([[distance_m, 0.0, stature_m], [distance_m, 0.0, 0.0]])
-    head, foot = calibration_of(geometry).project(ends)[:, 1]
+    head, foot = geometry.calibration.project(ends)[:, 1]
     state = np.zeros(9)
     h = (foot - head) / (CROWN + FOOT)
     state[[X, Y, W, H]] = 160.0, foot - FOOT * h, 0.4 * h, h
@@ -42,7 +41,7 @@ def taught(geometry: Pinhole) -> MountBelief:
 @pytest.mark.parametrize(("height_m", "pitch_deg"), [(1.2, 0.0), (0.5, 6.0), (1.7, -6.0), (1.2, 10.0)])
 def test_somebody_who_walks_to_and_fro_tells_horizon_and_height(height_m: float, pitch_deg: float) -> None:
     geometry = camera(height_m, pitch_deg)
-    far = calibration_of(geometry).project(np.array([[1e7, 0.0, height_m]]))[0, 1]
+    far = geometry.calibration.project(np.array([[1e7, 0.0, height_m]]))[0, 1]
     horizon, below = taught(geometry).line.tolist()
     assert horizon == pytest.approx(far / 240, abs=0.02)
     assert below == pytest.approx(height_m / 1.72 * (CROWN + FOOT) - FOOT, abs=0.2)

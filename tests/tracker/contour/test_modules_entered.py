@@ -1,12 +1,9 @@
 import sys
 from dataclasses import replace
 
-import numpy as np
-
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.loop import calibrations_of, make_frame
 from peopleboy.sim.world import World
-from peopleboy.tracker.frame import COLOUR, THERMAL
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
 MOST = 12
@@ -18,7 +15,7 @@ def frames_of_four(count):
     with World(load_scenario("crossing_4").world(0)) as world:
         for _ in range(count):
             observation = world.observe()
-            frame = make_frame(observation, calibrations_of(world.cameras), before)
+            frame = Frame.from_observation(observation, before)
             yield replace(frame, images={name: frame.images[name] for name in (THERMAL, COLOUR)})
             before = observation.odometry
             world.step(0.0, 0.0)
@@ -41,7 +38,7 @@ def modules_entered(work):
 
 
 def test_one_tick_of_the_tracker_can_be_read_in_a_dozen_modules():
-    tracker = make_tracker(CONTOUR_TRACKER, np.random.default_rng(0))
+    tracker = make_tracker(CONTOUR_TRACKER)
     *first, last = frames_of_four(61)
     for frame in first:
         tracker.update(frame)

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.scenarios.loop.loop import calibration_of
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.camera_mount import Mount, mount_of
 from peopleboy.tracker.contour.contour_config import LimitsConfig
@@ -28,7 +27,7 @@ def camera(height_m=1.2, pitch_deg=0.0, fov_deg=44.0):
 
 
 def test_the_robots_own_camera_is_the_usual_one_to_the_last_bit():
-    mount = mount_of(calibration_of(Pinhole()), 240)
+    mount = mount_of(Pinhole().calibration, 240)
     assert mount == mount_of(None, 240)
     for config in VARIANTS.values():
         assert seen_from(config, mount, 240) == config
@@ -37,8 +36,8 @@ def test_the_robots_own_camera_is_the_usual_one_to_the_last_bit():
 @given(st.floats(0.3, 2.5), st.floats(-30, 30), st.floats(20, 80))
 def test_the_horizon_is_where_far_points_at_the_cameras_height_are(height_m, pitch_deg, fov_deg):
     geometry = camera(height_m, pitch_deg, fov_deg)
-    mount = mount_of(calibration_of(geometry), geometry.height)
-    far = calibration_of(geometry).project(np.array([[1e7, 0.0, height_m]]))[0, 1]
+    mount = mount_of(geometry.calibration, geometry.height)
+    far = geometry.calibration.project(np.array([[1e7, 0.0, height_m]]))[0, 1]
     assert mount == Mount(
         pytest.approx(far, abs=1e-3), pytest.approx(geometry.focal_px), pytest.approx(height_m)
     )
@@ -51,7 +50,7 @@ def test_people_who_stand_on_the_floor_are_within_the_limits_of_any_camera(
     height_m, pitch_deg, fov_deg, distance_m, stature_m
 ):
     geometry = camera(height_m, pitch_deg, fov_deg)
-    calibration = calibration_of(geometry)
+    calibration = geometry.calibration
     head, foot = calibration.project(np.array([[distance_m, 0.0, stature_m], [distance_m, 0.0, 0.0]]))[:, 1]
     h = (foot - head) / (CROWN + FOOT)
     state = np.zeros((3, 9), dtype=np.float32)
@@ -64,11 +63,11 @@ def test_people_who_stand_on_the_floor_are_within_the_limits_of_any_camera(
 @pytest.mark.parametrize("pitch_deg", [-90.0, 90.0])
 @pytest.mark.parametrize("height_m", [0.05, 5.0])
 def test_a_camera_that_looks_straight_up_or_down_has_its_horizon_far_away(pitch_deg, height_m):
-    mount = mount_of(calibration_of(camera(height_m, pitch_deg)), 240)
+    mount = mount_of(camera(height_m, pitch_deg).calibration, 240)
     assert abs(mount.horizon_px) == 24000.0
     assert math.copysign(1.0, mount.horizon_px) == -math.copysign(1.0, pitch_deg)  # below it when looking up
-    tracker = make_tracker("contour", np.random.default_rng(0))
-    calibrations = {"thermal": calibration_of(camera(height_m, pitch_deg))}
+    tracker = make_tracker("contour")
+    calibrations = {"thermal": camera(height_m, pitch_deg).calibration}
     for tick in range(3):
         images = {"thermal": np.full((240, 320), 40, np.uint8)}
         assert tracker.update(Frame(images=images, calibrations=calibrations, time_s=tick / 15)) == ()

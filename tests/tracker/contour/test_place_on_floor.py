@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.tracker.contour.box_interaction import (
     CORRELATION,
@@ -24,7 +25,6 @@ from peopleboy.tracker.contour.box_interaction import (
     places_on_floor,
     standing_box,
 )
-from peopleboy.tracker.frame import PinholeCalibration
 from peopleboy.tracker.track import Box, Status
 from tests.helpers.calls.refused import refused
 

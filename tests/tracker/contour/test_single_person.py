@@ -184,7 +184,7 @@ def test_time_that_does_not_go_forward_is_refused(second):
 
 def test_an_unknown_tracker_is_refused_with_the_names_of_those_that_exist():
     with refused("'best'", *TRACKERS):
-        make_tracker("best", np.random.default_rng(0))
+        make_tracker("best")
 
 
 def test_a_filter_of_300_samples_finds_the_person_too():

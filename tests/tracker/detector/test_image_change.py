@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.tracker.camera_mount import Mount, mount_of
 from peopleboy.tracker.detector.image_change import (
     Grey,
@@ -17,7 +18,7 @@ from peopleboy.tracker.detector.image_change import (
     rotation_homography,
     shift_homography,
 )
-from peopleboy.tracker.frame import Odometry, PinholeCalibration
+from peopleboy.tracker.frame import Odometry
 
 
 def plain(value: int) -> Grey:

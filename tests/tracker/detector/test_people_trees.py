@@ -141,4 +141,4 @@ def test_the_pages_say_of_the_shipped_trees_what_their_file_does() -> None:
     for name, kind in (("cascade", "whole"), ("second cascade", "cut")):
         worlds = sum(map(int, re.findall(r"(\d+) [^,;]+ from seed", about[f"{kind} people"])))
         (held,) = re.findall(r"(\d+) of them held back", about[f"{kind} people"])
-        assert re.search(rf"\| {name} \| `--sequences {worlds}[^|]*` \| {held} sequences \|", data)
+        assert re.search(rf"\| {name} \| `--seeds {worlds}[^|]*` \| {held} sequences \|", data)

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.loop.loop import calibrations_of
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.tracker.contour.box_interaction import standing_box
 from peopleboy.tracker.contour.explanation import DETECTOR_KEY, ContourExplanation

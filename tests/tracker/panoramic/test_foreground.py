@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.loop import calibrations_of
+from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.studies.training.foreground import MaskScores, score_masks, segment
 from peopleboy.studies.training.panorama_sequences import render_panoramas
 from peopleboy.tracker.frame import Odometry

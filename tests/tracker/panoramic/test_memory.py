@@ -3,9 +3,9 @@ import math
 import numpy as np
 import pytest
 
+from peopleboy.geometry.camera_calibration import PanoramaCalibration
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.networks.mask_network import BLOCK
-from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.background_memory import (
     AGE,
     DOUBT,

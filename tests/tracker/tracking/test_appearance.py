@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
-from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, PinholeCalibration
+from peopleboy.geometry.camera_calibration import PinholeCalibration
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.tracking.appearance import (
     _BIN_OF,
     FEATURES,

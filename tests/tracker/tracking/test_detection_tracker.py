@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.tracker.detector.detections import Detections
-from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, PinholeCalibration
+from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.tracking.config import AssociationConfig, DetectionTrackerConfig, ExistenceConfig
 from peopleboy.tracker.tracking.detection_tracker import DetectionTracker

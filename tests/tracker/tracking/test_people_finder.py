@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.loop.loop import calibrations_of, closed_loop, make_frame
-from peopleboy.sim.random_streams import stream
+from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.sim.world import World
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.detector.detections import Detections
@@ -80,9 +79,9 @@ def frames() -> list[Frame]:
     """What a robot sees that stands by while two people cross."""
     scenario, frames, before = load_scenario("crossing_2"), [], None
     with World(scenario.world(0)) as world:
-        tracker = make_tracker("contour", stream(0, "tracker"))
+        tracker = make_tracker("contour")
         for tick in closed_loop(world, tracker, scenario.make_behaviour(), 60):
-            frames.append(make_frame(tick.observation, calibrations_of(world.cameras), before))
+            frames.append(Frame.from_observation(tick.observation, before))
             before = tick.observation.odometry
     return frames
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from peopleboy.tracker.frame import PinholeCalibration
+from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.tracker.tracking.config import STATURE_M
 from peopleboy.tracker.tracking.viewpoint import Viewpoint
 

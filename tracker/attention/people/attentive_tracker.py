@@ -9,6 +9,7 @@ from typing import Final, Generic, Protocol
 
 import numpy as np
 
+from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.tracker.attention.people.attentive_config import AttentiveConfig
 from peopleboy.tracker.attention.people.attentive_explanation import (
     Attended,
@@ -17,7 +18,7 @@ from peopleboy.tracker.attention.people.attentive_explanation import (
 )
 from peopleboy.tracker.attention.people.person_views import LOOKED_AT, check_colours, views_of
 from peopleboy.tracker.attention.people.recogniser import Appearance, Recogniser, Seen
-from peopleboy.tracker.frame import COLOUR, Calibration, Frame
+from peopleboy.tracker.frame import COLOUR, Frame, check_frame
 from peopleboy.tracker.track import Status, Track
 
 # A person who is known by its appearance, and a track that a person may wear.
@@ -174,6 +175,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
         Raises:
             BadInput: no camera shows colours, and as the tracker below says.
         """
+        check_frame(frame)
         check_colours(frame)
         self._time_s = frame.time_s
         self._attend(frame)

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.camera_calibration import Calibration
 from peopleboy.tracker.contour.box_interaction import places_on_floor
-from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, PANORAMA, THERMAL, Calibration, Frame
+from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, PANORAMA, THERMAL, Frame
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
 LOOKED_AT: Final = (COLOUR, DEPTH_COLOUR, PANORAMA)

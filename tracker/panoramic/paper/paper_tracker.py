@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.camera_calibration import Calibration, PanoramaCalibration
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.tracker.frame import PANORAMA, Calibration, Frame
-from peopleboy.tracker.panorama_calibration import PanoramaCalibration
+from peopleboy.tracker.frame import PANORAMA, Frame, check_frame
 from peopleboy.tracker.panoramic.panorama_view import choose_view
 from peopleboy.tracker.panoramic.paper.depth_cues import (
     CLEAN,
@@ -150,6 +150,7 @@ class PanoramicPaperTracker:
         Raises:
             BadInput: an image that is none, or of another camera than the networks were trained on.
         """
+        check_frame(frame)
         if frame.odometry is not None:
             self._pose = self._pose.integrate(frame.odometry.motion)
         if PANORAMA in frame.images:

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.panorama_calibration import PanoramaCalibration
+from peopleboy.geometry.camera_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.people.figure_patch import Map
 
 BANDS_M: Final = np.array([0.02, 0.3, 0.65, 1.0, 1.35])

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.panorama_calibration import PanoramaCalibration
+from peopleboy.geometry.camera_calibration import PanoramaCalibration
 
 Floats = NDArray[np.float64]
 Map = NDArray[np.float32]

@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from peopleboy.tracker.panorama_calibration import PanoramaCalibration
+from peopleboy.geometry.camera_calibration import PanoramaCalibration
 from peopleboy.tracker.panoramic.people.band_colours import BandColours, look_at
 from peopleboy.tracker.panoramic.people.figure_patch import (
     KNOWN,

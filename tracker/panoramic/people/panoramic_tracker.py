@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from peopleboy.bad_input import BadInput
+from peopleboy.geometry.camera_calibration import Calibration, PanoramaCalibration
 from peopleboy.geometry.pose2 import Pose2
-from peopleboy.tracker.frame import PANORAMA, Calibration, Frame, Odometry
-from peopleboy.tracker.panorama_calibration import PanoramaCalibration
+from peopleboy.tracker.frame import PANORAMA, Frame, Odometry, check_frame
 from peopleboy.tracker.panoramic.panorama_view import view_of
 from peopleboy.tracker.panoramic.people.band_colours import BandColours
 from peopleboy.tracker.panoramic.people.floor_motion import FloorMotion
@@ -73,6 +73,7 @@ class PanoramicTracker:
         Raises:
             BadInput: an image that is none, or of another camera than the model was trained on.
         """
+        check_frame(frame)
         if frame.odometry is not None:
             self._pose = self._pose.integrate(frame.odometry.motion)
         if PANORAMA in frame.images:

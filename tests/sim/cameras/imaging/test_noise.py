@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.imaging.noise import PIXEL_SHARE, SMOOTH_SHARE, Drift, gaussian
 from peopleboy.sim.cameras.kinds import THERMAL_PRESETS
 from peopleboy.sim.cameras.thermal import make_detector
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.world import World
 from peopleboy.sim.world_config import WorldConfig
 from tests.helpers.worlds.small_worlds import SMALL, config, person, robot

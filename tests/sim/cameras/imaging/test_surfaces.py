@@ -6,6 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.cameras.imaging.camera_view import make_material_table
 from peopleboy.sim.cameras.imaging.surfaces import (
     PixelRun,
@@ -18,7 +19,6 @@ from peopleboy.sim.cameras.imaging.surfaces import (
     turn_of,
 )
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import Finish, Material, PatternKind
 
 PHASE = stream(0, "surface.variation").uniform(0.0, 1.0, (3, 3))

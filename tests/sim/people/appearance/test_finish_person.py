@@ -3,11 +3,11 @@ from functools import cache
 import numpy as np
 import pytest
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.people.appearance.finisher import Finisher
 from peopleboy.sim.people.body.clothes import Clothes
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import Finish, Material
 
 STANDING = (Waypoint(at_m=(0.0, 0.0)),)

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.people.appearance.traits import Traits, draw_traits
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
-from peopleboy.sim.random_streams import stream
 
 
 def people(

@@ -4,9 +4,9 @@ from functools import cache
 
 import pytest
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.people.appearance.traits import usual_clothes
 from peopleboy.sim.people.body.clothes import BOTTOMS, HAIR, SHOES, TOPS, Clothes
-from peopleboy.sim.random_streams import stream
 from peopleboy.sim.shapes.materials import COLOURS
 
 DRAWS = 1000

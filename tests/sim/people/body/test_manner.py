@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.people.appearance.finisher import Finisher
 from peopleboy.sim.people.body.anthropometry import measure
 from peopleboy.sim.people.body.body_shapes import sole_points
@@ -16,7 +17,6 @@ from peopleboy.sim.people.body.skeleton import (
 )
 from peopleboy.sim.people.person import Person
 from peopleboy.sim.people.person_config import PersonConfig, Waypoint
-from peopleboy.sim.random_streams import stream
 from tests.helpers.worlds.individuals import make_individual
 from tests.helpers.worlds.person_shapes import person_depth
 from tests.helpers.worlds.walkers import make_person, settle, walk

@@ -4,13 +4,13 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 
+from peopleboy.random_streams import stream
 from peopleboy.sim.people.body.anthropometry import measure
 from peopleboy.sim.people.body.body_shapes import BAG_PART, build_body
 from peopleboy.sim.people.body.clothes import Clothes
 from peopleboy.sim.people.body.outfit import NOTHING_MORE, Outfit, draw_outfit, put_on
 from peopleboy.sim.people.person import PART_CLASSES, Person
 from peopleboy.sim.people.person_config import Waypoint
-from peopleboy.sim.random_streams import stream
 from tests.helpers.worlds.individuals import make_individual
 from tests.helpers.worlds.person_shapes import person_points
 from tests.helpers.worlds.walkers import settle, walk

@@ -54,7 +54,7 @@ def test_drawn_people_are_learned_and_found_in_other_images(shots: list[ThermalI
 @pytest.mark.slow
 @pytest.mark.usefixtures("quick", "few_patches")
 def test_the_lesson_leaves_films_and_trees_and_says_how_good_they_are(tmp_path: Path) -> None:
-    assert run_cli("train", "cascade", "--sequences", 5, "--out", tmp_path, "--workers", 1) == 0
+    assert run_cli("train", "cascade", "--seeds", 5, "--out", tmp_path, "--workers", 1) == 0
     names = {path.name for path in (tmp_path / "sequences").iterdir()}
     assert names == {f"world_{seed}.npz" for seed in (0, 1, 1000, 1001, 2000, 3000, 3001, 4000, 5000)}
     about = PeopleModel.load(tmp_path / "cascade.npz").about
@@ -70,7 +70,7 @@ def test_the_lesson_leaves_films_and_trees_and_says_how_good_they_are(tmp_path: 
 @pytest.mark.thorough
 @pytest.mark.usefixtures("quick")
 def test_trees_that_are_not_taught_stay_as_they_are(tmp_path: Path) -> None:
-    chosen = ("--sequences", 5, "--windows", "cut", "--workers", 1)
+    chosen = ("--seeds", 5, "--windows", "cut", "--workers", 1)
     assert run_cli("train", "cascade", *chosen, "--out", tmp_path) == 0
     taught, shipped = PeopleModel.load(tmp_path / "cascade.npz"), shipped_people_trees()
     before, after = (model.trees[WindowKind.WHOLE].cascade for model in (shipped, taught))
@@ -83,7 +83,7 @@ def test_trees_that_are_not_taught_stay_as_they_are(tmp_path: Path) -> None:
 @pytest.mark.thorough
 @pytest.mark.usefixtures("quick")
 def test_places_alone_are_taught_for_the_trees_that_are_there(tmp_path: Path) -> None:
-    chosen = ("--sequences", 5, "--windows", "whole", "--only-boxes", "--workers", 1)
+    chosen = ("--seeds", 5, "--windows", "whole", "--only-boxes", "--workers", 1)
     assert run_cli("train", "cascade", *chosen, "--out", tmp_path) == 0
     taught, shipped = PeopleModel.load(tmp_path / "cascade.npz"), shipped_people_trees()
     before, after = (model.trees[WindowKind.WHOLE] for model in (shipped, taught))
@@ -114,14 +114,12 @@ def test_a_tenth_of_the_worlds_is_held_back_and_at_least_one(
 
     monkeypatch.setattr(train_cascade, "render_task", one_image)
     monkeypatch.setattr(train_cascade, "fit_trees", stop)
-    run_cli("train", "cascade", "--sequences", worlds, "--out", tmp_path, "--workers", 1)
+    run_cli("train", "cascade", "--seeds", worlds, "--out", tmp_path, "--workers", 1)
     assert split == [sum(len(kind.seeds(worlds)) for kind in KINDS) - held, held]
 
 
 def test_too_few_worlds_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert_names(
-        refusal(capsys, "train", "cascade", "--sequences", 4, "--out", tmp_path / "out"), "--sequences", "5"
-    )
+    assert_names(refusal(capsys, "train", "cascade", "--seeds", 4, "--out", tmp_path / "out"), "--seeds", "5")
     assert not (tmp_path / "out").exists()
 
 

@@ -193,7 +193,7 @@ def test_training_leaves_a_network_that_says_how_good_it_is(
 ) -> None:
     monkeypatch.setattr(training, "EPOCHS", 1)
     monkeypatch.setattr(crop_samples, "BATCH", 8)
-    assert run_cli("train", model, "--sequences", 10, "--out", tmp_path, "--workers", 1) == 0
+    assert run_cli("train", model, "--seeds", 10, "--out", tmp_path, "--workers", 1) == 0
     about = network.load(tmp_path / f"{model}.npz").about
     assert about["trained on"].startswith("9 sequences, ")
     assert result in about["on 1 others"]
@@ -205,7 +205,7 @@ def test_training_that_cannot_be_evaluated_is_refused_before_it_begins(
 ) -> None:
     none = CropSamples.empty(BoxRefinementNetwork.ARCHITECTURE.crop)
     monkeypatch.setattr(BoxRefinementTraining, "sample", lambda *_, **__: none)
-    chosen = ("--sequences", 10, "--out", tmp_path, "--workers", 1)
+    chosen = ("--seeds", 10, "--out", tmp_path, "--workers", 1)
     assert run_cli("train", "box-refinement", *chosen) == 2
     assert "no people are visible in the validation sequences" in capsys.readouterr().err
     assert not (tmp_path / "box-refinement.npz").exists()

@@ -172,7 +172,7 @@ def test_a_missing_file_and_a_tracker_without_one_name_the_command_that_makes_on
         DistanceModel.load(tmp_path / "none.npz")
     monkeypatch.setattr(distance_network, "shipped_models", lambda: shipped_models(tmp_path / "none"))
     with refused("panoramic-paper", "none", "peopleboy train distance --ship"):
-        make_tracker("panoramic-paper", np.random.default_rng(0))
+        make_tracker("panoramic-paper")
 
 
 def test_images_of_another_size_are_refused(model):

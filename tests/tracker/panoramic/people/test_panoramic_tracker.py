@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from peopleboy.tracker.frame import Frame, Odometry, PinholeCalibration
+from peopleboy.geometry.camera_calibration import PinholeCalibration
+from peopleboy.tracker.frame import Frame, Odometry
 from peopleboy.tracker.panoramic.people.panorama_patches import person_box
 from peopleboy.tracker.panoramic.people.panoramic_config import PeopleConfig
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker

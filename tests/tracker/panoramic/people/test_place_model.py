@@ -125,4 +125,4 @@ def test_what_comes_with_the_tracker_holds_for_the_usual_mirror():
     assert model.view.refusal(replace(VIEW, centre_m=1.5))
     assert [getattr(model, name).layers[-1][1].size for name in OUTPUTS] == [1, 2, 2]
     for name in ("panoramic", "handover"):
-        make_tracker(name, np.random.default_rng(0)).check_cameras({"panorama": CAMERA})
+        make_tracker(name).check_cameras({"panorama": CAMERA})

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.loop.loop import calibration_of
+from peopleboy.geometry.camera_calibration import PanoramaCalibration
 from peopleboy.sim.geometry.panorama import MIRRORS, Panorama
 from peopleboy.sim.geometry.pinhole import invert_pose, transform
-from peopleboy.tracker.panorama_calibration import PanoramaCalibration
 
 CAMERAS = pytest.mark.parametrize(
     "camera", [Panorama(mirror=mirror) for mirror in MIRRORS.values()], ids=MIRRORS
@@ -17,7 +16,7 @@ CAMERAS = pytest.mark.parametrize(
 
 
 def calibration(camera: Panorama) -> PanoramaCalibration:
-    found = calibration_of(camera)
+    found = camera.calibration
     assert isinstance(found, PanoramaCalibration)
     return found
 

@@ -1,0 +1,51 @@
+"""The simulated world of a scenario, by the scenario's name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.sim.world import World as SimulatedWorld
+from peopleboy.sim.world_config import WorldConfig
+
+
+class World(SimulatedWorld):
+    """A simulated world; use it as a context manager.
+
+    `observe` returns what the robot senses now, `truth` the ground truth of the same instant; `step` drives
+    the robot for one control step, 1/15 s.
+
+        with World("crossing_2", seed=3) as world:
+            tracker = make_tracker("detection")
+            for _ in range(45):
+                tracks = tracker.update(Frame.from_observation(world.observe()))
+                world.step(0.2, 0.0)
+
+    Args:
+        scenario: a name from the library, the path of a YAML file, a loaded scenario, or settings of a world.
+        seed: of everything random; None for that of the scenario, which is 0 unless a run has written it.
+        cameras: further cameras that the robot is to carry, such as `tracker.cameras`; mounted with defaults.
+        renderer: "raycast", or "bullet", a slow reference.
+
+    Raises:
+        BadInput: there is no such scenario, or an argument cannot be used.
+    """
+
+    def __init__(
+        self,
+        scenario: str | Path | Scenario | WorldConfig,
+        seed: int | None = None,
+        *,
+        cameras: Sequence[str] = (),
+        renderer: str = "raycast",
+    ) -> None:
+        if isinstance(scenario, WorldConfig):
+            if seed is not None or cameras:
+                raise BadInput("the settings of a world hold its seed and cameras; leave both out")
+            super().__init__(scenario)
+            return
+        loaded = load_scenario(scenario).mounting(cameras)
+        super().__init__(loaded.world(loaded.seed if seed is None else seed, renderer))
