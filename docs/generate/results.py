@@ -21,5 +21,5 @@ def _cell(value: float | None, column: ResultColumn) -> str:
 
 
 def _about(one: ResultTable) -> str:
-    measured = f"Measured by `{one.command}`, {one.seeds}; put down on {one.recorded}."
+    measured = f"Measured on {one.recorded} by `{one.command}`, {one.seeds}."
     return f"> {measured} {one.chosen_on}".rstrip()
