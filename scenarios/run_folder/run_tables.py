@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict
+from importlib.metadata import version
 from operator import attrgetter
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -96,9 +97,49 @@ def box(prefix: str, attribute: str) -> TableColumns:
     return numbers((f"{prefix}{edge}" for edge in _EDGES), attrgetter(attribute), may_be_empty=True)
 
 
-def schema_of(columns: TableColumns) -> pa.Schema:
+_UNITS: Final = {
+    "_m_s": "m/s",
+    "_rad_s": "rad/s",
+    "_px2": "px2",
+    "_m2": "m2",
+    "_px": "px",
+    "_rad": "rad",
+    "_m": "m",
+    "_s": "s",
+    "_c": "degC",
+}
+"""Units by how the name of a column ends, the longer endings first."""
+
+FRAMES: Final = {
+    "world": "right-handed, z up; origin and axes of the scenario's plan",
+    "robot": "x forward, y left, z up; origin on the floor below the robot's axis",
+    "image": "u right, v down; the middle of the upper left pixel is (0, 0)",
+}
+"""Reference frames that columns refer to."""
+
+_IN_WORLD: Final = ("x_m", "y_m", "z_m", "heading_rad", "velocity_", "joints_m", "odometry_")
+
+
+def _about(name: str) -> dict[str, str]:
+    """Return unit and reference frame of a column, by its name."""
+    unit = next((unit for end, unit in _UNITS.items() if name.endswith(end)), "")
+    frame = "image" if unit in ("px", "px2") else "robot" if name.startswith("place_") else ""
+    if name.startswith(_IN_WORLD):
+        frame = frame or "world"
+    return {key: value for key, value in (("unit", unit), ("frame", frame)) if value}
+
+
+def with_metadata(schema: pa.Schema, table: str) -> pa.Schema:
+    """Return a schema whose metadata say unit and frame of each column, and what wrote the table."""
+    fields = [field.with_metadata(_about(field.name) or None) for field in schema]
+    frames = {f"peopleboy.frame.{name}": text for name, text in FRAMES.items()}
+    return pa.schema(fields, {"peopleboy.table": table, "peopleboy.version": version("peopleboy"), **frames})
+
+
+def schema_of(table: str, columns: TableColumns) -> pa.Schema:
     """Return the schema of a table with these columns behind frame and time."""
-    return pa.schema([*_INSTANT, *(pa.field(name, column.type) for name, column in columns.items())])
+    fields = (pa.field(name, column.type) for name, column in columns.items())
+    return with_metadata(pa.schema([*_INSTANT, *fields]), table)
 
 
 def row_of(columns: TableColumns, frame: int, time_s: float, one: object) -> Row:
@@ -186,7 +227,8 @@ _ROBOT: Final[TableColumns] = {
     "contacts": TableColumn(pa.list_(STRING), lambda tick: list(tick.truth.contacts)),
 }
 
-TRUTH, TRACKS, ROBOT, THINGS = map(schema_of, (_PERSON, _TRACK, _ROBOT, _THING))
+TRUTH, TRACKS = schema_of("truth", _PERSON), schema_of("tracks", _TRACK)
+ROBOT, THINGS = schema_of("robot", _ROBOT), schema_of("things", _THING)
 
 MAY_BE_EMPTY = frozenset(
     name for columns in (_PERSON, _TRACK) for name, column in columns.items() if column.may_be_empty

@@ -30,7 +30,7 @@ from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.run_folder.atomic_output import atomic, writing_to
 from peopleboy.scenarios.run_folder.folder import gt_lines, versions
 from peopleboy.scenarios.run_folder.run_files import true_boxes
-from peopleboy.scenarios.run_folder.run_tables import TRUTH, truth_rows
+from peopleboy.scenarios.run_folder.run_tables import TRUTH, truth_rows, with_metadata
 from peopleboy.sim.cameras.kinds import flat_geometry
 from peopleboy.sim.observation import Observation
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
@@ -41,12 +41,15 @@ from peopleboy.tracker.track import Track
 MOTION = ("advance_m", "aside_m", "turn_rad")
 SEEN = ("thermal", "colour")  # cameras whose images trackers are given
 _GROUP = 16  # frames that are read or written at once
-_FRAMES = pa.schema(
-    [
-        pa.field("time_s", pa.float64()),
-        *(pa.field(name, pa.float64()) for name in MOTION),
-        *(pa.field(camera, pa.binary()) for camera in SEEN),
-    ]
+_FRAMES = with_metadata(
+    pa.schema(
+        [
+            pa.field("time_s", pa.float64()),
+            *(pa.field(name, pa.float64()) for name in MOTION),
+            *(pa.field(camera, pa.binary()) for camera in SEEN),
+        ]
+    ),
+    "frames",
 )
 
 
