@@ -24,7 +24,7 @@ from peopleboy.scenarios.commands.inspect_commands import (
     view,
 )
 from peopleboy.scenarios.commands.run_commands import compare, run, sweep
-from peopleboy.scenarios.commands.study_commands import datasets, reproduce, train, tune
+from peopleboy.scenarios.commands.study_commands import datasets, export_onnx, reproduce, train, tune
 from peopleboy.scenarios.running.engine.task import TasksFailed
 
 FAILED = 1
@@ -34,7 +34,7 @@ SECTIONS: Final[Mapping[str, tuple[click.Command, ...]]] = {
     "Core": (list_command, show, run, sweep, view, report),
     "Score": (evaluate, compare, import_tracks),
     "Data": (track, render, export, scene_model, schema),
-    "Research": (datasets, reproduce, tune, train, sim_to_real),
+    "Research": (datasets, reproduce, tune, train, export_onnx, sim_to_real),
 }
 """The commands, by the headings of the help."""
 

@@ -1,4 +1,4 @@
-"""Commands for research: `datasets`, `reproduce`, `tune`, `train`."""
+"""Commands for research: `datasets`, `reproduce`, `tune`, `train`, `export-onnx`."""
 
 from __future__ import annotations
 
@@ -188,3 +188,21 @@ def _command(model: str, target: str, help_text: str, specification: type[Any]) 
 
     about = f"{help_text}\n\n{inspect.cleandoc(specification.__doc__ or '')}"
     return click.command(model, cls=FieldsCommand, help=about, short_help=help_text)(train_model)
+
+
+@click.command("export-onnx", cls=FieldsCommand)
+@click.argument("networks", metavar="[NETWORK...]", nargs=-1)
+@click.option(
+    "--out", type=PATH, default=Path("onnx"), show_default=True, help="Folder of the models and their card."
+)
+@output_options
+def export_onnx(networks: tuple[str, ...], out: Path, output: Output) -> None:
+    """Export the trackers' networks to ONNX, with a model card.
+
+    NETWORK is rescoring, box-refinement, places or foreground; without a name, all of them. Needs
+    pip install 'peopleboy[onnx]'.
+    """
+    from peopleboy.studies.training.export_onnx import export_onnx as write
+
+    paths = [str(path) for path in write(networks, out)]
+    output.lines({"files": paths}, *paths)
