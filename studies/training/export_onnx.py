@@ -237,7 +237,7 @@ def export_onnx(names: tuple[str, ...], out: Path) -> list[Path]:
 def _card(exports: Mapping[str, OnnxExport]) -> Iterator[str]:
     yield from ("---", "license: mit", "library_name: onnx", "tags: [people-tracking, thermal]", "---")
     yield f"# Networks of PeopleBoy {version('peopleboy')}\n"
-    yield "Trained on rendered images only. They are parts of PeopleBoy's trackers: prepare inputs as it does."
+    yield "Trained on rendered images only. Parts of PeopleBoy's trackers: prepare inputs as they do."
     yield "Outputs agree with those of PeopleBoy to about 1e-4.\n"
     for name, export in exports.items():
         yield f"## {name}.onnx\n\n{export.summary}\n"
