@@ -54,7 +54,7 @@ def is_recorded(is_wanted: bool) -> bool:
 
 @cache
 def _note_once(notice: str) -> None:
-    logging.getLogger(__name__).warning("peopleboy: %s", notice)
+    logging.getLogger(__name__).warning(notice)
 
 
 def recording_in(folder: Path) -> Path:

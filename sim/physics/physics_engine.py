@@ -231,7 +231,7 @@ def default_physics() -> PhysicsName:
     """Return PyBullet, or kinematic physics where PyBullet is not installed; log a notice then, once."""
     if importlib.util.find_spec("pybullet") is not None:
         return "bullet"
-    logging.getLogger(__name__).warning("peopleboy: PyBullet is not installed; physics is kinematic")
+    logging.getLogger(__name__).warning("PyBullet is not installed; physics is kinematic")
     return "kinematic"
 
 

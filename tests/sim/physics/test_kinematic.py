@@ -174,7 +174,7 @@ def test_a_world_with_people_needs_no_pybullet() -> None:
     first, second = done.stdout.splitlines()
     assert first.endswith("(16,)")
     assert "kinematic" in second
-    assert done.stderr.splitlines() == ["peopleboy: PyBullet is not installed; physics is kinematic"]
+    assert done.stderr.splitlines() == ["PyBullet is not installed; physics is kinematic"]
 
 
 def test_physics_that_there_is_not_or_that_cannot_draw_is_refused() -> None:
