@@ -13,11 +13,16 @@ from peopleboy.tracker.evaluation.table import FIGURES
 def metrics(group: str) -> str:
     """List the figures of one group: thesis, paper, mot, floor or counts."""
     rows = [
-        (f"**{figure.name}**", figure.unit or ("-" if figure.group == "floor" else "count"), figure.meaning)
+        (
+            f"**{figure.name}**",
+            f"`{figure.key}`",
+            figure.unit or ("-" if figure.group == "floor" else "count"),
+            figure.meaning,
+        )
         for figure in FIGURES
         if figure.group == group
     ]
-    return table(("figure", "unit", "meaning"), rows)
+    return table(("metric", "key in JSON", "unit", "meaning"), rows)
 
 
 def comfort() -> str:

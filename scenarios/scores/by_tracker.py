@@ -161,6 +161,9 @@ def differences(groups: Groups) -> list[Difference]:
     return [_difference(tracker, runs, first, of_first) for tracker, runs in others]
 
 
+_KEYS: Final = {figure.name: figure.key for figure in FIGURES}
+
+
 def figures_of_all(groups: Groups) -> dict[str, Any]:
     """Return all figures as JSON can hold them: of each run, of each tracker, and how trackers differ."""
     return {
@@ -170,8 +173,9 @@ def figures_of_all(groups: Groups) -> dict[str, Any]:
                 "tracker": one.tracker,
                 "from": one.other,
                 "pairs": one.pairs,
-                "figures": {
-                    name: None if math.isnan(i.mean) else i.to_json() for name, i in one.figures.items()
+                "metrics": {
+                    _KEYS[name]: None if math.isnan(i.mean) else i.to_json()
+                    for name, i in one.figures.items()
                 },
             }
             for one in differences(groups)
@@ -181,7 +185,7 @@ def figures_of_all(groups: Groups) -> dict[str, Any]:
 
 def _together(runs: Sequence[ScoredRun]) -> dict[str, Any]:
     scores = [run.scores for run in runs]
-    over = {row.figure.name: row for row in spread(scores)}
+    over = {row.figure.key: row for row in spread(scores)}
     return {
         "all_frames": to_json(combine(scores)),
         "mean_of_runs": {name: None if math.isnan(row.mean) else row.mean for name, row in over.items()},
@@ -194,7 +198,7 @@ def _alone(run: ScoredRun) -> dict[str, Any]:
     scene, seed = (None, None) if run.scene is None else run.scene
     by = {} if run.by is None else {"scored_by": run.by.to_json()}
     about = {"run": run.name, "scene": scene, "seed": seed, "notes": list(run.notes)}
-    return about | {"figures": by | to_json(run.scores)}
+    return about | {"metrics": by | to_json(run.scores)}
 
 
 def _difference(

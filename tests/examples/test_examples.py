@@ -95,5 +95,5 @@ def test_trackers_of_others_find_somebody_who_walks_across(name: str, tmp_path: 
     scene = WALKING | {"people": [{"name": "anna", "path": walk}]}
     run = make_run(scene, tmp_path / "run", "--tracker", f"examples.peers:{name}")
     metrics = json.loads((run / "metrics.json").read_text(encoding="utf-8"))
-    assert metrics["thesis"]["CR"] > 30.0
-    assert metrics["thesis"]["CP"] > 40.0
+    assert metrics["thesis"]["CR_percent"] > 30.0
+    assert metrics["thesis"]["CP_percent"] > 40.0

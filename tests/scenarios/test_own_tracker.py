@@ -75,9 +75,14 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_it_is_scored_on_the_floor_in_metres(run: Path) -> None:
     metrics = json.loads((run / "metrics.json").read_text(encoding="utf-8"))
     assert json.loads((run / "run.json").read_text(encoding="utf-8"))["tracker"] == "reckoner"
-    assert metrics["thesis"]["CR"] == metrics["thesis"]["CP"] == metrics["mot"]["IDF1"] == 100.0
-    assert metrics["floor"]["95 % error"] < 0.05
-    assert metrics["floor"]["in ellipse"] > 95.0
+    assert (
+        metrics["thesis"]["CR_percent"]
+        == metrics["thesis"]["CP_percent"]
+        == metrics["mot"]["IDF1_percent"]
+        == 100.0
+    )
+    assert metrics["floor"]["p95_error_m"] < 0.05
+    assert metrics["floor"]["in_ellipse_percent"] > 95.0
     assert (run / "tracks.txt").read_text(encoding="utf-8") == ""
 
 

@@ -33,6 +33,12 @@ class Figure:
         """Family of the figure: counts, thesis, paper, mot or floor."""
         return self.where.partition(".")[0]
 
+    @property
+    def key(self) -> str:
+        """Name in JSON files: without spaces, and with the unit at its end."""
+        unit = {"%": "_percent", "m": "_m"}.get(self.unit, "")
+        return self.name.replace("95 %", "p95").replace(" ", "_") + unit
+
     def is_defined_for(self, scores: Scores) -> bool:
         """Return whether truth and tracks of these scores have what the figure needs."""
         if self.group == FLOOR:
@@ -143,13 +149,13 @@ def spread(sequences: Sequence[Scores]) -> list[SpreadRow]:
 
 
 def to_json(scores: Scores) -> dict[str, dict[str, float | int | None]]:
-    """Return the figures by group and name, as JSON can hold them: None for undefined."""
+    """Return the figures by group and key, as JSON can hold them: None for undefined."""
     groups: dict[str, dict[str, float | int | None]] = {}
     for row in rows(scores):
         if row.figure.group == FLOOR and not row.figure.is_defined_for(scores):
             continue
         value = None if math.isnan(row.value) else row.value
-        groups.setdefault(row.figure.group, {})[row.figure.name] = value
+        groups.setdefault(row.figure.group, {})[row.figure.key] = value
     return groups
 
 

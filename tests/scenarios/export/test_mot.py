@@ -120,7 +120,7 @@ def test_the_truth_has_boxes_round_whole_people_if_asked_and_folders_may_share_a
         mot = figures["all_frames"]["mot"]
         found = score(data, tracker)
         assert [100.0 * found[key] for key in ("MOTA", "IDF1", "HOTA")] == pytest.approx(
-            [mot[key] for key in ("MOTA", "IDF1", "HOTA")], abs=1e-6
+            [mot[f"{key}_percent"] for key in ("MOTA", "IDF1", "HOTA")], abs=1e-6
         )
 
 

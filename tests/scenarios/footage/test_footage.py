@@ -262,8 +262,13 @@ def test_of_one_annotated_person_only_what_it_can_tell_is_scored_at_once_and_lat
     assert unknown.startswith("CP, CA, AP, AA,")
     assert (out / "truth" / "groundtruth.txt").read_bytes() == (clip / "groundtruth_rect.txt").read_bytes()
     stored = json.loads((out / "metrics.json").read_text())
-    assert stored["thesis"]["CP"] is stored["mot"]["MOTA"] is stored["counts"]["false_tracks"] is None
-    assert stored["mot"]["IDR"] > 90
+    assert (
+        stored["thesis"]["CP_percent"]
+        is stored["mot"]["MOTA_percent"]
+        is stored["counts"]["false_tracks"]
+        is None
+    )
+    assert stored["mot"]["IDR_percent"] > 90
 
 
 def test_footage_without_truth_is_not_scored(tmp_path):

@@ -273,4 +273,4 @@ def test_boxes_of_others_are_scored_in_the_colour_picture(run: Path, tmp_path: P
     arguments = ("--depth", run / "depth", "--depth-scale", 0.001, "--truth", truth)
     done = call(run / "depth_colour", *arguments, "--out", tmp_path / "out")
     assert done.exit_code == 0, done.output
-    assert json.loads((tmp_path / "out" / "metrics.json").read_text())["mot"]["IDF1"] > 80
+    assert json.loads((tmp_path / "out" / "metrics.json").read_text())["mot"]["IDF1_percent"] > 80

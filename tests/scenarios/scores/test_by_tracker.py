@@ -114,14 +114,14 @@ def test_figures_as_json_are_those_of_metrics_json(folder: Path, capsys: pytest.
         metrics = json.loads((folder / name / "metrics.json").read_text(encoding="utf-8"))
         (run,) = told["trackers"][tracker]["runs"]
         assert (run["run"], run["scene"], run["seed"]) == (str(folder / name), "tiny", 1)
-        assert run["figures"]["thesis"] == metrics["thesis"]
+        assert run["metrics"]["thesis"] == metrics["thesis"]
         assert told["trackers"][tracker]["all_frames"]["mot"] == metrics["mot"]
     (apart,) = told["differences"]
     assert (apart["tracker"], apart["from"], apart["pairs"]) == ("truth", "detection", 1)
     theirs, ours = (
-        told["trackers"][tracker]["all_frames"]["thesis"]["CR"] for tracker in ("truth", "detection")
+        told["trackers"][tracker]["all_frames"]["thesis"]["CR_percent"] for tracker in ("truth", "detection")
     )
-    mean, low, high = apart["figures"]["CR"]
+    mean, low, high = apart["metrics"]["CR_percent"]
     assert (mean, low, high) == (pytest.approx(theirs - ours), None, None)
     files = ("--truth", folder / "two" / "truth" / "gt.txt", "--tracks", folder / "two" / "tracks.txt")
     (alone,) = document(capsys, "evaluate", *files)["trackers"].values()
@@ -134,11 +134,11 @@ def test_run_sweep_and_compare_print_one_document_or_nothing(
 ) -> None:
     scene = folder / "tiny.yaml"
     told = document(capsys, "run", scene, "--tracker", "truth", "--out", tmp_path / "run", "--no-recording")
-    assert told["figures"] == json.loads((tmp_path / "run" / "metrics.json").read_text(encoding="utf-8"))
+    assert told["metrics"] == json.loads((tmp_path / "run" / "metrics.json").read_text(encoding="utf-8"))
     assert (told["scenario"], told["seed"], told["tracker"]) == ("tiny", 0, "truth")
     many = ("--seeds", "1", "--workers", "1", "--out", tmp_path / "many")
     swept = document(capsys, "sweep", scene, "--tracker", "truth", *many)
-    assert swept["trackers"]["truth"]["all_frames"]["thesis"] == told["figures"]["thesis"]
+    assert swept["trackers"]["truth"]["all_frames"]["thesis"] == told["metrics"]["thesis"]
     compare = ("compare", "--controllers", "follow_person@truth", scene, *many)
     (compared,) = document(capsys, *compare)["comparisons"]
     assert compared["scenario"] == "tiny"

@@ -79,12 +79,12 @@ def test_perfect_boxes_of_whole_people_are_perfect_and_scored_so_again(
     metrics = said(out)
     assert metrics["scored_by"] == {"camera": "thermal", "boxes": "whole"}
     assert said(out, "run.json")["boxes"] == "whole"
-    assert metrics["mot"]["HOTA"] > 99.9
+    assert metrics["mot"]["HOTA_percent"] > 99.9
     assert (out / "truth/gt.txt").read_bytes() == (seen / "truth/gt.txt").read_bytes()
     again = figures(capsys, out)
-    assert (again["figures"]["mot"], again["notes"]) == (metrics["mot"], [])
+    assert (again["metrics"]["mot"], again["notes"]) == (metrics["mot"], [])
     as_torsos = figures(capsys, out, "--boxes", "torso")
-    assert as_torsos["figures"]["mot"]["HOTA"] < 90.0
+    assert as_torsos["metrics"]["mot"]["HOTA_percent"] < 90.0
     (note,) = as_torsos["notes"]
     assert_names(note, "as wide as high", "--boxes whole")
     assert run_cli("evaluate", seen, out) == 0
@@ -149,7 +149,7 @@ def test_a_slow_camera_has_its_images_counted_as_in_an_export(
     assert run_cli("import-tracks", seen, theirs, *options) == 0
     kept = (home / "slow" / "tracks" / "low.txt").read_text(encoding="utf-8").splitlines()
     assert [line.split(",")[:6] for line in kept] == [line.split(",")[:6] for line in by_frame]
-    assert said(home / "slow")["mot"]["HOTA"] == 100.0
+    assert said(home / "slow")["mot"]["HOTA_percent"] == 100.0
     theirs.write_text("".join(f"{line}\n" for line in by_frame), encoding="utf-8")
     assert_names(
         refusal(capsys, "import-tracks", seen, theirs, *options, "--overwrite"), "image 5", "'low'", "got 13"
@@ -193,7 +193,7 @@ def test_who_gives_boxes_in_another_image_alone_is_scored_there_and_told_so(
     assert_names(told.err, "peopleboy: note: all boxes are in images of colour, and scored there")
     assert said(run)["scored_by"] == {"camera": "colour", "boxes": "torso"}
     again = figures(capsys, run)
-    assert again["figures"]["mot"] == said(run)["mot"]
+    assert again["metrics"]["mot"] == said(run)["mot"]
     (note,) = figures(capsys, run, "--camera", "thermal")["notes"]
     assert_names(note, "images of colour", "--camera colour")
     assert told_in_report(run) == told_in_report(seen)

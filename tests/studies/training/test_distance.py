@@ -99,7 +99,7 @@ def test_a_run_is_tracked_with_the_network_near_the_truth(
     seen = [row["frame"] for row in tracks]
     assert seen == list(range(seen[0], 136))  # once seen, never lost
     assert seen[0] == 7  # the first frame at 0.4 s
-    assert json.loads((out / "metrics.json").read_text(encoding="utf-8"))["floor"]["mean error"] < 0.15
+    assert json.loads((out / "metrics.json").read_text(encoding="utf-8"))["floor"]["mean_error_m"] < 0.15
 
 
 @pytest.mark.parametrize("mirror", MIRRORS)
