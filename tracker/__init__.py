@@ -1,1 +1,1 @@
-"""People in images, and how well they are found."""
+"""Trackers of people in images, and their evaluation."""

@@ -16,10 +16,10 @@ Box = tuple[float, float, float, float]
 
 
 class ImageShares(NamedTuple):
-    """Where a box is, in shares of the image.
+    """Where a box is, relative to the image.
 
-    x is that of its middle in half image widths, 0 in the middle of the image, 1 at the right border; the
-    others are in image heights, counted from the top.
+    x is the box's middle in half image widths, 0 in the middle of the image and 1 at the right border; the
+    others are in image heights from the top.
     """
 
     x: float
@@ -35,7 +35,7 @@ def corners(box: Box) -> Box:
 
 
 def image_shares(box: Box, width_px: int, height_px: int) -> ImageShares:
-    """Express a box in shares of an image of that size."""
+    """Return a box relative to an image of that size."""
     left, top, width, height = box
     return ImageShares(
         x=(left + width / 2.0 - (width_px - 1) / 2.0) / (width_px / 2.0),
@@ -52,10 +52,10 @@ def outline(image: NDArray[Any]) -> Floats:
 
 
 def within_image(box: Floats, width_px: int, height_px: int) -> Floats:
-    """Cut boxes (..., 4) off at the borders of an image; those outside have no area.
+    """Clip boxes (..., 4) to the borders of an image; boxes outside get no area.
 
     Args:
-        box: counted from the image's corner, so that the image spans 0 to its width and height.
+        box: in coordinates of the image's corner, so that the image spans 0 to its width and height.
         width_px: of the image.
         height_px: of the image.
     """
@@ -74,10 +74,10 @@ def intersection(a: Floats, b: Floats, around_px: float = math.inf) -> Floats:
     """Return the areas (...) [px^2] that boxes a (..., 4) and b (..., 4) share; leading axes broadcast.
 
     Args:
-        a: some boxes.
-        b: others, of the same image.
-        around_px: how many columns go all round, if the image's right border is joined to its left one; a
-            box may then go on over either, and is the same if it is moved by so much.
+        a: boxes.
+        b: other boxes of the same image.
+        around_px: columns of a full turn, if the image's right border joins its left one; boxes may then
+            cross the border, and are equal modulo this width.
     """
     if math.isinf(around_px):
         return _flat_intersection(a, b)
@@ -97,7 +97,7 @@ def _flat_intersection(a: Floats, b: Floats) -> Floats:
 def iou(a: Floats, b: Floats, around_px: float = math.inf) -> Floats:
     """Return intersection over union (...) of boxes a (..., 4) and b (..., 4); leading axes broadcast.
 
-    Symmetric, in 0..1; 1 for a box with itself, 0 where either box has no area. Arguments as of
+    Symmetric, in 0..1; 1 for a box with itself, 0 where either box has no area. Arguments as in
     `intersection`.
     """
     shared = intersection(a, b, around_px)
@@ -105,11 +105,11 @@ def iou(a: Floats, b: Floats, around_px: float = math.inf) -> Floats:
 
 
 def cover(shared: Floats, whole: Floats) -> Floats:
-    """Return the shares (...) shared / whole, at most 1, and 0 where there is no whole to cover."""
+    """Return the ratios (...) shared / whole, at most 1, and 0 where the whole is 0."""
     ratio = np.divide(shared, whole, out=np.zeros_like(shared), where=whole > 0.0)
     return np.minimum(ratio, 1.0)
 
 
 def shared_of_smaller(a: Floats, b: Floats) -> Floats:
-    """Give the share (...) of the smaller one's area that boxes a (..., 4) and b (..., 4) have in common."""
+    """Return the share (...) of the smaller area that boxes a (..., 4) and b (..., 4) have in common."""
     return cover(intersection(a, b), np.minimum(area(a), area(b)))

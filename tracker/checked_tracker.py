@@ -1,4 +1,4 @@
-"""A tracker whose every answer is looked at, so that a mistake is reported where it is made."""
+"""A wrapper that validates a tracker's output, so that mistakes are reported where they are made."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again
 
 
 class CheckedTracker:
-    """Gives what a tracker gives, if that is what a tracker may give.
+    """Returns a tracker's output after validating it.
 
     Args:
-        tracker: whose answers they are.
-        who: names it in messages, such as "tracker 'my_module:MyTracker'".
-        cameras: names of those that there are.
+        tracker: the wrapped tracker.
+        who: name for messages, such as "tracker 'my_module:MyTracker'".
+        cameras: names of the available cameras.
     """
 
     def __init__(self, tracker: Tracker, who: str, cameras: Collection[str]) -> None:
@@ -33,17 +33,17 @@ class CheckedTracker:
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """Those of the tracker."""
+        """The cameras of the tracker."""
         return self._tracker.cameras
 
     @property
     def knows_again(self) -> bool:
-        """Whether the tracker does."""
+        """Whether the tracker re-identifies people."""
         return knows_again(self._tracker)
 
     @property
     def explanation(self) -> object:
-        """That of the tracker.
+        """The tracker's explanation.
 
         Raises:
             OwnCodeFailed: the tracker raised an error.
@@ -52,10 +52,10 @@ class CheckedTracker:
             return explanation_of(self._tracker)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Let it take in the next frame, and check what it returns.
+        """Process the next frame and validate the output.
 
         Raises:
-            BadInput: that is no tuple of possible tracks.
+            BadInput: the output is not a tuple of valid tracks.
             OwnCodeFailed: it raised an error.
         """
         with blamed(self._who):
@@ -66,14 +66,14 @@ class CheckedTracker:
 
 
 def _faults(tracks: object, cameras: Collection[str]) -> Iterator[str]:
-    """Return what is wrong with what `update` gave, and what would be right."""
+    """Yield what is wrong with the output of `update`, and what would be right."""
     if not isinstance(tracks, tuple):
-        yield f"update(frame) must give a tuple of Track, got {type(tracks).__name__}"
+        yield f"update(frame) must return a tuple of Track, got {type(tracks).__name__}"
         return
     seen: set[int] = set()
     for track in tracks:
         if not isinstance(track, Track):
-            yield f"update(frame) must give a tuple of Track, got a {type(track).__name__} in it"
+            yield f"update(frame) must return a tuple of Track, got a {type(track).__name__} in it"
             return
         if not _is_id(track.id):
             yield f"id must be a whole number from 1 to {LARGEST}, got {track.id!r}"
@@ -128,22 +128,22 @@ def _other_faults(track: Track) -> Iterator[str]:
 
 
 def _one_of(kind: type[Status], value: object) -> str:
-    """Name those that there are, unless the value is one."""
+    """Return the valid names, unless the value is one of them."""
     return "" if isinstance(value, kind) else " or ".join(f"{kind.__name__}.{one.name}" for one in kind)
 
 
 def _is_id(value: object) -> bool:
-    """Tell whether it is a number that files and figures keep as it is; True is none, though it equals 1."""
+    """Return whether it is an integer that files keep exactly; True is not, though it equals 1."""
     return isinstance(value, int | np.integer) and type(value) is not bool and 1 <= int(value) <= LARGEST
 
 
 def _is_covariance(xx: float, xy: float, yy: float) -> bool:
-    """Return whether it is that of any error, rounding aside."""
+    """Return whether it is a possible error covariance, up to rounding."""
     return xx >= 0.0 and yy >= 0.0 and xy * xy <= xx * yy * (1.0 + 1e-6) + 1e-12
 
 
 def _are_numbers(values: Any, count: int) -> bool:
-    """Return whether it is a tuple of so many finite numbers."""
+    """Return whether it is a tuple of this many finite numbers."""
     if not isinstance(values, tuple) or len(values) != count:
         return False
     return all(isinstance(one, Real) and math.isfinite(one) for one in values)

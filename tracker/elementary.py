@@ -1,8 +1,8 @@
-"""Logarithm and exponential, the same on every processor, worked out for many at once.
+"""Vectorised logarithm and exponential with the same bits on every processor.
 
-Those of numpy and of the C library take other roads on other processors, and their last bits differ. These
-are sums and products of float32 in an order that is written down; no product is joined with a sum. numba has
-to say so (`fastmath=False`), or a kernel inherits such liberties from the one that first calls it.
+The last bits of NumPy's and the C library's versions differ between processors. These are sums and products
+of float32 in a fixed order, and products are never fused with sums. numba needs `fastmath=False` for that, or
+a kernel inherits such liberties from its first caller.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ from numba import njit
 from numpy.typing import NDArray
 
 _LN2: Final = np.float32(0.6931471805599453)
-# The same in two parts: products of the first with whole numbers below 2^9 are exact.
+# ln 2 in two parts: products of the first with integers below 2^9 are exact.
 _LN2_HIGH: Final = np.float32(0.693359375)
 _LN2_LOW: Final = np.float32(-2.12194440e-4)
 _TWOS: Final = np.float32(1.4426950408889634)  # 1 / ln 2
 _SQRT2: Final = np.float32(1.4142135623730951)
 _FRACTION, _OF_ONE, _FRACTION_BITS, _BIAS = 0x7FFFFF, 0x3F800000, 23, 127  # of a float32, by IEEE 754
-_MOST: Final = np.float32(87.0)  # whose exponential a float32 holds
+_MOST: Final = np.float32(87.0)  # largest argument whose exponential fits a float32
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=False)
 def logarithm(x: np.float32) -> np.float32:
-    """Return the natural logarithm of a positive number, not subnormal, to 3e-7 of it and 1e-7.
+    """Return the natural logarithm of a positive normal number, to 3e-7 relative and 1e-7 absolute.
 
-    Of x = 2**e m, with m about 1, that of m is twice the inverse hyperbolic tangent of (m - 1) / (m + 1).
+    For x = 2**e m, with m near 1, the logarithm of m is 2 artanh((m - 1) / (m + 1)).
     """
     bits = np.float32(x).view(np.int32)
     m = np.int32((bits & _FRACTION) | _OF_ONE).view(np.float32)
@@ -45,7 +45,7 @@ def logarithm(x: np.float32) -> np.float32:
 def exponential(x: np.float32) -> np.float32:
     """Return e**x to a relative 1.5e-7, for x from -87 to 87; beyond, that of the nearer limit.
 
-    It is 2**n, which is only an exponent, times the exponential of what is left, by its series.
+    The result is 2**n, which only sets the exponent, times the series of the remainder's exponential.
     """
     x = min(max(x, -_MOST), _MOST)
     n = np.floor(x * _TWOS + np.float32(0.5))

@@ -1,4 +1,4 @@
-"""What a tracker takes in: one instant of the robot's cameras, how they sit, and its odometry."""
+"""Input of a tracker: the images of one instant, camera calibrations, and odometry."""
 
 from __future__ import annotations
 
@@ -25,22 +25,22 @@ DEPTH_COLOUR: Final = "depth_colour"
 DEPTH_AMPLITUDE: Final = "depth_amplitude"
 
 
-# Motion between two images beyond what the drive can do in a quarter of a second is a jump of the odometry.
+# Motion beyond what the drive can do in a quarter of a second is a jump of the odometry.
 FARTHEST_TURN_RAD: Final = math.radians(40.0)
 FARTHEST_WAY_M: Final = 0.2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Odometry:
-    """How the robot moved from one frame to the next, in its own frame at the first of them.
+    """Motion of the robot between two frames, in the robot frame of the first one.
 
     Attributes:
         advance_m: forward [m].
         aside_m: to the left [m].
-        turn_rad: how it turned, left positive [rad].
+        turn_rad: rotation, left positive [rad].
 
     Raises:
-        BadInput: a number that is not finite.
+        BadInput: a value is not finite.
     """
 
     advance_m: float = 0.0
@@ -48,18 +48,18 @@ class Odometry:
     turn_rad: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse what no robot does."""
+        """Refuse values that are not finite."""
         for name in (column.name for column in fields(self)):
             _check_finite(name, getattr(self, name))
 
     @classmethod
     def from_motion(cls, motion: Pose2) -> Self:
-        """Take the pose after a movement, in the robot's frame before it."""
+        """Make the motion from the pose after it, in the robot frame before it."""
         return cls(advance_m=motion.x, aside_m=motion.y, turn_rad=motion.heading)
 
     @classmethod
     def between(cls, before: Pose2, now: Pose2) -> Self | None:
-        """Return the motion between two poses of the odometry; None for a jump that no wheels can make."""
+        """Return the motion between two odometry poses; None for a jump that the wheels cannot make."""
         motion = now.relative_to(before)
         if abs(motion.heading) > FARTHEST_TURN_RAD or math.hypot(motion.x, motion.y) > FARTHEST_WAY_M:
             return None
@@ -67,12 +67,12 @@ class Odometry:
 
     @property
     def motion(self) -> Pose2:
-        """Pose of the robot after the movement, in its frame before it."""
+        """Pose of the robot after the motion, in the robot frame before it."""
         return Pose2(self.advance_m, self.aside_m, self.turn_rad)
 
 
 class ReadOnlyImages(Mapping[str, NDArray[Any]]):
-    """Images by camera, each through a view that refuses to be written to; none is copied or made here."""
+    """Images by camera as read-only views; none is copied or made here."""
 
     __slots__ = ("_images",)
 
@@ -80,10 +80,10 @@ class ReadOnlyImages(Mapping[str, NDArray[Any]]):
         self._images = images
 
     def __getitem__(self, camera: str) -> Any:
-        if camera not in self._images:  # reported in full, as cameras may be slower than frames
+        if camera not in self._images:  # the message names the frame's other cameras
             raise KeyError(_lacking(camera, self._images))
         image: object = self._images[camera]
-        if not isinstance(image, np.ndarray):  # its reader reports that
+        if not isinstance(image, np.ndarray):  # reported by the method that reads it
             return image
         view = image.view()
         view.setflags(write=False)
@@ -100,7 +100,7 @@ class ReadOnlyImages(Mapping[str, NDArray[Any]]):
 
 
 class SensorReadings(Protocol):
-    """What the robot sensed at one instant, such as an `Observation` of the simulated world."""
+    """Sensor readings of one instant, such as an `Observation` of the simulated world."""
 
     @property
     def time_s(self) -> float:
@@ -125,20 +125,19 @@ class SensorReadings(Protocol):
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Frame:
-    """What the tracker sees at one instant.
+    """Input of a tracker at one instant.
 
     Attributes:
-        images: by the camera's name, such as `thermal`, (H, W) uint8 grey, linear over 24..36 degC by
-            default, `colour`, (H, W, 3) uint8 RGB, and `depth`, (H, W) uint16 along the optical axis [mm],
-            0 where none is read; their sizes may differ. A camera that takes no image at this instant is
-            left out. An image may be made only when it is asked for, and none can be written to, as others
-            see it too.
-        calibrations: of those cameras whose place on the robot is known, by name; none for footage.
+        images: by camera name: `thermal`, (H, W) uint8 grey, linear over 24..36 degC by default; `colour`,
+            (H, W, 3) uint8 RGB; `depth`, (H, W) uint16 along the optical axis [mm], 0 for no reading. Sizes
+            may differ. A camera without an image at this instant is left out. Images may be rendered on
+            demand, and are read-only because others share them.
+        calibrations: of the cameras whose mount is known, by name; empty for footage.
         time_s: when the images were taken [s].
-        odometry: how the robot moved since the last frame; None if unknown.
+        odometry: motion of the robot since the last frame; None if unknown.
 
     Raises:
-        BadInput: a time that is not finite.
+        BadInput: the time is not finite.
     """
 
     images: Mapping[str, NDArray[Any]]
@@ -147,12 +146,12 @@ class Frame:
     odometry: Odometry | None = None
 
     def __post_init__(self) -> None:
-        """Refuse a time that is none, and guard the images, which are checked when they are read."""
+        """Check the time, and make the images read-only; they are validated when read."""
         _check_finite("time_s", self.time_s)
         object.__setattr__(self, "images", ReadOnlyImages(self.images))
 
     def __repr__(self) -> str:
-        """Name the cameras; images may not have been rendered yet."""
+        """Show the time and the camera names; images may not have been rendered yet."""
         images, calibrated = names_of(self.images), names_of(self.calibrations)
         return f"Frame(time_s={self.time_s:.3f}, images: {images}; calibrations: {calibrated})"
 
@@ -161,7 +160,7 @@ class Frame:
 
     @classmethod
     def from_image(cls, image: NDArray[Any], time_s: float, camera: str = THERMAL) -> Self:
-        """Make a frame of one camera's image, without a calibration, such as one of your own footage."""
+        """Make a frame from one camera's image, without calibration, such as one of your own footage."""
         return cls(images={camera: image}, time_s=time_s)
 
     @classmethod
@@ -171,11 +170,11 @@ class Frame:
         before: Pose2 | None = None,
         calibrations: Mapping[str, Calibration] | None = None,
     ) -> Self:
-        """Make the frame that a tracker gets of an observation.
+        """Make the frame of an observation.
 
         Args:
-            observation: what the robot sensed, such as `World.observe()` returns.
-            before: `odometry` of the observation before; None if there was none.
+            observation: sensor readings, such as `World.observe()` returns.
+            before: `odometry` of the previous observation; None if there was none.
             calibrations: by camera; None for those of the observation.
         """
         return cls(
@@ -186,30 +185,30 @@ class Frame:
         )
 
     def grey(self, camera: str) -> NDArray[np.uint8]:
-        """Read the (H, W) grey image of a camera.
+        """Return the (H, W) grey image of a camera.
 
         Raises:
-            BadInput: there is none, or it has another shape or type.
+            BadInput: the image is missing, or has another shape or type.
         """
         image = self._image(camera)
         _check_image(f"{camera} image must be (H, W) uint8", image, 2)
         return image
 
     def rgb(self, camera: str) -> NDArray[np.uint8]:
-        """Read the (H, W, 3) RGB image of a camera.
+        """Return the (H, W, 3) RGB image of a camera.
 
         Raises:
-            BadInput: there is none, or it has another shape or type.
+            BadInput: the image is missing, or has another shape or type.
         """
         image = self._image(camera)
         _check_image(f"{camera} image must be (H, W, 3) uint8", image, 3)
         return image
 
     def depth(self, camera: str) -> NDArray[np.uint16]:
-        """Read the (H, W) depth image [mm] of a camera, along its optical axis; 0 where none is read.
+        """Return the (H, W) depth image [mm] of a camera, along its optical axis; 0 for no reading.
 
         Raises:
-            BadInput: there is none, or it has another shape or type.
+            BadInput: the image is missing, or has another shape or type.
         """
         image = self._image(camera)
         _check_image(f"{camera} image must be (H, W) uint16", image, 2, np.uint16)
@@ -222,7 +221,7 @@ class Frame:
 
 
 def check_frame(frame: object) -> None:
-    """Refuse what is not a frame, such as a bare image.
+    """Refuse anything that is not a frame, such as a bare image.
 
     Raises:
         BadInput: with how to make one.
@@ -254,11 +253,11 @@ def _lacking(camera: str, images: Mapping[str, Any]) -> str:
     return f"frame has no image of camera {camera!r}; it has {', '.join(images) or 'none'}"
 
 
-# Which frames have a new image of a camera: it may be missing, or stand still.
+# Which frames have a new image of a camera: it may be missing or repeated.
 
 
 class FreshImages:
-    """Watches one camera.
+    """Detects new images of one camera.
 
     Args:
         camera: its name.
@@ -270,9 +269,9 @@ class FreshImages:
         self._way: Odometry | None = Odometry()
 
     def of(self, frame: Frame) -> Frame | None:
-        """Return a frame whose odometry counts from the camera's last image on; None without a new image.
+        """Return the frame with odometry since the camera's last image; None without a new image.
 
-        An image equal to the last one is no new one: the noise of a camera never repeats.
+        An image equal to the last one is a repetition: camera noise never repeats.
         """
         self._way = joined(self._way, frame.odometry)
         image = frame.images.get(self._camera)
@@ -283,7 +282,7 @@ class FreshImages:
 
 
 def joined(first: Odometry | None, then: Odometry | None) -> Odometry | None:
-    """Return the motion that two after each other make; None if one is unknown."""
+    """Return the composition of two motions; None if either is unknown."""
     if first is None or then is None:
         return None
     return Odometry.from_motion(first.motion.compose(then.motion))

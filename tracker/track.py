@@ -1,4 +1,4 @@
-"""What a tracker gives out: people, each with an id, a status, and where it is in images and on the floor."""
+"""Output of a tracker: people with ids, statuses, boxes in images, and positions on the floor."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 Box = tuple[float, float, float, float]
-"""left, top, width, height [px], which may reach outside the image."""
+"""left, top, width, height [px]; it may reach outside the image."""
 
 
 class Status(StrEnum):
-    """How well a person is seen right now; unknown for imported tracks."""
+    """Visibility of a person; unknown for imported tracks."""
 
     TENTATIVE = "tentative"
     TRACKED = "tracked"
@@ -22,11 +22,11 @@ class Status(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FloorPlace:
-    """A place on the floor, and how sure it is.
+    """A position on the floor, and its uncertainty.
 
     Attributes:
-        position_m: x forward, y left in the robot's frame [m].
-        covariance_m2: xx, xy, yy of the error's covariance [m2].
+        position_m: x forward, y left in the robot frame [m].
+        covariance_m2: xx, xy, yy of the error covariance [m2].
     """
 
     position_m: tuple[float, float]
@@ -35,17 +35,17 @@ class FloorPlace:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Track:
-    """One person as the tracker believes it at one instant.
+    """One tracked person at one instant.
 
     Attributes:
-        id: 1 or more; a person who was forgotten and is found again gets a new one.
-        boxes: the person's box in the image of each camera that the tracker places it in, by the camera's
-            name; none for a tracker that knows people on the floor alone.
-        place: where the person stands; None where that is unknown, as in footage.
-        confidence: 0..1, how well the images speak for the person.
-        status: whether the person is confirmed, and how much of it is hidden.
-        age_s: time since the track was born [s].
-        occluder: id of the person in front who hides it; None if nobody does, or nobody known.
+        id: 1 or more; a person who was forgotten and is found again gets a new id.
+        boxes: the person's box in each camera image in which the tracker locates it, by camera name; empty
+            for a tracker that works on the floor only.
+        place: position on the floor; None if unknown, as in footage.
+        confidence: 0..1, how well the images support the track.
+        status: whether the person is confirmed, and how much of it is occluded.
+        age_s: time since the track was initiated [s].
+        occluder: id of the person who occludes this one; None if there is none, or none known.
     """
 
     id: int
@@ -57,7 +57,7 @@ class Track:
     occluder: int | None = None
 
     def __repr__(self) -> str:
-        """Say id, status, confidence and place in a line."""
+        """Return id, status, confidence and position in one line."""
         parts = [f"id={self.id}", f"{self.status}", f"confidence={self.confidence:.2f}"]
         for camera, box in self.boxes.items():
             parts.append(f"{camera}=({', '.join(f'{value:.1f}' for value in box)})")
@@ -70,7 +70,7 @@ class Track:
 
 
 def confirmed(tracks: Iterable[Track], camera: str) -> Iterator[tuple[Track, Box]]:
-    """Yield the tracks that are claimed in the image of a camera, with their boxes there."""
+    """Yield the tracks with a box in a camera's image, with these boxes."""
     for track in tracks:
         if track.status is not Status.TENTATIVE and camera in track.boxes:
             yield track, track.boxes[camera]

@@ -26,15 +26,15 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class Tracker(Protocol):
-    """Whatever turns frames into tracks."""
+    """Turns frames into tracks."""
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """Names of the cameras whose images it wants; those that a robot lacks are mounted with defaults."""
+        """Names of the required cameras; those that a robot lacks are mounted with defaults."""
         ...
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Take in the next frame and tell who is seen."""
+        """Process the next frame and return the tracks."""
         ...
 
 
@@ -49,13 +49,13 @@ class Introducible(Protocol):
 
 @runtime_checkable
 class ChecksCameras(Protocol):
-    """A tracker that cannot see by every camera of the right name."""
+    """A tracker that has requirements on the cameras it gets."""
 
     def check_cameras(self, calibrations: Mapping[str, Calibration]) -> None:
-        """Refuse cameras, by name, before the first frame.
+        """Refuse unsuitable cameras, by name, before the first frame.
 
         Raises:
-            BadInput: one of them will not do.
+            BadInput: a camera is unsuitable.
         """
         ...
 
@@ -63,29 +63,29 @@ class ChecksCameras(Protocol):
 TRACKERS: Final = Registry("tracker", "peopleboy.trackers")
 """The trackers by name; each is called with a `numpy.random.Generator`. The first is the default.
 
-A tracker is registered by decorating the function below that makes it. These functions import what they
-need, so that asking for one tracker, or for the names, does not load all of them.
+A tracker is registered by decorating the function below that makes it. These functions import their
+dependencies, so that loading one tracker, or listing the names, does not load all of them.
 """
 
 DETECTION_TRACKER: Final = "detection"
 CONTOUR_TRACKER: Final = "contour"
 DEFAULT_TRACKER: Final = DETECTION_TRACKER
 BY_CONTRAST: Final = frozenset({DETECTION_TRACKER})
-"""Those to which only the contrast of a thermal image matters, not how many degC a grey stands for."""
+"""Trackers that use only the contrast of a thermal image, not its absolute temperatures."""
 
 
 def explanation_of(tracker: Tracker) -> object:
-    """Ask a tracker what it believes beyond its tracks, its `explanation`; None where it has none.
+    """Return a tracker's `explanation`, the state behind its tracks; None if it has none.
 
-    A check of a protocol would work it out once more, and take longer than many a tracker.
+    An isinstance check of a protocol would evaluate it twice, and cost more than many a tracker.
     """
     return getattr(tracker, "explanation", None)
 
 
 def knows_again(tracker: Tracker) -> bool:
-    """Return whether a tracker knows people again by itself, however long they were away: its `knows_again`.
+    """Return whether a tracker re-identifies people, however long they were absent: its `knows_again`.
 
-    Then whoever has a new number is another person. None has it unless it says so.
+    Then a new id is always a new person. Trackers without the attribute do not.
     """
     return bool(getattr(tracker, "knows_again", False))
 
@@ -305,23 +305,23 @@ def _attentive_fused(rng: np.random.Generator) -> Tracker:
 
 
 def is_own(name: str) -> bool:
-    """Whether a name is that of a tracker from outside: "module:Class", or one of another package."""
+    """Whether a name is that of an external tracker: "module:Class", or one of another package."""
     return ":" in name or TRACKERS.is_plugged_in(name)
 
 
 def make_tracker(name: str, seed: int = 0) -> Tracker:
     """Make a tracker by its name: one of `TRACKERS`, or "module:Class" for one of your own.
 
-    Modules are looked for where Python looks for them, and in the working directory.
+    Modules are searched for on the Python path and in the working directory.
 
     Args:
         name: of the tracker.
         seed: of its random numbers. The tracker of `peopleboy run --seed 3` is the one with seed 3.
 
     Raises:
-        BadInput: there is no tracker of that name, the object is not a tracker, or the seed is not 0 or more.
+        BadInput: the name is unknown, the object is not a tracker, or the seed is negative.
     """
-    from peopleboy.random_streams import stream  # here, as names of trackers are listed without NumPy
+    from peopleboy.random_streams import stream  # here, so that listing trackers does not load NumPy
 
     try:
         number = operator.index(seed)

@@ -1,1 +1,1 @@
-"""People by heat, depth and colour at once, each with one number."""
+"""Fusion of thermal, depth and colour: one track for each person."""

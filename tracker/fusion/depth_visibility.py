@@ -1,4 +1,4 @@
-"""What the depth image shows where a person may stand."""
+"""What the depth image shows at the expected position of a person."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from peopleboy.tracker.rgbd.observation_model import BINS, Body, bin_of_colour, 
 from peopleboy.tracker.rgbd.pre_detection import PreDetection
 from peopleboy.tracker.track import Box
 
-# How much of what stands somewhere is as warm as people are: depth gives where the thermal image shows it.
+# Share of an object's surface that is as warm as people: depth gives the pixels in the thermal image.
 
 WARM: Final = 255.0 * (25.0 - 24.0) / (36.0 - 24.0)
-"""Grey from which on something is as warm as people are: 25 degC in an image of 24 to 36 degC."""
+"""Grey from which a surface counts as warm: 25 degC in an image of 24 to 36 degC."""
 
 LEAST_SHARE: Final = 0.3
-"""Share of warm pixels from which on something of the size of a human is one."""
+"""Share of warm pixels from which an object of human size is a person."""
 
 _WARM_COLUMNS: Final = 10
 _WARM_ROWS: Final = 20
-_REACH_M: Final = 0.5  # from the depth that was found, within which pixels belong to it
+_REACH_M: Final = 0.5  # from the measured depth, within which pixels belong to the object
 _LEAST_PIXELS: Final = 12
 
 
 def is_warm(found: PreDetection, frame: Frame) -> bool:
-    """Return whether what was found in the depth image is a person by its heat."""
+    """Return whether a detection in the depth image is a person, by its temperature."""
     pixels = grid(found.box, _WARM_COLUMNS, _WARM_ROWS, frame)
     z_m = depths_at(pixels, frame)
     own = (z_m > 0.0) & (np.abs(z_m - found.z_m) < _REACH_M)
@@ -39,15 +39,15 @@ def is_warm(found: PreDetection, frame: Frame) -> bool:
 
 
 def warm_share(pixels: NDArray[np.int64], z_m: Floats, frame: Frame) -> float | None:
-    """Return the share of surfaces that is as warm as people are.
+    """Return the share of surface pixels that are as warm as people.
 
     Args:
-        pixels: (N, 2) of the depth image that show them.
+        pixels: (N, 2) pixels of the depth image.
         z_m: (N,) their depths [m].
-        frame: with both images.
+        frame: with a thermal and a depth image.
 
     Returns:
-        0..1; None where the thermal image shows too few of them.
+        0..1; None if too few of the pixels are in the thermal image.
     """
     ours, theirs = frame.calibrations.get(DEPTH), frame.calibrations.get(THERMAL)
     if not isinstance(ours, PinholeCalibration) or theirs is None or THERMAL not in frame.images:
@@ -62,7 +62,7 @@ def warm_share(pixels: NDArray[np.int64], z_m: Floats, frame: Frame) -> float | 
 
 
 def grid(box: Box, columns: int, rows: int, frame: Frame) -> NDArray[np.int64]:
-    """Return pixels (N, 2) spread evenly over a box [px], as far as it lies in the depth image."""
+    """Return pixels (N, 2) spread evenly over the part of a box [px] inside the depth image."""
     left, top, width, height = box
     u = left + width * (np.arange(columns) + 0.5) / columns
     v = top + height * (np.arange(rows) + 0.5) / rows
@@ -72,26 +72,26 @@ def grid(box: Box, columns: int, rows: int, frame: Frame) -> NDArray[np.int64]:
 
 
 def depths_at(pixels: NDArray[np.int64], frame: Frame) -> Floats:
-    """Return the depths (N,) [m] at pixels (N, 2) of the depth image; 0 where none is read."""
+    """Return the depths (N,) [m] at pixels (N, 2) of the depth image; 0 for no reading."""
     return np.asarray(frame.depth(DEPTH)[pixels[:, 1], pixels[:, 0]] / 1000.0)
 
 
-BODY_M: Final = 0.1  # from the surface that is seen to the middle of a body
-REACH_M: Final = 0.4  # from that surface, within which readings belong to it
+BODY_M: Final = 0.1  # from the visible surface to the middle of a body
+REACH_M: Final = 0.4  # from that surface, within which readings belong to the person
 
 _COLUMNS: Final = 8
 _ROWS: Final = 16
-_LEAST: Final = 12  # readings from which on shares mean anything
+_LEAST: Final = 12  # readings needed for meaningful shares
 _NO_COLOURS: Final = np.zeros(BINS)
 
 
 @dataclass(frozen=True, slots=True)
 class DepthVisibility:
-    """What stands where a person may be.
+    """Depth readings at the expected position of a person.
 
     Attributes:
-        nearer, beyond: shares of the readings before and behind the person.
-        warm: share of its own that is as warm as people are; None where the thermal image shows too few.
+        nearer, beyond: shares of the readings in front of and behind the person.
+        warm: share of the person's own readings that are warm; None if too few are in the thermal image.
     """
 
     nearer: float
@@ -102,17 +102,17 @@ class DepthVisibility:
 def depth_visibility(
     place_m: Floats, wide_m: float, tall_m: float, frame: Frame, reach_m: float = REACH_M
 ) -> DepthVisibility | None:
-    """Look at the middle of a person at a place (2,) in the robot's frame.
+    """Read the depth image around the middle of a person at a position (2,) in the robot frame.
 
     Args:
         place_m: forward, left [m].
         wide_m: width of the person.
-        tall_m: height likewise.
-        frame: with a depth image, if there is one.
+        tall_m: height of the person.
+        frame: with or without a depth image.
         reach_m: [m] by which the person may be nearer or farther.
 
     Returns:
-        None where the depth image does not show that place, or there is none.
+        None without a depth image, or if the position is outside it.
     """
     view = view_of(frame)
     if view is None:
@@ -143,12 +143,12 @@ def view_of(frame: Frame) -> DepthView | None:
 
 
 def shoulders(view: DepthView, place_m: Floats, wide_m: float, low_m: float, high_m: float) -> Floats:
-    """Return left, top, width, height [px] of a body from one height above the floor to another."""
+    """Return left, top, width, height [px] of a body between two heights above the floor."""
     return np.array(box_at(view, place_m, _body(wide_m, high_m, low_m)))
 
 
 def surface_m(view: DepthView, place_m: Floats) -> float:
-    """Return the depth [m] at which the camera sees the surface of a person at a place (2,)."""
+    """Return the depth [m] of the visible surface of a person at a position (2,)."""
     pose = view.calibration.robot_from_camera
     point = np.array([*place_m, pose[2, 3]])
     return float((point - pose[:3, 3]) @ pose[:3, 2]) - BODY_M
@@ -158,25 +158,25 @@ def _body(wide_m: float, high_m: float, low_m: float) -> Body:
     return Body(width_m=wide_m, head_m=high_m, low_m=low_m, appearance=_NO_COLOURS)
 
 
-# What colours a person has, by those readings of the depth image that are its own.
+# Colour histogram of a person, from the person's own readings in the depth image.
 
 _COLOUR_ROWS: Final = 24
 _COLOUR_COLUMNS: Final = 11
 _WIDE_M: Final = 0.4
-_LOW_M: Final = 0.25  # above the floor, below which there are shoes and shadows
+_LOW_M: Final = 0.25  # above the floor; shoes and shadows are below
 _COLOUR_REACH_M: Final = 0.3
-_LEAST_IN_ROW: Final = 1  # own readings
-_LEAST_ROWS: Final = 0.5  # share of the rows
+_LEAST_IN_ROW: Final = 1  # least number of own readings
+_LEAST_ROWS: Final = 0.5  # least share of the rows
 
 
 def colours(place_m: Floats, tall_m: float, frame: Frame) -> Floats | None:
-    """Return the histogram (BINS,) of the colours of a person at a place (2,) in the robot's frame.
+    """Return the colour histogram (BINS,) of a person at a position (2,) in the robot frame.
 
-    What is nearer or farther is left out, and so are readings beside an edge. Every row of the body counts
-    the same, however much of it something else covers, so that half a person looks like a whole one.
+    Readings in front of or behind the person, and next to edges, are left out. Every row of the body has the
+    same weight, however much of it is occluded, so that a half-visible person has the same histogram.
 
     Returns:
-        None where too little of the person is seen, or there is no depth image.
+        None if too little of the person is visible, or there is no depth image.
     """
     view = view_of(frame)
     if view is None:

@@ -1,4 +1,4 @@
-"""What two trackers believe beyond the tracks that they share."""
+"""Explanations of fused trackers: the state behind their tracks."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BothExplanations:
-    """What the two trackers believe, by the numbers that they share.
+    """Explanations of the thermal and the panoramic tracker, with shared ids.
 
     Attributes:
         thermal: contours and samples in the thermal image.
-        panoramic: what is taken for people in the panorama; None before the first.
+        panoramic: people in the panorama; None before its first image.
     """
 
     thermal: ContourExplanation
@@ -24,14 +24,14 @@ class BothExplanations:
 
     @property
     def parts(self) -> tuple[object, ...]:
-        """The explanations that it joins."""
+        """The joined explanations."""
         return self.thermal, self.panoramic
 
     @classmethod
     def of(
         cls, thermal: ContourExplanation, panoramic: PeopleExplanation | None, number: Mapping[int, int]
     ) -> BothExplanations:
-        """Join them; `number` gives the shared numbers of the thermal tracks. Who has none is left out."""
+        """Join them; `number` maps the thermal tracks to shared ids, and tracks without one are left out."""
         shared = replace(
             thermal,
             ellipses={number[one]: found for one, found in thermal.ellipses.items() if one in number},
@@ -45,16 +45,16 @@ class BothExplanations:
         return cls(shared, panoramic)
 
 
-# What the fused tracker believes beyond its tracks, by the kinds that its parts have.
+# Explanation of the fused tracker, by its parts.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FusedExplanation:
-    """What each part believes.
+    """Explanations of all parts.
 
     Attributes:
-        both: of the thermal image and, where there is one, the panorama, by the numbers of the tracks.
-        depth: of the depth image; None before the first.
+        both: of the thermal image and, if present, the panorama, by track id.
+        depth: of the depth image; None before its first image.
     """
 
     both: BothExplanations
@@ -62,10 +62,10 @@ class FusedExplanation:
 
     @property
     def parts(self) -> tuple[object, ...]:
-        """The explanations that it joins."""
+        """The joined explanations."""
         return self.both, self.depth
 
 
 def parts_of(explanation: object) -> tuple[object, ...]:
-    """Return the explanations that one joins or wraps in its `parts`; none of a kind that stands alone."""
+    """Return the explanations in the `parts` of a joined one; none for a single explanation."""
     return getattr(explanation, "parts", ())

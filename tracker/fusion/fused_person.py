@@ -1,4 +1,4 @@
-"""One person, as heat, depth and colour tell together."""
+"""State of one person, fused from thermal, depth and colour."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from peopleboy.tracker.panoramic.people.floor_motion import FloorMotion
 from peopleboy.tracker.rgbd.observation_model import similarity
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
-# What one of the trackers reports for a person in one frame.
+# Output of one of the trackers for one person in one frame.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SensorTrack:
-    """A track of the thermal tracker, or of the one by depth.
+    """A track of the thermal or of the depth tracker.
 
     Attributes:
         id: of the track.
-        place_m, error_m2: (2,) in the room [m], (2, 2) of its error [m2].
-        status: how well the person is seen.
+        place_m, error_m2: (2,) position in the room frame [m], and its covariance (2, 2) [m2].
+        status: visibility of the person.
         confidence: 0..1.
-        occluder: id of the same tracker's track that hides it; None for nobody.
-        box: in the thermal image [px], as the thermal tracker sees it; None from the other.
-        tall_m, span_m: [m] height, and width with the arms; None where the tracker does not measure them.
-        appearance: (BINS,) histogram of what is seen just now; None where nothing is, or it is dark.
+        occluder: id of the same tracker's occluding track, or None.
+        box: in the thermal image [px]; None from the depth tracker.
+        tall_m, span_m: [m] height, and width including the arms; None if the tracker does not measure them.
+        appearance: (BINS,) current colour histogram; None if not visible or in the dark.
     """
 
     id: int
@@ -47,17 +47,17 @@ class SensorTrack:
 
     @property
     def is_seen(self) -> bool:
-        """Whether the tracker sees any of the person."""
+        """Whether the tracker sees any part of the person."""
         return self.status is not Status.TOTALLY_OCCLUDED
 
     @property
     def is_clear(self) -> bool:
-        """Whether nothing hides any of the person."""
+        """Whether the person is fully visible."""
         return self.status is Status.TRACKED
 
 
 def to_room_frame(track: Track, pose: Pose2) -> tuple[Floats, Floats]:
-    """Return place (2,) [m] and covariance (2, 2) [m2] of a track that has a place, in the room."""
+    """Return position (2,) [m] and covariance (2, 2) [m2] of a track with a position, in the room frame."""
     assert track.place is not None
     xx, xy, yy = track.place.covariance_m2
     return to_room(np.array(track.place.position_m), pose), pose.inverse().covariance_to_local(
@@ -66,7 +66,7 @@ def to_room_frame(track: Track, pose: Pose2) -> tuple[Floats, Floats]:
 
 
 def to_room(place_m: Floats, pose: Pose2) -> Floats:
-    """Put a place (2,) in the robot's frame into the room."""
+    """Transform a position (2,) from the robot frame to the room frame."""
     ahead, aside = place_m.tolist()
     return pose.transform_polar(math.hypot(ahead, aside), math.atan2(aside, ahead))
 
@@ -80,20 +80,21 @@ _BEST_FIRST: Final = (Status.TRACKED, Status.PARTLY_OCCLUDED, Status.TOTALLY_OCC
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FusedPerson:
-    """A person that at least one of the trackers has reported.
+    """A person reported by at least one of the trackers.
 
     Attributes:
-        id: number of the fused track; negative for a guest, whose identity is not decided yet.
-        motion: place and velocity in the room.
-        heat, depth: ids of the tracks in the thermal and in the depth image that are, or were last, its own.
-        warm, deep: what these tell in this frame; None for nothing.
-        is_peeked: whether it was found where it was expected in the depth image of this frame.
-        tall_m, wide_m, span_m: [m] height, and width of the torso and with the arms.
-        appearance: (BINS,) histogram of colours; None before any were seen in the light.
-        looked: how often these were seen.
-        strange: frames in a row in which it looked otherwise.
-        born_s, seen_s, looked_s: [s] when it was born, last seen, and last known by its appearance.
-        looked_m: (2,) where that was in the room; None for nowhere.
+        id: of the fused track; negative while its identity is undecided.
+        motion: position and velocity in the room frame.
+        heat, depth: ids of its current or last track of the thermal and of the depth tracker.
+        warm, deep: their outputs in this frame; None if there are none.
+        is_peeked: whether the guided search found the person in the depth image of this frame.
+        tall_m, wide_m, span_m: [m] height, and width of the torso and including the arms.
+        appearance: (BINS,) colour histogram; None before the first one in the light.
+        looked: number of observations of the appearance.
+        strange: consecutive frames with a different appearance.
+        born_s, seen_s, looked_s: [s] times of creation, of the last observation, and of the last match of
+            appearance.
+        looked_m: (2,) position of that match in the room frame; None if there was none.
     """
 
     id: int
@@ -116,7 +117,7 @@ class FusedPerson:
 
     @property
     def reported(self) -> tuple[SensorTrack, ...]:
-        """What is reported for the person in this frame."""
+        """The outputs for the person in this frame."""
         return tuple(one for one in (self.warm, self.deep) if one is not None)
 
     @property
@@ -126,26 +127,26 @@ class FusedPerson:
 
     @property
     def is_guest(self) -> bool:
-        """Whether it is not decided who this is."""
+        """Whether the identity is undecided."""
         return self.id < 0
 
     @property
     def status(self) -> Status:
-        """How well the tracker that sees the person best does."""
+        """Visibility of the person, the best of both trackers."""
         reported = (one.status for one in self.reported)
         best = min(reported, key=_BEST_FIRST.index, default=Status.TOTALLY_OCCLUDED)
         is_found = self.is_guided and best is Status.TOTALLY_OCCLUDED
         return Status.PARTLY_OCCLUDED if is_found else best
 
     def later(self, dt_s: float, config: FusionConfig) -> FusedPerson:
-        """Return the person after it has walked on; it is not reported yet."""
+        """Return the person predicted to a later time, without outputs."""
         motion = self.motion.later(dt_s, config.restlessness)
         if not self.is_seen:
             motion = motion.slowed(dt_s, config.slow_s)
         return replace(self, motion=motion, warm=None, deep=None, is_guided=False)
 
     def with_depth(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> FusedPerson:
-        """Update by the depth tracker's track."""
+        """Update with the depth tracker's track."""
         person = replace(self, depth=reported.id, deep=reported)
         if not reported.is_seen:
             return person
@@ -155,7 +156,7 @@ class FusedPerson:
         return replace(person, motion=self._placed(reported, config), seen_s=time_s)
 
     def with_heat(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> FusedPerson:
-        """Update by the thermal tracker's track."""
+        """Update with the thermal tracker's track."""
         person = replace(self, heat=reported.id, warm=reported)
         return (
             replace(person, motion=self._placed(reported, config), seen_s=time_s)
@@ -164,7 +165,7 @@ class FusedPerson:
         )
 
     def named(self, other: FusedPerson) -> FusedPerson:
-        """Return who is here, with the id, the measures and the appearance of another."""
+        """Return this person with the id, measures and appearance of another."""
         return replace(
             self,
             id=other.id,
@@ -178,11 +179,11 @@ class FusedPerson:
         )
 
     def floor_place(self, pose: Pose2, shared_m: float) -> FloorPlace:
-        """Return where the person stands in the robot's frame.
+        """Return the person's position in the robot frame.
 
         Args:
-            pose: of the robot in the room.
-            shared_m: [m] error that all images of a person have in common.
+            pose: of the robot in the room frame.
+            shared_m: [m] error common to all images of a person.
         """
         x, y = pose.points_to_local(self.motion.place_m).tolist()
         covariance = pose.covariance_to_local(self.motion.place_m2) + np.eye(2) * shared_m**2
@@ -194,7 +195,7 @@ class FusedPerson:
         return self.motion.corrected(reported.place_m, reported.error_m2 + np.eye(2) * further_m**2)
 
     def _measured(self, reported: SensorTrack, share: float, config: FusionConfig) -> FusedPerson:
-        """Learn height and width."""
+        """Update height and width."""
         tall = (
             self.tall_m if reported.tall_m is None else self.tall_m + share * (reported.tall_m - self.tall_m)
         )
@@ -208,7 +209,7 @@ class FusedPerson:
         return replace(self, tall_m=tall, span_m=span)
 
     def _with_appearance(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> FusedPerson:
-        """Learn the appearance, but not that of another person."""
+        """Update the appearance, but not with that of another person."""
         if reported.appearance is None:
             return self
         if self.appearance is None or self.strange >= config.relearn_frames:
@@ -237,29 +238,29 @@ class FusedPerson:
 
 
 def initiate_person(number: int, reported: SensorTrack, time_s: float) -> FusedPerson:
-    """Initiate a person where a tracker reports one."""
+    """Initiate a person from a tracker's output."""
     motion = FloorMotion.begin(reported.place_m, reported.error_m2)
     return FusedPerson(id=number, motion=motion, born_s=time_s, seen_s=time_s)
 
 
-# The box of a person in the thermal image, from the sensors that see it best.
+# The box of a person in the thermal image, from the sensor that sees it best.
 
 _NEAREST_M: Final = 0.3
 
-# Width of the torso as a share of the height, of the contour's width, and of the width by depth; by least
+# Width of the torso as a share of the height, of the contour's width, and of the width in depth; least
 # squares on seed 100 of seven scenarios.
 _TORSO: Final = (0.045, 0.32, 0.47)
 _TORSO_BY_HEAT: Final = (0.065, 0.715)
 
 
 def outline(person: FusedPerson, frame: Frame, pose: Pose2) -> Box | None:
-    """Return left, top, width, height [px] in the thermal image, which may lie outside.
+    """Return left, top, width, height [px] in the thermal image; the box may lie outside.
 
-    Depth knows best where head and feet are, heat where the middle is. Whom only one of them sees has the
-    ends of that one.
+    Depth measures head and feet best, and the thermal image the middle. If only one of them sees the person,
+    its ends are used.
 
     Returns:
-        None for who is not ahead, and not in the thermal image either.
+        None for a person who is not ahead and not in the thermal image.
     """
     contour = _contour(person)
     standing = standing_box(person, THERMAL, frame, pose)
@@ -274,7 +275,7 @@ def outline(person: FusedPerson, frame: Frame, pose: Pose2) -> Box | None:
 
 
 def with_width(person: FusedPerson, frame: Frame, pose: Pose2, share: float) -> FusedPerson:
-    """Learn how wide the torso appears, which changes as the person turns; not of who is hidden in part."""
+    """Update the apparent width of the torso, which changes as the person turns, unless partly occluded."""
     contour, standing = _contour(person), standing_box(person, THERMAL, frame, pose)
     if contour is None:
         return person
@@ -290,10 +291,10 @@ def with_width(person: FusedPerson, frame: Frame, pose: Pose2, share: float) -> 
 
 
 def standing_box(person: FusedPerson, camera: str, frame: Frame, pose: Pose2) -> Box | None:
-    """Project a person, upright at its place, in its own measures.
+    """Project an upright person of the estimated measures.
 
     Returns:
-        left, top, width, height [px]; None for who is not before a camera, or one whose image is not flat.
+        left, top, width, height [px]; None for a person behind the camera, or a camera that is not planar.
     """
     calibration = frame.calibrations.get(camera)
     x, y = pose.points_to_local(person.motion.place_m).tolist()
@@ -306,5 +307,5 @@ def standing_box(person: FusedPerson, camera: str, frame: Frame, pose: Pose2) ->
 
 
 def _contour(person: FusedPerson) -> Box | None:
-    """Return the thermal tracker's box of who is seen whole."""
+    """Return the thermal tracker's box of a fully visible person."""
     return person.warm.box if person.warm is not None and person.warm.is_clear else None

@@ -1,4 +1,4 @@
-"""People by heat, depth and colour at once, and all round where a panorama is mounted."""
+"""Fusion of thermal, depth and colour, and of the panorama where one is mounted."""
 
 from __future__ import annotations
 
@@ -37,26 +37,26 @@ from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation, RgbdTracker
 from peopleboy.tracker.track import Box, Status, Track
 
-# One track for one person ahead of the robot: by heat, and by depth with colour.
+# One track per person ahead of the robot, from the thermal image and from depth with colour.
 
 _LONGEST_STEP_S: Final = 0.5
-_CROWDED_M: Final = (0.5, 0.7)  # in depth and to the side, within which two people's shoulders are mixed up
-_NOBODYS: Final = -1  # the id of no track
-_UNSURE: Final = 0.1  # confidence in a person that is not reported
+_CROWDED_M: Final = (0.5, 0.7)  # in depth and to the side, within which two people's shoulders merge
+_NOBODYS: Final = -1  # stands for the id of no track
+_UNSURE: Final = 0.1  # confidence in a person that neither tracker reports
 
 Own = Callable[[FusedPerson], int | None]
 Take = Callable[[FusedPerson, SensorTrack], FusedPerson]
 
 
 class ThermalDepthTracker:
-    """People found by a thermal tracker and by a depth tracker, each with one id.
+    """People tracked by a thermal tracker and by a depth tracker, with one id each.
 
-    Both go on by themselves. A person has at most one track of each, has one place in the room, by
-    a Kalman filter over what both say, and is looked for in the depth image while it is hidden in part.
+    Both trackers run independently. A person has at most one track of each, and one position in the room from
+    a Kalman filter over both. A partly occluded person is also searched for in the depth image.
 
     Args:
-        thermal: tracks people in the thermal image.
-        rgbd: tracks them by depth and colour.
+        thermal: tracker in the thermal image.
+        rgbd: tracker in depth and colour.
         config: settings.
     """
 
@@ -70,18 +70,18 @@ class ThermalDepthTracker:
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """Those of both trackers."""
+        """The cameras of both trackers."""
         return (*self._heat.tracker.cameras, *self._depth.tracker.cameras)
 
     @property
     def explanation(self) -> ContourExplanation:
-        """What the thermal tracker believes, by the numbers of the people."""
+        """The thermal tracker's explanation, by fused ids."""
         number = {one.warm.id: one.id for one in self._known if one.warm is not None}
         return BothExplanations.of(self._heat.tracker.explanation, None, number).thermal
 
     @property
     def by_depth(self) -> RgbdExplanation | None:
-        """What the tracker by depth believes; None before its first image."""
+        """The depth tracker's explanation; None before its first image."""
         return self._depth.tracker.explanation
 
     def introduce(self, box: Box) -> None:
@@ -89,10 +89,10 @@ class ThermalDepthTracker:
         self._heat.tracker.introduce(box)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Take in the next frame, whichever images it has, and tell who is where.
+        """Process the next frame, with whichever images it has, and return the reported tracks.
 
         Raises:
-            BadInput: as both trackers say of images that are there.
+            BadInput: raised by either tracker for an invalid image.
         """
         check_frame(frame)
         if frame.odometry is not None:
@@ -128,7 +128,7 @@ class ThermalDepthTracker:
     def _joined(
         self, people: Sequence[FusedPerson], reported: Sequence[SensorTrack], own: Own, take: Take
     ) -> list[FusedPerson]:
-        """Tell people what a tracker knows of them; whose track is nobody's is a guest."""
+        """Associate a tracker's tracks with people; an unmatched track becomes a tentative person."""
         found = pairs(people, reported, [own(one) for one in people], self._time_s, self._config)
         joined = [take(one, reported[found[k]]) if k in found else one for k, one in enumerate(people)]
         owners = {reported[m].id: people[k].id for k, m in found.items()}
@@ -140,14 +140,14 @@ class ThermalDepthTracker:
         return joined
 
     def _is_double(self, reported: SensorTrack, people: Sequence[FusedPerson]) -> bool:
-        """Return whether a thermal track is likely a person who has another one."""
+        """Return whether an unmatched thermal track probably belongs to a person who has another one."""
         gate, floor_m = self._config.own_gate, self._config.floor_m
         return reported.box is not None and any(
             one.is_seen and distance2(one, reported, floor_m) < gate for one in people
         )
 
     def _peeked(self, person: FusedPerson, people: Sequence[FusedPerson], frame: Frame) -> FusedPerson:
-        """Look for a person where it is expected if nobody sees it whole."""
+        """Run the guided search for a person whom neither tracker sees fully."""
         config = self._config
         is_due = person.depth is not None and self._time_s - person.seen_s <= config.peek_s
         if not is_due or any(one.is_clear for one in person.reported) or self._is_crowded(person, people):
@@ -170,9 +170,9 @@ class ThermalDepthTracker:
         return any(abs(x - here[0]) < deep_m and abs(y - here[1]) < aside_m for x, y in others)
 
     def _single(self, people: Sequence[FusedPerson]) -> list[FusedPerson]:
-        """Merge two people at one place, of which one is seen in thermal alone and the other in depth alone.
+        """Merge two people at one position, one seen in thermal only and the other in depth only.
 
-        Two who are both known by their appearance stay two: heat has taken one for the other.
+        Two people known by their appearance stay separate: the thermal tracker has swapped them.
         """
         kept = list(people)
         for person in people:
@@ -189,7 +189,7 @@ class ThermalDepthTracker:
         return kept
 
     def _settled(self, one: FusedPerson, deep: FusedPerson, double: FusedPerson) -> tuple[FusedPerson, ...]:
-        """Give a thermal track to the person that depth sees there; its known owner is away."""
+        """Assign a thermal track to the person that depth sees there; its former owner is away."""
         if one is double:
             return () if double.appearance is None else (replace(double, warm=None, heat=None),)
         if one is not deep:
@@ -210,7 +210,7 @@ class ThermalDepthTracker:
         return self._time_s - person.seen_s > limit_s
 
     def _is_shown(self, person: FusedPerson, frame: Frame) -> bool:
-        """Return whether a person is said to be there: who is hidden for a while, others for a blink."""
+        """Return whether a person is reported: occluded ones coast for a while, others only briefly."""
         config, late_s = self._config, self._time_s - person.seen_s
         if person.is_seen or late_s > config.hidden_s:
             return person.is_seen
@@ -237,7 +237,7 @@ class ThermalDepthTracker:
         )
 
     def _occluder_of(self, person: FusedPerson) -> int | None:
-        """Name who hides a person, by either tracker; None for nobody."""
+        """Return the id of the person who occludes this one, by either tracker, or None."""
         for reported, own in ((person.deep, _depth), (person.warm, _heat)):
             if reported is not None and reported.occluder is not None:
                 found = [
@@ -257,7 +257,7 @@ def _depth(person: FusedPerson) -> int | None:
 
 
 def _without(person: FusedPerson, own: Own, owners: Mapping[int, int]) -> FusedPerson:
-    """Take a track from who had it before, if it is another person's now: it must not go back and forth."""
+    """Remove a track that now belongs to another person, so that it does not switch back and forth."""
     mine = own(person)
     if mine is None or owners.get(mine, person.id) == person.id:
         return person
@@ -265,11 +265,11 @@ def _without(person: FusedPerson, own: Own, owners: Mapping[int, int]) -> FusedP
 
 
 class FusedTracker:
-    """Thermal says warm, depth says where, colour says who.
+    """Combines detection in thermal, position from depth and identity from colour.
 
     Args:
-        ahead: tracks people by heat, depth and colour.
-        panoramic: tracks them in the panorama, if the robot carries a camera for it.
+        ahead: tracker in thermal, depth and colour.
+        panoramic: tracker in the panorama, used if the robot carries that camera.
     """
 
     def __init__(self, ahead: ThermalDepthTracker, panoramic: PanoramicTracker) -> None:
@@ -278,14 +278,14 @@ class FusedTracker:
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """Those that it cannot do without; a panorama is looked at where it is mounted."""
+        """The required cameras; the panorama is used where it is mounted."""
         return self._ahead.cameras
 
     def check_cameras(self, calibrations: Mapping[str, Calibration]) -> None:
-        """Refuse a depth camera that is none, and a panoramic one that nobody learned from.
+        """Refuse an unusable depth camera, and a panoramic camera without a trained model.
 
         Raises:
-            BadInput: there is one of these.
+            BadInput: a camera is unusable.
         """
         DepthView.of(calibrations.get(DEPTH), DEPTH)
         if PANORAMA in calibrations:
@@ -293,7 +293,7 @@ class FusedTracker:
 
     @property
     def explanation(self) -> FusedExplanation:
-        """What all parts believe."""
+        """The explanations of all parts."""
         both = (
             BothExplanations(self._ahead.explanation, None)
             if self._round is None
@@ -302,10 +302,10 @@ class FusedTracker:
         return FusedExplanation(both, self._ahead.by_depth)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Take in the next frame, whichever images it has, and tell who is where.
+        """Process the next frame, with whichever images it has, and return the reported tracks.
 
         Raises:
-            BadInput: as its parts say of images that are there.
+            BadInput: raised by the parts for an invalid image.
         """
         check_frame(frame)
         if PANORAMA not in frame.calibrations:

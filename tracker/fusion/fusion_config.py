@@ -1,4 +1,4 @@
-"""Settings of the fusion of heat, depth and colour."""
+"""Settings of the fusion of thermal, depth and colour."""
 
 from __future__ import annotations
 
@@ -10,45 +10,46 @@ class FusionConfig:
     """Values chosen on seeds from 100 on of the occlusion library.
 
     Attributes:
-        gate: squared distance, in standard deviations, beyond which a track is not a person's.
-        unlike_gate: the same with what other appearance and another height count.
-        own_gate: the same as `gate` for the track that was the person's before.
-        loyalty, loyalty_heat: by how much a person's track of before counts as nearer: one by depth, and a
-            thermal one.
-        beside_m: [m] across the line of sight, by which a thermal track may be off a person that depth sees
-            whole before neither its place nor its contour is taken.
+        gate: greatest squared Mahalanobis distance between a track and its person.
+        unlike_gate: the same including the costs of appearance and height.
+        own_gate: the same as `gate` for the person's previous track.
+        loyalty, loyalty_heat: discount for the person's previous track, of the depth and of the thermal
+            tracker.
+        beside_m: [m] across the line of sight; a thermal track farther off a person that depth sees fully
+            contributes neither position nor contour.
         appearance_weight: cost of an entirely different appearance.
-        height_sd_m: [m] by which a person's height may be measured wrongly.
-        most_height: what another height counts at most.
-        floor_m: [m] what places may be off beyond what the trackers believe.
-        restlessness: density of the white accelerations with which people move [m2/s3].
-        slow_s: [s] in which who is not seen loses most of its speed.
-        clear_m, partly_m: [m] by which the place of a track may be off beyond what its tracker believes: of
-            a person who is seen whole, and of a person who is hidden in part.
-        peek_m: [m] the same of who is looked for where it is expected.
-        peek_s: [s] for how long a person is looked for so.
-        peek_warm: share of warm pixels that this takes.
-        shared_m: [m] error that all images of a person have in common.
-        learned: share of a newly measured height, or of new appearance.
-        learned_width: the same of the width of the torso, which changes with every step.
-        blink_s: [s] for how long a person is shown that is neither occluded nor reported.
-        hidden_s: [s] the same of who is hidden.
-        hidden_share: share of readings before a person, from which on it is hidden.
-        remembered_s: [s] for how long a person is known who is away.
-        reach_m, fastest_m_s: [m], [m/s] how far away from where it was lost a person may turn up.
-        away_s: [s] after which who is not seen is away, and recognised rather than followed.
-        settled_s: [s] for which it may be undecided who turned up,
-        plain: unless a person is so much more likely than anybody else.
-        lookless_s: [s] after which nobody is recognised by the place alone.
-        least_alike: similarity of appearance of who turns up again.
-        tallest_off_m: [m] by which the height of who turns up again may differ.
-        least_own: similarity to a person's own appearance, below which it counts as strange.
-        strange_frames: in a row, after which a strange person may be another person.
-        relearn_frames: in a row, after which the appearance must have been wrong.
-        young_s: [s] for which a new person may turn out to be one who is away,
-        young_alike: by appearance of this similarity.
-        seen_through: share of readings behind a warm track, from which on nobody is there.
-        least_warm: share of warm pixels of what stands somewhere, below which it is nobody.
+        height_sd_m: [m] standard deviation of the measured height.
+        most_height: greatest cost of a different height.
+        floor_m: [m] error of positions beyond the trackers' own estimates.
+        restlessness: spectral density of the white acceleration of people [m2/s3].
+        slow_s: [s] in which the velocity of an unobserved person decays.
+        clear_m, partly_m: [m] error of a track's position beyond its tracker's own estimate, of a fully
+            visible and of a partly occluded person.
+        peek_m: [m] the same for the guided search.
+        peek_s: [s] longest time for which the guided search continues.
+        peek_warm: least share of warm pixels for the guided search.
+        shared_m: [m] error common to all images of a person.
+        learned: update rate of height and appearance.
+        learned_width: the same for the width of the torso, which changes with every step.
+        blink_s: [s] how long a person is output who is neither occluded nor reported.
+        hidden_s: [s] the same for an occluded person.
+        hidden_share: share of readings in front of a person from which it counts as occluded.
+        remembered_s: [s] after which an absent person is forgotten.
+        reach_m, fastest_m_s: [m], [m/s] greatest distance from the last position at which a person may
+            reappear.
+        away_s: [s] after which an unobserved person is absent, and re-identified rather than tracked.
+        settled_s: [s] for which the identity of a new person may stay undecided,
+        plain: unless one candidate is better than all others by this cost.
+        lookless_s: [s] after which nobody is re-identified by position alone.
+        least_alike: least similarity of appearance for re-identification.
+        tallest_off_m: [m] greatest difference in height for re-identification.
+        least_own: similarity to a person's own appearance below which it counts as different.
+        strange_frames: consecutive different frames after which the person may be another one.
+        relearn_frames: consecutive different frames after which the appearance is learned anew.
+        young_s: [s] for which a new person may still turn out to be an absent one,
+        young_alike: given this similarity of appearance.
+        seen_through: share of readings behind a warm track from which there is no person.
+        least_warm: least share of warm pixels of a person.
     """
 
     gate: float = 12.0

@@ -1,4 +1,4 @@
-"""Looking for a person who is known where it is expected in the depth image, as far as it can be seen."""
+"""Guided search: locate a person in the depth image near the predicted position."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from numpy.typing import NDArray
 from peopleboy.tracker.frame import DEPTH, Floats, Frame
 from peopleboy.tracker.fusion.depth_visibility import BODY_M, shoulders, surface_m, view_of, warm_share
 
-_LOW_M: Final = 0.8  # above the floor, from which on legs do not spread
-_HIGH: Final = 0.92  # share of the height, up to which there are shoulders
+_LOW_M: Final = 0.8  # above the floor; legs spread below
+_HIGH: Final = 0.92  # share of the height up to which there are shoulders
 _ROWS: Final = 12
 _COLUMNS: Final = 25
-_HALF: Final = 1.25  # widths to either side of the middle that are looked at
+_HALF: Final = 1.25  # searched range to either side of the middle, in widths
 _REACH_M: Final = 0.35
-_DECIDES: Final = 0.5  # share of a column's readings that tell whose it is
-_LEAST_WIDE: Final = 0.15  # widths that must be seen,
-_WHOLE: Final = 0.6  # and of a person that nothing covers
-_WIDEST: Final = 1.5  # widths that one person has at most
-_FARTHEST: Final = 0.8  # widths that the person may be off
+_DECIDES: Final = 0.5  # share of a column's readings that decides its owner
+_LEAST_WIDE: Final = 0.15  # least visible width,
+_WHOLE: Final = 0.6  # and that of an unoccluded person, in widths
+_WIDEST: Final = 1.5  # greatest width of one person, in widths
+_FARTHEST: Final = 0.8  # greatest distance from the prediction, in widths
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GuidedMeasurement:
-    """What the depth image shows of a person.
+    """Measurement of a person in the depth image.
 
     Attributes:
-        place_m: (2,) forward, left in the robot's frame [m].
-        warm: share of what is seen that is as warm as people are; None where the thermal image shows nothing.
+        place_m: (2,) forward, left in the robot frame [m].
+        warm: share of warm pixels; None if they are not in the thermal image.
     """
 
     place_m: Floats
@@ -39,14 +39,14 @@ class GuidedMeasurement:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Columns:
-    """Columns of pixels across the shoulders of a person, and whose each is.
+    """Columns of pixels across the shoulders of a person, and what each shows.
 
     Attributes:
         u: (N,) [px] from left to right.
         v: (M,) rows [px].
         z_m: (M, N) depths.
-        own: (M, N) whether a reading may be the person's.
-        is_own, is_near: (N,) whether most of a column are, or are of something nearer.
+        own: (M, N) whether a reading may belong to the person.
+        is_own, is_near: (N,) whether most readings of a column belong to the person, or to something nearer.
     """
 
     u: NDArray[np.int64]
@@ -58,19 +58,19 @@ class _Columns:
 
 
 def search_near(place_m: Floats, wide_m: float, tall_m: float, frame: Frame) -> GuidedMeasurement | None:
-    """Find the middle of a person's shoulders by those of their sides that nobody covers.
+    """Locate the middle of a person's shoulders from their unoccluded sides.
 
-    A side beside which something nearer stands is no side of the person: the middle is half a width from the
-    other one.
+    A side next to a nearer object is not the person's side: then the middle is half a width from the other
+    side.
 
     Args:
-        place_m: (2,) forward, left in the robot's frame [m], where the person is expected.
-        wide_m: its width.
-        tall_m: its height.
-        frame: with a depth image, if there is one.
+        place_m: (2,) forward, left in the robot frame [m], the predicted position.
+        wide_m: width of the person.
+        tall_m: height of the person.
+        frame: with or without a depth image.
 
     Returns:
-        None where it is unknown where the person is.
+        None if the person cannot be located.
     """
     view = view_of(frame)
     if view is None:
@@ -111,7 +111,7 @@ def _columns(
 
 
 def _middle(columns: _Columns, run: tuple[int, int], width: float) -> float | None:
-    """Return the middle column [px] of a person of a width [px], of which a run of columns is visible."""
+    """Return the middle column [px] of a person of a known width [px], given the visible run of columns."""
     u, (first, last) = columns.u, run
     step = (u[-1] - u[0]) / (len(u) - 1)
     starts, ends = float(u[first] - step / 2.0), float(u[last] + step / 2.0)
@@ -129,7 +129,7 @@ def _middle(columns: _Columns, run: tuple[int, int], width: float) -> float | No
 
 
 def _longest(flags: NDArray[np.bool_]) -> tuple[int, int] | None:
-    """Return first and last index of the longest run; gaps of one do not count."""
+    """Return the first and last index of the longest run, ignoring gaps of one."""
     closed = flags.copy()
     closed[1:-1] |= flags[:-2] & flags[2:]
     edges = np.flatnonzero(np.diff(np.concatenate([[False], closed, [False]]).astype(np.int8)))

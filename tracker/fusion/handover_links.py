@@ -1,4 +1,4 @@
-"""Which track of one camera is which of the other: by where both say that people stand."""
+"""Track-to-track association of two cameras, by position on the floor."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from peopleboy.tracker.frame import PANORAMA, Frame
 from peopleboy.tracker.track import FloorPlace, Status, Track
 
 GATE: Final = 9.21
-"""Squared Mahalanobis distance that one person's two places exceed in one case of a hundred."""
+"""Squared Mahalanobis distance exceeded by one person's two positions in 1 % of cases."""
 
 FLOOR_M2: Final = (0.2**2, 0.0, 0.2**2)
-"""What either camera may be off in earnest beyond what it believes [m2]."""
+"""Variance of positions beyond each tracker's own estimate [m2]."""
 
 SAME_WAY_RAD: Final = math.radians(6.0)
-"""By how much the bearings of one person may differ in two cameras."""
+"""Greatest difference of one person's bearings in two cameras."""
 
 
 def pairs(ones: Sequence[Track], others: Sequence[Track]) -> list[tuple[Track, Track]]:
-    """Pair tracks whose places agree, each at most once, so that all pairs together agree best.
+    """Pair tracks whose positions agree, each at most once, at least total cost.
 
-    Tracks without a place stay alone.
+    Tracks without a position stay alone.
     """
     ones = [track for track in ones if track.place is not None]
     others = [track for track in others if track.place is not None]
@@ -42,7 +42,7 @@ def pairs(ones: Sequence[Track], others: Sequence[Track]) -> list[tuple[Track, T
 
 
 def mahalanobis2(one: Track, other: Track) -> float:
-    """Return by how much the places of two tracks differ: squared, in standard deviations."""
+    """Return the squared Mahalanobis distance between the positions of two tracks."""
     if one.place is None or other.place is None:
         return np.inf
     away = np.subtract(one.place.position_m, other.place.position_m)
@@ -51,7 +51,7 @@ def mahalanobis2(one: Track, other: Track) -> float:
 
 
 def is_same_way(one: Track, other: Track) -> bool:
-    """Return whether two tracks are in the same direction, however far away."""
+    """Return whether two tracks have the same bearing, at any range."""
     if one.place is None or other.place is None:
         return False
     (ahead, aside), (further, across) = one.place.position_m, other.place.position_m
@@ -60,7 +60,7 @@ def is_same_way(one: Track, other: Track) -> bool:
 
 
 def is_seen(track: Track) -> bool:
-    """Return whether a track is more than a guess."""
+    """Return whether a track is reliable."""
     return track.status is not Status.TOTALLY_OCCLUDED
 
 
@@ -74,10 +74,10 @@ def _spread(covariance_m2: tuple[float, float, float]) -> NDArray[np.float64]:
 
 
 class LinkEvidence:
-    """Counts in how many of the newest frames two tracks agreed; who disagrees loses what was counted.
+    """Counts in how many of the newest frames two tracks agreed; disagreement lowers the count.
 
     Attributes:
-        linked: of each track of the first camera, the id of the second one's track that is the same person.
+        linked: the id of the second camera's track of the same person, by the id of the first camera's track.
     """
 
     def __init__(self, needed: int, most: int) -> None:
@@ -88,10 +88,10 @@ class LinkEvidence:
     def count(
         self, agreed: Sequence[tuple[int, int]], ones: Mapping[int, Track], others: Mapping[int, Track]
     ) -> None:
-        """Take in the pairs of one frame, and the tracks that there are, by id.
+        """Add the pairs of one frame, and the existing tracks by id.
 
-        Two that are there and do not agree come apart, and so does who agrees with another; what is known of
-        a track that is gone is kept as long as the other one lives.
+        The count of a pair decreases if both tracks exist and disagree, or if either agrees with another
+        track. The count of a track that is gone is kept as long as the other one exists.
         """
         fresh = set(agreed)
         left, right = {one for one, _ in fresh}, {other for _, other in fresh}
@@ -120,16 +120,16 @@ class LinkEvidence:
         return linked
 
 
-# Where people were last seen by a camera: a new track near there is one of them.
+# Last positions of people by camera: a new track near one of them continues it.
 
 FORGET_S: Final = 3.0
-REACH_M: Final = 1.2  # of errors of both places,
-FASTEST_M_S: Final = 1.4  # and of the way since
-DEPTH_SHARE: Final = 0.3  # weight of errors in depth, which the thermal image measures badly at its border
+REACH_M: Final = 1.2  # error of both positions,
+FASTEST_M_S: Final = 1.4  # and greatest speed since
+DEPTH_SHARE: Final = 0.3  # weight of depth errors; the thermal image measures depth badly at its border
 
 
 class Departures:
-    """The last places of people in either camera, in the room as the robot's odometry has it."""
+    """The last positions of people in either camera, in the odometry's room frame."""
 
     def __init__(self) -> None:
         self._pose = Pose2()
@@ -137,7 +137,7 @@ class Departures:
         self._places: dict[tuple[str, int], tuple[tuple[float, float], float]] = {}
 
     def go_on(self, frame: Frame) -> None:
-        """Move with the robot, and forget who has been away for too long."""
+        """Apply the robot's motion, and forget people who have been absent for too long."""
         if frame.odometry is not None:
             self._pose = self._pose.integrate(frame.odometry.motion)
         self._time_s = frame.time_s
@@ -146,7 +146,7 @@ class Departures:
         }
 
     def note(self, camera: str, tracks: Mapping[int, Track]) -> None:
-        """Remember where people, by their numbers, are seen now in a camera."""
+        """Store the current positions of people in a camera, by number."""
         for number, track in tracks.items():
             if track.place is not None and is_seen(track):
                 self._places[camera, number] = (self._in_room(track.place.position_m), self._time_s)
@@ -154,16 +154,16 @@ class Departures:
     def who(
         self, track: Track, present: Collection[int], camera: str, others: Mapping[int, Track]
     ) -> int | None:
-        """Return whose number a new track should have: that of who was near last, and is not there.
+        """Return the number for a new track: that of the nearest absent person.
 
         Args:
-            track: the new one.
-            present: numbers that its camera has already.
-            camera: its own.
-            others: tracks of the other camera, by their numbers; who is seen elsewhere by it is not meant.
+            track: the new track.
+            present: numbers that its camera already has.
+            camera: camera of the new track.
+            others: tracks of the other camera by number; people seen elsewhere by it are excluded.
 
         Returns:
-            the number; None for nobody's.
+            The number, or None if there is no match.
         """
         if track.place is None:
             return None
@@ -174,14 +174,14 @@ class Departures:
         return nearest if nearest is not None and ways[nearest] < REACH_M else None
 
     def _ways(self, seen_m: tuple[float, float], camera: str, number: int) -> Iterator[float]:
-        """Return for each camera how much farther away a place is than a person can have gone since [m]."""
+        """Return for each camera the distance [m] of a position beyond a person's walking range since."""
         for (before, one), (place, time_s) in self._places.items():
             if one == number:
                 share = 1.0 if camera == before == PANORAMA else DEPTH_SHARE
                 yield self._apart(seen_m, place, share) - FASTEST_M_S * (self._time_s - time_s)
 
     def _apart(self, seen_m: tuple[float, float], room_m: tuple[float, float], depth_share: float) -> float:
-        """Tell how far a place in the robot's frame is from one in the room [m], depth counting for less."""
+        """Return the distance from a position in the robot frame to one in the room [m], less for depth."""
         there = self._pose.points_to_local(np.array(room_m))
         distance, known = math.hypot(*seen_m), math.hypot(*there)
         turn = math.remainder(math.atan2(seen_m[1], seen_m[0]) - math.atan2(there[1], there[0]), math.tau)
@@ -192,18 +192,18 @@ class Departures:
         return x, y
 
 
-# Whose track is whose: one number for each person, whatever camera sees it.
+# Shared numbers: one for each person, in whichever camera.
 
 Key = tuple[str, int]
-"""A camera, and the id of a track in it."""
+"""A camera, and the id of one of its tracks."""
 
 YOUNG_S = 1.0
-"""A number that is younger than this gives way to the one that the person had before."""
+"""A number younger than this gives way to the person's previous number."""
 
 
 @dataclass(slots=True)
 class Identities:
-    """The numbers of the tracks of two cameras.
+    """The shared numbers of the tracks of two cameras.
 
     Attributes:
         number: of each track.
@@ -213,7 +213,7 @@ class Identities:
     _newest: int = 0
 
     def of(self, camera: str, tracks: Collection[Track]) -> dict[int, Track]:
-        """List the tracks of a camera that have a number by it."""
+        """Return the tracks of a camera that have a number, by number."""
         keys = {(camera, track.id): track for track in tracks}
         return {self.number[key]: track for key, track in keys.items() if key in self.number}
 
@@ -224,14 +224,14 @@ class Identities:
         known: Mapping[int, Key],
         guess: Callable[[Track, Collection[int]], int | None],
     ) -> None:
-        """Number the tracks of a camera that have none yet.
+        """Number the new tracks of a camera.
 
         Args:
-            camera: its name.
-            tracks: all of them.
-            known: for ids of tracks that agree with one of the other camera, that one.
-            guess: returns the id of a track that agrees with none that has one, and none of these that
-                its camera has; None for a new one.
+            camera: name.
+            tracks: all its tracks.
+            known: the agreeing track of the other camera, by id.
+            guess: returns the number for a track without an agreeing numbered track, other than the numbers
+                in its camera; None for a new number.
         """
         for track in tracks:
             if (camera, track.id) not in self.number:
@@ -244,10 +244,10 @@ class Identities:
                 self._take((camera, track.id), number)
 
     def agree(self, follower: tuple[Key, Track], leader: tuple[Key, Track], present: Collection[Key]) -> None:
-        """Return two tracks that are one person the same number.
+        """Give two tracks of one person the same number.
 
-        A number that is young gives way; otherwise the leader's stays. Whoever else has the number in the
-        camera of the one that gives way gets a new one.
+        A young number gives way; otherwise the leader's number is kept. A third track with that number in the
+        camera of the other track gets a new one.
         """
         (yields, one), (stays, other) = follower, leader
         if self.number[yields] == self.number[stays]:
@@ -263,7 +263,7 @@ class Identities:
         return self._newest
 
     def _take(self, taker: Key, number: int) -> list[Key]:
-        """Give a number to one track of a camera alone; return its former owner, which has none any more."""
+        """Give a number to one track of a camera; return its former owner, which then has none."""
         had = [key for key, one in self.number.items() if one == number and key[0] == taker[0]]
         for key in had:
             del self.number[key]

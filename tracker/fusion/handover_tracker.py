@@ -1,4 +1,4 @@
-"""A person keeps one number from the thermal image through the panorama and back."""
+"""Handover: a person keeps one id from the thermal image through the panorama and back."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ from peopleboy.tracker.fusion.handover_links import (
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
 from peopleboy.tracker.track import Box, Status, Track
 
-# Whom the panoramic tracker points out to the thermal one.
+# Hints from the panoramic tracker to the thermal one.
 
 FARTHEST_M: Final = 7.0
 NEAREST_M: Final = 0.5
-PAUSE_S: Final = 0.2  # between two introductions of one person
-BORDER: Final = 0.02  # share of the image's width at either side in which nobody's middle may be
+PAUSE_S: Final = 0.2  # least time between two hints for one person
+BORDER: Final = 0.02  # margin, in image widths, in which the middle of a hinted person may not lie
 
 
 class Introductions:
-    """Remembers who has been pointed out of late."""
+    """Remembers recent hints."""
 
     def __init__(self) -> None:
         self._reported_s: dict[int, float] = {}
@@ -43,16 +43,16 @@ class Introductions:
     def next(
         self, around: Sequence[Track], warm: Sequence[Track], linked: Collection[int], frame: Frame
     ) -> Box | None:
-        """Return the box in the thermal image of a person who is before its camera, but not seen by it.
+        """Return the thermal box of a person who is in front of the thermal camera, but not tracked by it.
 
         Args:
             around: tracks of the panoramic tracker.
-            warm: those of the thermal one.
-            linked: ids of tracks in `around` that the thermal tracker has, too.
-            frame: the newest one.
+            warm: tracks of the thermal tracker.
+            linked: ids of tracks in `around` that the thermal tracker also has.
+            frame: the newest frame.
 
         Returns:
-            left, top, width, height [px]; None if there is nobody to point out.
+            left, top, width, height [px]; None if there is no hint.
         """
         calibration = frame.calibrations.get(THERMAL)
         if calibration is None or THERMAL not in frame.images:
@@ -68,7 +68,7 @@ class Introductions:
 
 
 def thermal_view(track: Track, calibration: Calibration, width_px: int) -> Box | None:
-    """Return the box of a track that is seen elsewhere in a thermal image of this width; None if outside."""
+    """Return the box of a panoramic track in a thermal image of this width; None if outside."""
     if track.place is None or track.status is not Status.TRACKED:
         return None
     ahead, aside = track.place.position_m
@@ -80,24 +80,24 @@ def thermal_view(track: Track, calibration: Calibration, width_px: int) -> Box |
 
 
 def _is_taken(box: Box, warm: Sequence[Track]) -> bool:
-    """Return whether a person of the thermal tracker is in the middle of a box."""
+    """Return whether a track of the thermal tracker is in the middle of a box."""
     middle = box[0] + box[2] / 2.0
     spans = (track.boxes[THERMAL] for track in warm)
     return any(left - 0.25 * wide <= middle <= left + 1.25 * wide for left, _, wide, _ in spans)
 
 
-# One track of two that are one person.
+# Merging two tracks of one person.
 
 DOUBTFUL_S: Final = 0.7
 
 
 def joined(warm: Mapping[int, Track], around: Mapping[int, Track], frame: Frame) -> tuple[Track, ...]:
-    """Make one track of those that have one number, in the order of the numbers.
+    """Merge tracks with the same number, ordered by number.
 
     Args:
-        warm: tracks of the thermal tracker, by their numbers.
-        around: those of the panoramic one.
-        frame: the newest one.
+        warm: tracks of the thermal tracker, by number.
+        around: tracks of the panoramic tracker, by number.
+        frame: the newest frame.
     """
     calibration = frame.calibrations.get(THERMAL)
     if calibration is not None and THERMAL in frame.images:
@@ -109,7 +109,7 @@ def joined(warm: Mapping[int, Track], around: Mapping[int, Track], frame: Frame)
 
 
 def renamed(tracks: Mapping[int, Track]) -> dict[int, Track]:
-    """Return tracks, and those who hide them, the numbers by which they are listed."""
+    """Return tracks with their ids and occluders replaced by the shared numbers."""
     number = {track.id: shared for shared, track in tracks.items()}
     return {
         shared: replace(track, id=shared, occluder=number.get(track.occluder or 0))
@@ -118,20 +118,20 @@ def renamed(tracks: Mapping[int, Track]) -> dict[int, Track]:
 
 
 def _shown(track: Track, calibration: Calibration, width_px: int) -> Track:
-    """Put a person who is seen in the panorama into the thermal image, too."""
+    """Project a person seen in the panorama into the thermal image."""
     box = thermal_view(track, calibration, width_px)
     return track if box is None else replace(track, boxes={**track.boxes, THERMAL: box})
 
 
 def _is_doubtful(track: Track, tracks: Mapping[int, Track]) -> bool:
-    """Return whether a new track of the panorama is likely one of the thermal image, not linked to it yet."""
+    """Return whether a new panoramic track probably is a thermal track that is not linked to it yet."""
     if track.age_s >= DOUBTFUL_S or PANORAMA not in track.boxes:
         return False
     return any(PANORAMA not in other.boxes and is_same_way(track, other) for other in tracks.values())
 
 
 def _merged(warm: Track, around: Track) -> Track:
-    """Join two tracks of one person; its place is the panorama's while it is seen there, or the surer."""
+    """Merge two tracks of one person, with the panorama's position while seen there, else the surer one."""
     better = around if is_seen(around) or not is_seen(warm) else warm
     is_near = mahalanobis2(warm, around) < 2 * GATE or not is_seen(warm)
     return replace(
@@ -146,7 +146,7 @@ def _merged(warm: Track, around: Track) -> Track:
 
 
 def _is_surer(warm: Track, around: Track) -> bool:
-    """Return whether the first of two who are both seen is surer of its place."""
+    """Return whether the first of two visible tracks has the more certain position."""
     if not (is_seen(warm) and is_seen(around)) or warm.place is None or around.place is None:
         return False
     (xx, _, yy), (other_xx, _, other_yy) = warm.place.covariance_m2, around.place.covariance_m2
@@ -158,16 +158,16 @@ MOST_VOTES: Final = 15
 
 
 class Ahead(Protocol):
-    """A tracker of people in the thermal image, by that alone or by more."""
+    """A tracker in the thermal image and possibly others."""
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """Names of the cameras whose images it wants."""
+        """Names of the required cameras."""
         ...
 
     @property
     def explanation(self) -> ContourExplanation:
-        """Contours and samples behind its tracks."""
+        """The state behind its tracks."""
         ...
 
     def introduce(self, box: Box) -> None:
@@ -175,22 +175,22 @@ class Ahead(Protocol):
         ...
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Take in the next frame and tell who is seen."""
+        """Process the next frame and return the reported tracks."""
         ...
 
 
 class HandoverTracker:
-    """Two trackers that know each other's people: one for what is warm ahead, one for all round the robot.
+    """Two trackers with shared ids: a thermal one ahead, and a panoramic one all round the robot.
 
-    Tracks that stand at the same place for several frames are one person. Whoever comes into the thermal
-    image is pointed out to its tracker by the other one, so that its number is there from the first frame on.
+    Tracks at the same position for several frames are one person. The panoramic tracker gives the thermal
+    tracker a hint when a person enters the thermal image, so that the id is known from the first frame on.
 
     Args:
-        thermal: tracks people in the thermal image.
-        panoramic: tracks them in the panorama.
+        thermal: tracker in the thermal image.
+        panoramic: tracker in the panorama.
 
-    Source: thesis, section 8.2, which proposes it: people are learned in the thermal image, and tracked by
-    that in the omnidirectional one.
+    Source: thesis, section 8.2, which proposes to learn people in the thermal image and to track them with
+    that model in the omnidirectional image.
     """
 
     def __init__(self, thermal: Ahead, panoramic: PanoramicTracker) -> None:
@@ -203,28 +203,28 @@ class HandoverTracker:
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """Those of both trackers."""
+        """The cameras of both trackers."""
         return (*self._thermal.cameras, *self._panoramic.cameras)
 
     def check_cameras(self, calibrations: Mapping[str, Calibration]) -> None:
-        """Refuse a panoramic camera that its tracker was not trained on, before there are images.
+        """Refuse a panoramic camera that its tracker was not trained on, before the first frame.
 
         Raises:
-            BadInput: it is another, or none that sees all round.
+            BadInput: another camera, or one that is not panoramic.
         """
         self._panoramic.check_cameras(calibrations)
 
     @property
     def explanation(self) -> BothExplanations:
-        """Those of both trackers."""
+        """The explanations of both trackers."""
         shown = {track.id: number for number, track in self._identities.of(THERMAL, self._warm).items()}
         return BothExplanations.of(self._thermal.explanation, self._panoramic.explanation, shown)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Take in the next frame and tell who is where.
+        """Process the next frame and return the reported tracks.
 
         Raises:
-            BadInput: as both trackers say.
+            BadInput: raised by either tracker.
         """
         check_frame(frame)
         around = self._panoramic.update(frame)
@@ -239,7 +239,7 @@ class HandoverTracker:
         return joined(renamed(by_heat), renamed(by_place), frame)
 
     def _number(self, warm: Sequence[Track], around: Sequence[Track]) -> None:
-        """Return all tracks their numbers, and one to two that have been together for long enough."""
+        """Return all tracks by number; two that have agreed for long enough share one."""
         by_heat, by_place = {track.id: track for track in warm}, {track.id: track for track in around}
         seen = pairs([one for one in warm if is_seen(one)], [one for one in around if is_seen(one)])
         agreed = {one.id: other.id for one, other in seen}
@@ -261,13 +261,13 @@ class HandoverTracker:
         other: str,
         others: Sequence[Track],
     ) -> None:
-        """Number the new tracks of a camera by their mates of the other one, or by who was near last."""
+        """Number the new tracks of a camera by agreeing tracks of the other camera, or by last positions."""
         known = {one: (other, mate) for one, mate in mates.items()}
         guess = partial(self._departures.who, camera=camera, others=self._identities.of(other, others))
         self._identities.name(camera, tracks, known, guess)
 
     def _introduce(self, around: Sequence[Track], warm: Sequence[Track], frame: Frame) -> None:
-        """Hint to the thermal tracker at people in front of its camera that it has not found."""
+        """Give the thermal tracker a hint for a person in front of its camera that it has not found."""
         present = {track.id for track in warm}
         linked = {other for one, other in self._votes.linked.items() if one in present}
         box = self._introductions.next(around, warm, linked, frame)

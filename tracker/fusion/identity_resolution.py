@@ -1,4 +1,4 @@
-"""Who is who after a while: who turns up again, and who has been taken for another person."""
+"""Identity resolution: re-identification of absent people, and repair of identity swaps."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.fusion.track_to_track import cheapest
 from peopleboy.tracker.rgbd.observation_model import similarity
 
-_OWN: Final = 1.0  # what it counts that a track was the person's before
-_UNLIKE: Final = 5.0  # what entirely other appearance counts
+_OWN: Final = 1.0  # discount for the person's previous track
+_UNLIKE: Final = 5.0  # cost of an entirely different appearance
 _GRACE_S: Final = 1.0
-_DOUBTED_S: Final = 0.25  # after which who is not known by appearance may be elsewhere
-_DOUBTED: Final = 2  # frames in a row in which a person looked otherwise who may be taken for another
+_DOUBTED_S: Final = 0.25  # after which a person without a match of appearance may be elsewhere
+_DOUBTED: Final = 2  # consecutive frames with a different appearance after which a person may be another one
 
 
 @dataclass(frozen=True, slots=True)
 class IdentityResolution:
-    """Compares those who are here with those who were.
+    """Compares current people with absent ones.
 
     Attributes:
         config: settings.
-        time_s: [s] now.
-        is_lit: whether there is any appearance.
+        time_s: [s] current time.
+        is_lit: whether there is light for colours.
     """
 
     config: FusionConfig
@@ -38,14 +38,14 @@ class IdentityResolution:
     is_lit: bool
 
     def settled(self, people: Sequence[FusedPerson], numbers: Iterator[int]) -> list[FusedPerson]:
-        """Number those who turned up, as soon as it is plain who they are, or late enough.
+        """Number new people as soon as their identity is unambiguous, or after a time limit.
 
-        All of them are compared with all who are away at once. Who is taken for a person who seemed to be
-        seen, but was not known by appearance of late, has that one's number.
+        All new people are compared with all absent ones at once. A new person who matches a seemingly visible
+        person without a recent match of appearance takes over the number.
 
         Args:
-            people: everybody; who turned up has a negative id.
-            numbers: of people who were never here before.
+            people: all; new people have negative ids.
+            numbers: for people who were never seen before.
         """
         guests = [one for one in people if one.is_guest]
         away = [one for one in people if not one.is_guest and self._is_away(one)]
@@ -62,19 +62,19 @@ class IdentityResolution:
         return list(known.values())
 
     def _is_away(self, person: FusedPerson) -> bool:
-        """Return whether a person may be elsewhere: who is not seen, or not known by appearance of late."""
+        """Return whether a person may be elsewhere: not seen, or without a recent match of appearance."""
         is_doubted = (
             self.is_lit and person.appearance is not None and self.time_s - person.appearance_s > _DOUBTED_S
         )
         return not person.is_seen or is_doubted
 
     def _is_plain(self, guest: FusedPerson, costs: Floats, chosen: int | None) -> bool:
-        """Return whether it is time to say who a person is.
+        """Return whether it is time to decide a person's identity.
 
         Args:
-            guest: who turned up.
-            costs: (N,) how unlikely it is that this is each of those who are away.
-            chosen: which of them it is most likely; None for nobody.
+            guest: the new person.
+            costs: (N,) cost of each absent person.
+            chosen: index of the best candidate; None if there is none.
         """
         is_late = self.time_s - guest.born_s >= self.config.settled_s
         if not self.is_lit or is_late or len(costs) == 0:
@@ -87,10 +87,10 @@ class IdentityResolution:
         return bool((others - costs[chosen] >= self.config.plain).all())
 
     def resolve_swaps(self, people: Sequence[FusedPerson]) -> list[FusedPerson]:
-        """Return people who look like another that one's number.
+        """Resolve identity swaps: give people the number of the person they resemble.
 
-        Who has looked otherwise for a while changes with a person of its appearance who is away, or looks
-        otherwise, too. A new person may turn out to be one who is away.
+        A person with a different appearance for some time swaps with a person of that appearance who is
+        absent, or also looks different. A new person may turn out to be an absent one.
         """
         known = {one.id: one for one in people}
         for number in list(known):
@@ -106,7 +106,7 @@ class IdentityResolution:
         return list(known.values())
 
     def _strangeness(self, person: FusedPerson, guest: FusedPerson) -> float:
-        """Rate how unlikely it is that a guest is a person; infinite if it is out of the question."""
+        """Return the cost of a new person being a known one; infinite if impossible."""
         if person.is_seen and guest.appearance is None:
             return math.inf
         is_own = person.depth == guest.depth if guest.depth is not None else person.heat == guest.heat
@@ -117,7 +117,7 @@ class IdentityResolution:
         )
 
     def _distance(self, person: FusedPerson, guest: FusedPerson) -> float:
-        """Rate the distance since a person was last recognised by appearance, or else seen: 1 at most."""
+        """Return the cost, at most 1, of the distance from the last match of appearance or observation."""
         config = self.config
         late_s, last_m = self.time_s - person.seen_s, person.motion.place_m
         if guest.appearance is not None and person.appearance_m is not None:
@@ -130,7 +130,7 @@ class IdentityResolution:
         return found if found <= 1.0 else math.inf
 
     def _unlikeness(self, person: FusedPerson, guest: FusedPerson, *, is_own: bool) -> float:
-        """Rate how different appearance and height are; height alone decides without appearance."""
+        """Return the cost of differences in appearance and height; height alone without appearance."""
         config = self.config
         off = 0.0
         if guest.depth is not None and person.depth is not None:
@@ -145,7 +145,7 @@ class IdentityResolution:
         return self.time_s - person.born_s < self.config.young_s
 
     def _other(self, person: FusedPerson, people: Sequence[FusedPerson]) -> FusedPerson | None:
-        """Find whose appearance a person has who looks otherwise, or is new."""
+        """Return the person whose appearance matches that of a person who looks different, or is new."""
         reported, is_strange = person.deep, person.strange >= self.config.strange_frames
         if reported is None or reported.appearance is None:
             return None

@@ -1,4 +1,4 @@
-"""What the two trackers tell, each checked by the image of the other."""
+"""Tracks of the two trackers, each verified in the image of the other sensor."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
 from peopleboy.tracker.track import Status, Track
 
 LIT: Final = 40.0
-"""Mean grey of the colour image from which on colours mean anything."""
+"""Mean grey of the colour image from which colours are usable."""
 
-_EVERY: Final = 16  # pixels from one that is looked at for light to the next
-_MISSED_S: Final = 0.15  # after which who is not found is not seen any more
-_OWN_M: Final = 0.35  # from a person's place, within which a detection is its own
+_EVERY: Final = 16  # every so many pixels are sampled to measure the light
+_MISSED_S: Final = 0.15  # after which an undetected person no longer counts as seen
+_OWN_M: Final = 0.35  # from a person's position, within which a detection is its own
 
 
 class Heat:
-    """The thermal tracker, without tracks through which the depth camera sees what is behind.
+    """The thermal tracker, without tracks where the depth camera sees the background.
 
     Args:
-        tracker: finds people in the thermal image.
+        tracker: detects people in the thermal image.
         config: settings.
     """
 
@@ -41,7 +41,7 @@ class Heat:
         self._images = FreshImages(THERMAL)
 
     def reported(self, frame: Frame, pose: Pose2) -> list[SensorTrack]:
-        """Return for everybody; nobody without a new image."""
+        """Return all tracks; none without a new image."""
         fresh = self._images.of(frame)
         if fresh is None:
             return []
@@ -53,20 +53,20 @@ class Heat:
 
     def _is_seen_through(self, track: Track, frame: Frame) -> bool:
         if track.place is None:
-            return True  # nobody can say where to look
+            return True  # the position is unknown, so that depth cannot disagree
         reach_m = REACH_M + 3.0 * math.sqrt(track.place.covariance_m2[0])
         found = depth_visibility(np.array(track.place.position_m), WIDE_M, TALL_M, frame, reach_m)
         return found is not None and found.beyond > self._config.seen_through
 
 
 class Depth:
-    """The tracker by depth, without those who are cold.
+    """The depth tracker, without cold objects.
 
     Attributes:
-        is_lit: whether colours meant anything in the last image.
+        is_lit: whether colours were usable in the last image.
 
     Args:
-        tracker: finds people in the depth image.
+        tracker: detects people in the depth image.
         config: settings.
     """
 
@@ -77,7 +77,7 @@ class Depth:
         self.is_lit = False
 
     def reported(self, frame: Frame, pose: Pose2) -> list[SensorTrack]:
-        """Return for everybody; nobody without a new image."""
+        """Return all tracks; none without a new image."""
         fresh = self._images.of(frame)
         if fresh is None:
             return []
@@ -141,7 +141,7 @@ def _deep(
 
 
 def _body_of(person: Hypothesis, detections: Sequence[Detection]) -> Body | None:
-    """Return what the detection that is nearest to a person measures; None without one."""
+    """Return the measurement of the detection nearest to a person, or None."""
     ways = {k: math.dist(one.place_m, person.place_m) for k, one in enumerate(detections)}
     nearest = min(ways, key=lambda k: ways[k], default=None)
     return detections[nearest].body if nearest is not None and ways[nearest] < _OWN_M else None

@@ -1,4 +1,4 @@
-"""Which fused person a track belongs to: by bearing and range, appearance, height and memory."""
+"""Association of tracks with fused people: by bearing and range, appearance, height and history."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _NEVER: Final = 1e6
 
 
 def distance2(person: FusedPerson, reported: SensorTrack, floor_m: float) -> float:
-    """Return by how much a reported place differs from a person's place: squared, in standard deviations.
+    """Return the squared Mahalanobis distance between a reported position and a person's position.
 
-    A thermal track is sure of its bearing and not of its range; one by depth is sure of both.
+    A thermal track has a certain bearing and an uncertain range; a depth track is certain of both.
     """
     away = reported.place_m - person.motion.place_m
     error = reported.error_m2 + person.motion.place_m2 + np.eye(2) * floor_m**2
@@ -31,13 +31,13 @@ def distance2(person: FusedPerson, reported: SensorTrack, floor_m: float) -> flo
 def cost(
     person: FusedPerson, reported: SensorTrack, own: int | None, time_s: float, config: FusionConfig
 ) -> float:
-    """Return the cost of a person's report; infinite if it is out of the question.
+    """Return the cost of assigning a report to a person; infinite if impossible.
 
     Args:
-        person: where it is expected.
-        reported: a tracker's report.
-        own: id of that tracker's track that was the person's before.
-        time_s: [s] now.
+        person: the predicted person.
+        reported: a tracker's output.
+        own: id of that tracker's previous track of the person.
+        time_s: [s] current time.
         config: settings.
     """
     if time_s - person.seen_s > config.away_s:
@@ -51,19 +51,19 @@ def cost(
 
 
 def is_contradicted(person: FusedPerson, reported: SensorTrack, config: FusionConfig) -> bool:
-    """Return whether a thermal track is at another bearing than a person that depth sees whole."""
+    """Return whether a thermal track has another bearing than a person that depth sees fully."""
     deep = person.deep
     if reported.box is None or deep is None or not deep.is_clear:
         return False
     (xx, xy), (_, yy) = reported.error_m2.tolist()
-    _, sight = principal_axes(xx, xy, yy)  # the line of sight, along which heat is unsure
+    _, sight = principal_axes(xx, xy, yy)  # the line of sight, along which the thermal image is uncertain
     x, y = (reported.place_m - deep.place_m).tolist()
     aside_m: float = abs(math.cos(sight) * y - math.sin(sight) * x)
     return aside_m > config.beside_m
 
 
 def _unlikeness(person: FusedPerson, reported: SensorTrack, config: FusionConfig) -> float:
-    """Rate how different appearance and height are; 0 as far as they are not known."""
+    """Return the cost of differences in appearance and height; 0 where unknown."""
     found = 0.0
     if reported.appearance is not None and person.appearance is not None:
         found += config.appearance_weight * (1.0 - similarity(person.appearance, reported.appearance))
@@ -79,13 +79,13 @@ def pairs(
     time_s: float,
     config: FusionConfig,
 ) -> dict[int, int]:
-    """Match people and reports, each at most once, so that all pairs together cost least.
+    """Match people and reports, each at most once, at least total cost.
 
     Args:
         people: N.
         reported: M.
-        owns: of each person the id of its track of before.
-        time_s: [s] now.
+        owns: id of each person's previous track.
+        time_s: [s] current time.
         config: settings.
 
     Returns:
@@ -99,7 +99,7 @@ def pairs(
 
 
 def cheapest(costs: Floats) -> dict[int, int]:
-    """Match rows and columns of costs (N, M): as many as can be, as cheaply as can be."""
+    """Match rows and columns of costs (N, M): as many as possible, at least total cost."""
     if costs.size == 0:
         return {}
     rows, columns = linear_sum_assignment(np.where(np.isfinite(costs), costs, _NEVER))

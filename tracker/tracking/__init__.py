@@ -1,1 +1,1 @@
-"""People tracked by what a learned detector proposes: any camera, any room."""
+"""Tracking by detection: a learned people detector and a Kalman filter, for any camera and any room."""

@@ -1,4 +1,4 @@
-"""What people wear: the colours of torso and legs, where a colour camera sees them."""
+"""Appearance of people: colour histograms of torso and legs, and small thermal patterns."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.tracker.frame import COLOUR, THERMAL, Floats, Frame
 from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
-# From the image of one camera to that of another one beside it, on the same robot.
+# Transfer of boxes from one camera to another camera on the same robot.
 
 
 def transfer_boxes(
     boxes: Floats, view: Viewpoint, here: PinholeCalibration, there: PinholeCalibration
 ) -> Floats:
-    """Return where people who have boxes (M, 4) [px] in one image are in the other, if all are equally tall.
+    """Return boxes (M, 4) [px] of one image in the other image, assuming that everybody has the same height.
 
     Args:
         boxes: in the image of the first camera.
-        view: of that camera.
-        here: its calibration.
-        there: that of the other camera.
+        view: viewpoint of the first camera.
+        here: calibration of the first camera.
+        there: calibration of the other camera.
 
     Returns:
         (M, 4) [px], 0 for people outside the other camera's view.
@@ -34,7 +34,7 @@ def transfer_boxes(
     feet = view.feet(boxes)
     left, top, width, height = boxes.T
     ends = [np.stack([left + width / 2.0, row], axis=1) for row in (top, top + height)]
-    # Points of the person are as far ahead as the feet.
+    # All points of a person are assumed to have the depth of the feet.
     points = [here.rays(end) for end in ends]
     level = [ray / np.maximum(ray[:, :1], 1e-3) * feet[:, 2:] + np.array(here.position_m) for ray in points]
     above, below = (there.project(end) for end in level)
@@ -46,16 +46,16 @@ def transfer_boxes(
 
 Colours = NDArray[np.float32]
 
-_PARTS: Final = ((0.18, 0.5), (0.55, 0.9))  # of torso and legs, from the top, in heights
-_WIDE: Final = 0.6  # of the box
-_BINS: Final = (4, 8, 8)  # of brightness and of both opponent colours
-_SPREAD: Final = 60.0  # of the opponent colours that the bins cover
-_DARK: Final = 24.0  # grey up to which colours are unknown
+_PARTS: Final = ((0.18, 0.5), (0.55, 0.9))  # top and bottom of torso and legs, in heights from the top
+_WIDE: Final = 0.6  # share of the box's width that is sampled
+_BINS: Final = (4, 8, 8)  # bins of brightness and of both opponent colours
+_SPREAD: Final = 60.0  # range of the opponent colours that the bins cover
+_DARK: Final = 24.0  # grey below which colours are ignored
 _LEAST_PX: Final = 12
 _LEAST_INSIDE: Final = 0.6
-"""Share of a part's height in the image: hips are no legs.
+"""Least share of a part's height inside the image: hips are not legs.
 
-Where the floor is not known nobody knows how far legs go on below the image, and what is seen counts.
+Without a known floor the extent of legs below the image is unknown, and the visible part counts.
 """
 
 PARTS: Final = len(_PARTS)
@@ -63,11 +63,11 @@ FEATURES: Final = PARTS * _BINS[0] * _BINS[1] * _BINS[2]
 
 
 def describe_colours(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
-    """Describe who has boxes (M, 4) in the thermal image by colours (M, FEATURES).
+    """Return the colour descriptors (M, FEATURES) of people with boxes (M, 4) in the thermal image.
 
-    The product of two rows is Bhattacharyya's coefficient: 1 for the same colours, 0 for none in common. Of
-    whose torso is not seen a row is 0, and so is the half of legs that are mostly outside the image of a
-    camera that is known.
+    The product of two rows is the Bhattacharyya coefficient: 1 for equal colours, 0 for disjoint ones. A row
+    is 0 if the torso is not visible; with a calibrated camera the half for the legs is 0 if most of them are
+    outside the image.
     """
     result = np.zeros((len(boxes), FEATURES), np.float32)
     if COLOUR not in frame.images or len(boxes) == 0:
@@ -80,15 +80,15 @@ def describe_colours(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
 
 
 def colour_similarity(one: Colours, other: Colours) -> float:
-    """Return Bhattacharyya's coefficient of colours: of the same clothes above 0.8, of others below 0.4."""
+    """Return the Bhattacharyya coefficient of colours: above 0.8 for equal clothes, below 0.4 for others."""
     return float(one @ other) * PARTS / max(_common_parts(one, other), 1)
 
 
 def colour_similarities(some: Colours, others: Colours) -> tuple[Colours, NDArray[np.bool_]]:
-    """Compare colours (K, FEATURES) and (M, FEATURES) by the parts that are seen of both.
+    """Compare colours (K, FEATURES) and (M, FEATURES) by the parts that are visible in both.
 
     Returns:
-        (K, M) Bhattacharyya's colour_similarities, 0 where nothing is, and whether something is (K, M).
+        (K, M) Bhattacharyya coefficients, 0 without a common part, and (K, M) whether there is a common part.
     """
     ours, theirs = (_are_seen(rows).astype(np.float32) for rows in (some, others))
     seen = ours @ theirs.T
@@ -96,19 +96,19 @@ def colour_similarities(some: Colours, others: Colours) -> tuple[Colours, NDArra
 
 
 def blend_colours(before: Colours, now: Colours, share: float) -> Colours:
-    """Return the colours that are remembered after others are seen, by the parts that are."""
+    """Return the remembered colours, updated with the parts that are visible now."""
     result = np.empty_like(before)
     _blend(before, now, np.float32(share), result)
     return result
 
 
 def _are_seen(colours: Colours) -> NDArray[np.bool_]:
-    """Return for colours (K, FEATURES) of which parts (K, PARTS) something is seen."""
+    """Return for colours (K, FEATURES) which parts are visible, (K, PARTS)."""
     return np.asarray(colours.reshape(len(colours), PARTS, -1).max(axis=2) > 0.0)
 
 
 def _seen_there(frame: Frame, boxes: Floats, view: Viewpoint, shape: tuple[int, int]) -> Floats:
-    """Carry boxes (M, 4) over to the colour image; one of unknown cameras shows what the thermal one does."""
+    """Transfer boxes (M, 4) to the colour image; uncalibrated images are assumed to be aligned."""
     thermal, colour = frame.calibrations.get(THERMAL), frame.calibrations.get(COLOUR)
     if not (isinstance(thermal, PinholeCalibration) and isinstance(colour, PinholeCalibration)):
         rows, columns = frame.grey(THERMAL).shape
@@ -117,11 +117,11 @@ def _seen_there(frame: Frame, boxes: Floats, view: Viewpoint, shape: tuple[int, 
 
 
 def _bins_of(values: Floats, bins: int) -> NDArray[np.uint8]:
-    """Return in which of so many bins values are; what is beyond -_SPREAD to _SPREAD is in the outer ones."""
+    """Return the bins of values; values outside -_SPREAD to _SPREAD are in the outer bins."""
     return np.clip(np.floor((values + _SPREAD) * bins / (2.0 * _SPREAD)), 0, bins - 1).astype(np.uint8)
 
 
-# Of red + green + blue from 0 on, red - green from -255 on, and 2 blue - red - green from -510 on.
+# Lookup tables for red + green + blue (from 0), red - green (from -255), 2 blue - red - green (from -510).
 _BIN_OF: Final = (
     _bins_of(np.arange(766.0) / 3.0 * (_SPREAD / 128.0) - _SPREAD, _BINS[0]),
     _bins_of(np.arange(-255.0, 256.0), _BINS[1]),
@@ -140,7 +140,7 @@ def _describe(
     of_blue: NDArray[np.uint8],
     result: Colours,
 ) -> None:  # pragma: no cover
-    """Describe boxes (M, 4) of an image (H, W, 3) by parts (2, 2), of which so much must be in the image."""
+    """Describe boxes (M, 4) of an image (H, W, 3) by parts (2, 2) with a least share inside the image."""
     rows = float(image.shape[0])
     size = result.shape[1] // len(parts)
     for number, (left, top, width, height) in enumerate(boxes):
@@ -165,9 +165,9 @@ def _histogram(
     of_blue: NDArray[np.uint8],
     bins: Colours,
 ) -> bool:  # pragma: no cover
-    """Return the roots of shares of pixels (h, w, 3) by brightness and opponent colours, if they are enough.
+    """Return square roots of pixel shares (h, w, 3) by brightness and opponent colours, if enough are seen.
 
-    Of all parts together squares add up to 1.
+    The squares of all parts add up to 1.
     """
     count, total = pixels.shape[0] * pixels.shape[1], 0
     if count < _LEAST_PX:
@@ -187,7 +187,7 @@ def _histogram(
 
 @njit(cache=True, nogil=True)
 def _common_parts(one: Colours, other: Colours) -> int:  # pragma: no cover
-    """Count the parts that are seen of both."""
+    """Count the parts that are visible in both."""
     count, size = 0, len(one) // PARTS
     for first in range(0, len(one), size):
         if one[first : first + size].any() and other[first : first + size].any():
@@ -208,7 +208,7 @@ def _blend(before: Colours, now: Colours, share: np.float32, result: Colours) ->
             put[k] = was[k] + gain * (seen[k] - was[k])
 
 
-# How people look in the thermal image: a small pattern of warm and cold.
+# Thermal appearance: a small pattern of warm and cold.
 
 Pattern = NDArray[np.float32]
 
@@ -219,9 +219,9 @@ _FAINT_GREY: Final = 4.0  # contrast below which a pattern is mostly noise
 
 
 def describe_patterns(image: NDArray[np.float32], boxes: NDArray[np.float64]) -> Pattern:
-    """Describe what is in boxes (M, 4) of an image (H, W): (M, SAMPLES), mean 0 and length up to 1.
+    """Return the patterns (M, SAMPLES) of boxes (M, 4) of an image (H, W), with mean 0 and length up to 1.
 
-    Neither the brightness of the image nor its contrast matters.
+    They do not depend on the brightness or contrast of the image.
     """
     across = (np.arange(COLUMNS) + 0.5) / COLUMNS
     down = (np.arange(ROWS) + 0.5) / ROWS

@@ -1,4 +1,4 @@
-"""Association of detections with tracks by position and appearance; those seen last come first."""
+"""Association of detections with tracks by position and appearance; recently seen tracks come first."""
 
 from __future__ import annotations
 
@@ -41,18 +41,18 @@ def associate(
     time_s: float,
     config: AssociationConfig,
 ) -> dict[int, int]:
-    """Return the number of each target's detection, by the target's number.
+    """Return the index of each associated track's detection, by the index of the track.
 
     Args:
-        targets: K of them.
-        distance: (K, M) Mahalanobis.
-        overlap: (K, M) of boxes.
-        likeness: (K, M) of pattern, -1 to 1.
-        is_coloured: (K, M) whether that is by colours, which tell a person who was lost wherever he is.
-        score: (M,) of detections.
-        known: targets whose detections are known.
-        time_s: now.
-        config: what things cost.
+        targets: K tracks.
+        distance: (K, M) Mahalanobis distances.
+        overlap: (K, M) overlaps of the boxes.
+        likeness: (K, M) similarity of appearance, -1 to 1.
+        is_coloured: (K, M) whether the similarity is that of colours, which reidentify a lost track anywhere.
+        score: (M,) scores of the detections.
+        known: tracks whose detections are already known.
+        time_s: current time.
+        config: association costs.
     """
     ranks = np.array([_rank(target, time_s, config) for target in targets], int)
     is_lost = ranks[:, None] == _LOST
@@ -78,20 +78,20 @@ def associate(
 
 
 def _rank(target: TrackState, time_s: float, config: AssociationConfig) -> int:
-    """Return whose turn it is: those who are seen, those who may be a person, and those who were lost."""
+    """Group the tracks in order of association: seen recently, tentative, lost."""
     if not target.is_confirmed:
         return _TENTATIVE
     return _SEEN if time_s - target.seen_s < config.lost_s else _LOST
 
 
-# Which tracks overlap in the image, and which is in front.
+# Overlaps of tracks in the image, and their depth order.
 
 Flags = NDArray[np.bool_]
 
-_COVERED: Final = 0.35  # share of a box that is hidden by who stands in front
-_LOWER: Final = 0.03  # who stands so much lower in the image, in heights, is in front
+_COVERED: Final = 0.35  # share of a box that is covered by an occluder
+_LOWER: Final = 0.03  # a person whose feet are this much lower in the image, in heights, is in front
 CLEAR: Final = 0.2
-"""Overlap up to which a person is seen apart from another one."""
+"""Greatest overlap at which a person counts as separate from another one."""
 
 
 def are_overlapped(expected: Floats, is_confirmed: Flags) -> Flags:
@@ -101,7 +101,7 @@ def are_overlapped(expected: Floats, is_confirmed: Flags) -> Flags:
 
 
 def find_occluders(expected: Floats, is_confirmed: Flags, found: Iterable[int]) -> list[int | None]:
-    """Return for each of K people with boxes (K, 4) who of those who were found may hide it."""
+    """Return for each of K people with boxes (K, 4) the detected person that may occlude them."""
     covered = cover(intersection(expected[:, None], expected[None]), area(expected)[:, None])
     foot = expected[:, 1] + expected[:, 3]
     hides = (
@@ -116,13 +116,13 @@ def find_occluders(expected: Floats, is_confirmed: Flags, found: Iterable[int]) 
 
 
 def shared_area(boxes: Floats, theirs: Sequence[int]) -> Floats:
-    """Return what share of the smaller box each of (M, 4) has in common with one of some others, at most."""
+    """Return the greatest share of the smaller box that each of (M, 4) shares with one of the others."""
     share = shared_of_smaller(boxes[:, None], boxes[None, theirs])
     share[theirs, np.arange(len(theirs))] = 0.0
     return np.asarray(share.max(axis=1, initial=0.0))
 
 
-# What is proposed in one image, and how it looks.
+# Detections of one image with their appearance.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -130,10 +130,10 @@ class DescribedDetections:
     """M detections.
 
     Attributes:
-        boxes: (M, 4) [px].
-        scores: (M,) log odds.
-        trees: (M,) likewise, as the detector's trees see it alone.
-        pattern: (M, 72) in the thermal image; 0 of those who are followed.
+        scores: (M,) log-odds.
+        trees: (M,) log-odds by the detector's trees alone.
+        pattern: (M, 72) thermal pattern; 0 for boxes located by their templates.
+        colours: (M, 512) of clothes; 0 for boxes located by their templates and where colours are unknown.
         colours: (M, 512) of clothes; 0 of those, too, and where nobody knows.
     """
 
@@ -145,7 +145,7 @@ class DescribedDetections:
 
     @classmethod
     def of(cls, frame: Frame, found: Detections, view: Viewpoint, followed: int = 0) -> DescribedDetections:
-        """Look at what is proposed in a frame, but for the last few, who are followed."""
+        """Describe the detections of a frame, except the last few, which were located by their templates."""
         count = len(found.box)
         pattern, colours = np.zeros((count, SAMPLES), np.float32), np.zeros((count, FEATURES), np.float32)
         new = slice(count - followed)
@@ -158,15 +158,16 @@ class DescribedDetections:
         return len(self.boxes)
 
     def without_colours(self, rows: NDArray[np.bool_]) -> DescribedDetections:
-        """Return these without the colours of some (M,), which may be another person's."""
+        """Return them without the colours of some (M,), which may be another person's."""
         return replace(self, colours=np.where(rows[:, None], np.float32(0.0), self.colours))
 
     def likeness(self, targets: list[TrackState]) -> tuple[Floats, NDArray[np.bool_]]:
-        """Return how colour_similarity K targets and these are.
+        """Return the similarity of appearance of K tracks and these detections.
 
         Returns:
-            (K, M) -1 to 1, by colours where they are known, else by warmth, and whether they are (K, M).
-            Colours of the same clothes are mostly above 0.6, and of others below -0.2; warmth says little.
+            (K, M) similarity from -1 to 1, by colours where they are known and else by the thermal pattern,
+            and whether it is that of colours (K, M). Similarities of the same clothes are mostly above 0.6
+            and those of different clothes below -0.2; thermal patterns discriminate little.
         """
         warm = np.stack([target.pattern for target in targets]) @ self.pattern.T
         worn = np.stack([target.colours for target in targets])
@@ -174,20 +175,20 @@ class DescribedDetections:
         return np.where(is_known, 2.0 * same - 1.0, warm).astype(np.float64), is_known
 
     def ratio(self, row: int) -> float:
-        """Return the width of a box over its height."""
+        """Return the width of a box divided by its height."""
         return float(self.boxes[row, 2] / self.boxes[row, 3])
 
 
-# What the tracker by detection believes beyond its tracks.
+# The tracker's explanation: its detections.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class DetectionExplanation:
-    """What was proposed in the last frame.
+    """The detections of the last frame.
 
     Attributes:
         boxes: (M, 4) [px] in the thermal image.
-        scores: (M,) log odds that they are people.
+        scores: (M,) log-odds that they are people.
     """
 
     boxes: Floats

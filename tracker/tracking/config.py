@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 STATURE_M: Final = 1.72
-"""Assumed stature of a person, by which the height of a box gives the distance."""
+"""Assumed stature of a person, from which the height of a box gives the distance."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

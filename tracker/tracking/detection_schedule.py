@@ -1,4 +1,4 @@
-"""Where an image is looked at, and how closely: everywhere, where a person should be, or hardly."""
+"""Detection schedule: search the whole image, rescore predicted boxes, or follow templates."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ _WHOLE: Final = 0.99  # share of a box that must be inside the image
 
 
 class Schedule(NamedTuple):
-    """What is looked at in one image.
+    """What the detector does in one image.
 
     Attributes:
-        everywhere: whether the detector looks for anybody.
-        expected: boxes (4,) [px] in which the detector's networks look at who is known, by their row; where
-            it looks for anybody its trees pass them by.
-        followed: boxes of tracks found by their templates, without other detections, likewise.
+        everywhere: whether the detector searches the whole image.
+        expected: predicted boxes (4,) [px] of tracks by their row; the detector's networks rescore them, and
+            a search of the whole image adds them to the detections of its trees.
+        followed: boxes of tracks located by their templates, without other detections, by their row.
     """
 
     everywhere: bool
@@ -34,13 +34,13 @@ class Schedule(NamedTuple):
     followed: Mapping[int, Floats]
 
     def proposed(self, targets: Sequence[TrackState]) -> Detections:
-        """Propose who is expected, as sure as trees were when they last found them, the surest first."""
+        """Return the predicted boxes as detections with their last tree scores, the best first."""
         trees = np.array([targets[row].trees for row in self.expected], np.float64)
         found = Detections.from_trees(np.array(list(self.expected.values())).reshape(-1, 4), trees)
         return found.take(np.argsort(-trees, kind="stable"))
 
     def with_followed(self, found: Detections, targets: Sequence[TrackState]) -> Detections:
-        """Return who was found by the detector, and then who is followed, as sure as when last looked at."""
+        """Return the detector's boxes, then the template boxes with their last rescored scores."""
         if not self.followed:
             return found
         who = [targets[row] for row in self.followed]
@@ -52,7 +52,7 @@ class Schedule(NamedTuple):
 
 
 class DetectionSchedule:
-    """Decides where to look, image by image."""
+    """Decides for each image where the detector runs."""
 
     def __init__(self) -> None:
         self._everywhere_s = self._last_s = -math.inf
@@ -66,15 +66,15 @@ class DetectionSchedule:
         breadth: float,
         config: DetectionScheduleConfig,
     ) -> Schedule:
-        """Decide it for the next image.
+        """Return the detection plan of the next image.
 
         Args:
             grey: (H, W) the image.
-            targets: whoever is known, K.
-            expected: (K, 4) where they should be [px].
+            targets: all K tracks.
+            expected: (K, 4) their predicted boxes [px].
             time_s: when the image was taken.
-            breadth: how wide the camera pattern, as `Viewpoint` has it.
-            config: what it takes.
+            breadth: width of the field of view, as defined by `Viewpoint`.
+            config: settings.
         """
         last_s, self._last_s = self._last_s, time_s
         seen_s = np.array([target.seen_s for target in targets])
@@ -103,7 +103,7 @@ def _shown(
     expected: Floats,
     config: DetectionScheduleConfig,
 ) -> dict[int, Floats]:
-    """Return the boxes (4,) of those of K tracks that their templates find, by row."""
+    """Return the boxes (4,) of those of K tracks that are located by their templates, by row."""
     shown = {}
     for row in np.flatnonzero(these).tolist():
         template = targets[row].template
@@ -118,6 +118,6 @@ def _are_sure(targets: Sequence[TrackState]) -> NDArray[np.bool_]:
 
 
 def _are_apart(expected: Floats, counts: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return whose boxes (K, 4) touch no other one that counts, (K,)."""
+    """Return which boxes (K, 4) touch no other box that counts, (K,)."""
     common = intersection(expected[:, None], expected[None]) * ~np.eye(len(expected), dtype=bool)
     return np.asarray(~(counts[None] & (common > 0.0)).any(axis=1))

@@ -1,4 +1,4 @@
-"""The tracker by detection: what is proposed in single images becomes people who last."""
+"""The detection tracker: detections in single images become lasting tracks."""
 
 from __future__ import annotations
 
@@ -50,13 +50,13 @@ from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 FIRST_STEP_S: Final = 1 / 15
 _STANDING: Final = Odometry()
-_TAKEN: Final = 0.45  # overlap with a track from which a detection is not a new person
+_TAKEN: Final = 0.45  # overlap with a track at which a detection does not initiate a track
 
 
 class _Instant(NamedTuple):
-    """When a frame was taken [s], how long after the last one [s], from where, and what is believed there.
+    """Context of one frame: time [s], time step [s], viewpoint, and evidence settings for its calibration.
 
-    Its outline is (4,) [px].
+    The outline of its image is (4,) [px].
     """
 
     time_s: float
@@ -70,13 +70,13 @@ class _Instant(NamedTuple):
 
 
 class DetectionTracker:
-    """Follows people in metres round the camera by what a detector proposes, and by portraits in between.
+    """Tracks people in metres around the camera by a learned detector, and by templates in between.
 
-    A track is confirmed by enough evidence, and identities are decided late.
+    A track is confirmed by accumulated evidence, and identities are resolved late.
     """
 
     def __init__(self, config: DetectionTrackerConfig | None = None, find: Finder | None = None) -> None:
-        """Make one that finds people by the learned detector in both images, or by something else."""
+        """Make one that detects people with the learned detector in both images, or with another finder."""
         self._config = DetectionTrackerConfig() if config is None else config
         self._find = PeopleFinder(self._config) if find is None else find
         self._introduced: Box | None = None
@@ -90,23 +90,23 @@ class DetectionTracker:
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """The thermal camera, and the colour one, by which people are found, too, and known again."""
+        """The thermal camera, and the colour camera, used for detection and re-identification."""
         return (THERMAL, COLOUR)
 
     @property
     def explanation(self) -> DetectionExplanation:
-        """What was proposed in the last frame."""
+        """The detections of the last frame."""
         return self._explanation
 
     def introduce(self, box: Box) -> None:
-        """Report that a person is at this box [px] in the next frame, as for trackers of single objects."""
+        """Report that a person is at this box [px] in the next frame, as for single-object trackers."""
         self._introduced = box
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Take in the next frame and tell who is seen.
+        """Process the next frame and return the reported tracks.
 
         Raises:
-            BadInput: time that does not go forward.
+            BadInput: the time does not increase.
         """
         check_frame(frame)
         rows, columns = frame.grey(THERMAL).shape
@@ -182,7 +182,7 @@ class DetectionTracker:
         proposed: DescribedDetections,
         now: _Instant,
     ) -> None:
-        """Take in what is seen of those who were found, and look for who hides the others."""
+        """Update the detected tracks, and find the occluders of the others."""
         is_confirmed = self._are_confirmed()
         front = find_occluders(expected, is_confirmed, found)
         is_beside, common = (
@@ -217,7 +217,7 @@ class DetectionTracker:
     def _update_templates(
         self, frame: Frame, looked: Set[tuple[int, int]], proposed: DescribedDetections, aim: Schedule
     ) -> None:
-        """Keep the appearance of tracks that the detector updated."""
+        """Update the appearance of tracks that the detector found."""
         for row, column in looked:
             target = self._targets[row]
             target.rescored_s, target.score = frame.time_s, float(proposed.scores[column])
@@ -232,7 +232,7 @@ class DetectionTracker:
         was_lost: NDArray[np.bool_],
         view: Viewpoint,
     ) -> None:
-        """Take in where people are; of who was lost the way was guessed, and begins anew."""
+        """Update the motion filters; that of a lost track starts anew, as its path was extrapolated."""
         config = self._config.motion
         later = update_states(self._paths.take(rows), boxes, view, config)
         if was_lost.any():
@@ -243,11 +243,11 @@ class DetectionTracker:
         return target.is_confirmed and target.seen_s < now.time_s - now.association.lost_s
 
     def _known(self, found: dict[int, int]) -> list[int]:
-        """Return the numbers of the detections of confirmed tracks."""
+        """Return the detection indices of confirmed tracks."""
         return [column for row, column in found.items() if self._targets[row].is_confirmed]
 
     def _initiate(self, found: dict[int, int], proposed: DescribedDetections, now: _Instant) -> None:
-        """Begin to follow whoever is proposed where nobody is."""
+        """Initiate tracks from detections away from existing tracks."""
         is_free = proposed.scores >= now.existence.birth
         is_free[list(found.values())] = False
         recent = [target.seen_s > now.time_s - now.association.lost_s for target in self._targets]
@@ -258,7 +258,7 @@ class DetectionTracker:
         self._add(np.flatnonzero(is_free), proposed.without_colours(is_mixed), now)
 
     def _initiate_at(self, box: Floats, frame: Frame, now: _Instant) -> None:
-        """Follow a person who is pointed out, instead of whoever was found there."""
+        """Initiate a track at a hint, replacing any track that was there."""
         strangers = (iou(self._boxes(now.view)[:, None], box[None]) < _TAKEN).all(axis=1)
         kept = np.flatnonzero(strangers) if self._targets else np.empty(0, int)
         self._paths = self._paths.take(kept)
@@ -268,7 +268,7 @@ class DetectionTracker:
         self._confirm(self._targets[-1], -math.inf, now.existence)  # a hint is certain
 
     def _add(self, free: NDArray[np.intp], proposed: DescribedDetections, now: _Instant) -> None:
-        """Begin to follow some of those who are proposed."""
+        """Initiate tracks from some of the detections."""
         if len(free) == 0:
             return
         new = initiate(proposed.boxes[free], now.view, self._config.motion)
@@ -289,7 +289,7 @@ class DetectionTracker:
         ]
 
     def _manage(self, now: _Instant) -> None:
-        """Return for those who are sure, and forget those who are gone."""
+        """Return the confirmed tracks, and delete the tracks that are gone."""
         for target in self._targets:
             if target.seen_s == now.time_s and (
                 target.has_enough_evidence(now.existence) or target.is_confirmed
@@ -301,7 +301,7 @@ class DetectionTracker:
         self._targets = [self._targets[row] for row in kept]
 
     def _reidentify(self, target: TrackState, now: _Instant) -> None:
-        """Return for a person, who may be one of those who were lost."""
+        """Return the track of a person, which may continue a lost track."""
         if now.time_s - target.confirmed_s > now.reidentification.revised_s:
             return
         since = now.time_s - now.reidentification.lost_s
@@ -332,7 +332,7 @@ class DetectionTracker:
         target.log_odds = max(target.log_odds, config.confirmed)
 
     def _output_box(self, target: TrackState, box: Floats, time_s: float) -> Box:
-        """Return where a person is: between where the path leads and what the image shows, if it does."""
+        """Return the output box: a blend of the prediction and the detected box, if there is one."""
         if target.seen_s == time_s:
             box = box + self._config.motion.shown * (target.shown - box)
         left, top, width, height = box.tolist()

@@ -1,4 +1,4 @@
-"""Where people are in metres and where they go: an extended Kalman filter for each, all at once."""
+"""Positions and velocities of people in metres: one extended Kalman filter per track, vectorised."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ _LEAST_SPREAD: Final = 1e-9  # px^2
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StateEstimates:
-    """What is believed of K people's feet.
+    """State estimates of K people's feet.
 
     Attributes:
-        mean: (K, 7) place [m] and velocity [m/s] in the level frame of the camera, and build, the
-            logarithm of the stature over the usual one.
-        covariance: (K, 7, 7) of the same.
+        mean: (K, 7) position [m] and velocity [m/s] in the camera's level frame, and build, the logarithm of
+            the stature divided by the usual stature.
+        covariance: (K, 7, 7) of the mean.
     """
 
     mean: Floats
@@ -40,17 +40,17 @@ class StateEstimates:
         return len(self.mean)
 
     def take(self, rows: NDArray[np.intp]) -> StateEstimates:
-        """Return some of them."""
+        """Return some of the states."""
         return StateEstimates(self.mean[rows], self.covariance[rows])
 
     def joined(self, others: StateEstimates) -> StateEstimates:
-        """Return these and others."""
+        """Return these and other states."""
         return StateEstimates(
             np.concatenate([self.mean, others.mean]), np.concatenate([self.covariance, others.covariance])
         )
 
     def replaced(self, rows: NDArray[np.intp], others: StateEstimates) -> StateEstimates:
-        """Return these, with others in some rows."""
+        """Return a copy with some rows replaced."""
         mean, covariance = self.mean.copy(), self.covariance.copy()
         mean[rows], covariance[rows] = others.mean, others.covariance
         return StateEstimates(mean, covariance)
@@ -60,7 +60,7 @@ NOBODY = StateEstimates(np.empty((0, STATE)), np.empty((0, STATE, STATE)))
 
 
 def initiate(boxes: Floats, view: Viewpoint, config: KalmanConfig) -> StateEstimates:
-    """Begin paths where people are proposed (K, 4); nobody knows where they go."""
+    """Initiate states from detections (K, 4); the velocity is unknown."""
     feet = view.feet(boxes)
     build = np.zeros(len(feet))
     slope = view.slopes(feet, build)
@@ -79,7 +79,7 @@ def initiate(boxes: Floats, view: Viewpoint, config: KalmanConfig) -> StateEstim
 
 
 def predict(paths: StateEstimates, dt_s: float, moved: Odometry, config: KalmanConfig) -> StateEstimates:
-    """Carry paths on to the next frame, by white acceleration, and into the frame of a robot that moved."""
+    """Predict the states for the next frame, with white acceleration, in the frame of the moved robot."""
     mean, covariance = np.empty_like(paths.mean), np.empty_like(paths.covariance)
     pushed = np.square(config.acceleration_m_s2)
     _walk_on(paths.mean, paths.covariance, dt_s, _turn(moved), pushed, config.posture**2, mean, covariance)
@@ -89,14 +89,14 @@ def predict(paths: StateEstimates, dt_s: float, moved: Odometry, config: KalmanC
 
 
 def move_points(points_m: Floats, moved: Odometry) -> Floats:
-    """Return points (K, 3) of the level frame before the robot moved in that after it."""
+    """Transform points (K, 3) of the level frame by the robot's motion."""
     return np.asarray((points_m - (-moved.aside_m, 0.0, moved.advance_m)) @ _turn(moved).T)
 
 
 def mahalanobis_distances(
     paths: StateEstimates, boxes: Floats, view: Viewpoint, config: KalmanConfig
 ) -> Floats:
-    """Return the Mahalanobis distances (K, M) of detections (M, 4) from where people are expected."""
+    """Return the Mahalanobis distances (K, M) of detections (M, 4) from the predictions."""
     expected, slope = _expected(paths, view)
     deviation = np.maximum(expected[:, 2:] - expected[:, 1:2], 1.0) * _deviations(config)
     result = np.empty((len(paths), len(boxes)))
@@ -107,7 +107,7 @@ def mahalanobis_distances(
 def update_states(
     paths: StateEstimates, boxes: Floats, view: Viewpoint, config: KalmanConfig
 ) -> StateEstimates:
-    """Take in a box (K, 4) for each, and that feet are on the floor, where it is known."""
+    """Update each state with a box (K, 4), and with feet on the floor where the floor is known."""
     if len(paths) == 0:
         return paths
     expected, slope = _expected(paths, view)
@@ -118,7 +118,7 @@ def update_states(
 
 
 def predicted_boxes(paths: StateEstimates, view: Viewpoint, ratio: Floats) -> Floats:
-    """Return the boxes (K, 4) [px] of people who are so wide (K,), in heights."""
+    """Return the boxes (K, 4) [px] of people of these widths (K,), in heights."""
     column, head, foot = view.seen(paths.mean[:, :3], paths.mean[:, 6]).T
     height = np.maximum(foot - head, 1.0)
     width = ratio * height
@@ -127,7 +127,7 @@ def predicted_boxes(paths: StateEstimates, view: Viewpoint, ratio: Floats) -> Fl
 
 
 def floor_positions(paths: StateEstimates, camera_m: tuple[float, float, float]) -> list[FloorPlace]:
-    """Return where on the floor people stand in the frame of the robot whose camera is there [m]."""
+    """Return positions on the floor in the robot frame, given the camera's position [m]."""
     forward, left, _ = camera_m
     return [
         FloorPlace(
@@ -145,7 +145,7 @@ def _turn(moved: Odometry) -> Floats:
 
 
 def _expected(paths: StateEstimates, view: Viewpoint) -> tuple[Floats, Floats]:
-    """Return what is expected to be seen (K, 3), and its slopes (K, 3, 7)."""
+    """Return the predicted measurement (K, 3) and its Jacobian (K, 3, 7)."""
     feet, build = paths.mean[:, :3], paths.mean[:, 6]
     slope = np.zeros((len(paths), 3, STATE))
     slope[:, :, (0, 1, 2, 6)] = view.slopes(feet, build)
@@ -153,13 +153,13 @@ def _expected(paths: StateEstimates, view: Viewpoint) -> tuple[Floats, Floats]:
 
 
 def _ends(boxes: Floats) -> Floats:
-    """Return middle column, rows of head and feet (M, 3) of boxes (M, 4)."""
+    """Return the middle column and the rows of head and feet (M, 3) of boxes (M, 4)."""
     left, top, width, height = boxes.T
     return np.stack([left + width / 2.0, top, top + height], axis=1)
 
 
 def _deviations(config: KalmanConfig) -> Floats:
-    """Return the deviations (3,) of the ends of boxes, in their heights."""
+    """Return the standard deviations (3,) of the measurement, in box heights."""
     return np.array([config.column, config.head, config.foot])
 
 
@@ -183,7 +183,7 @@ def _walk_on(
     later: Floats,
     later_covariance: Floats,
 ) -> None:  # pragma: no cover
-    """Carry means (K, 7) and covariances on by a time step; velocities are turned, and places are not."""
+    """Predict means (K, 7) and covariances over a time step; velocities are rotated, positions are not."""
     way, once = np.zeros((STATE, STATE)), np.zeros((STATE, STATE))
     way[6, 6], once[6, 6] = 1.0, grown * dt_s
     for i in range(3):
@@ -206,7 +206,7 @@ def _walk_on(
         _multiply(half, way.T, later_covariance[number])
         later_covariance[number] += once
         for i in range(STATE):
-            for j in range(i):  # what is not symmetric would grow
+            for j in range(i):  # keeps the matrix symmetric: asymmetry would grow
                 later_covariance[number, i, j] = later_covariance[number, j, i]
 
 
@@ -224,7 +224,7 @@ def _multiply(one: Floats, other: Floats, product: Floats) -> None:  # pragma: n
 def _measure(
     covariance: Floats, slope: Floats, noise: Floats, expected: Floats, seen: Floats, result: Floats
 ) -> None:  # pragma: no cover
-    """Return the Mahalanobis distances (K, M) of what is seen (M, 3) from what is expected (K, 3)."""
+    """Return the Mahalanobis distances (K, M) of measurements (M, 3) from predictions (K, 3)."""
     across, root = np.empty((STATE, 3)), np.zeros((3, 3))
     gap = np.empty(3)
     for number in range(len(result)):
@@ -240,9 +240,10 @@ def _measure(
 def _learn(
     mean: Floats, covariance: Floats, slope: Floats, noise: Floats, gap: Floats
 ) -> None:  # pragma: no cover
-    """Take in by how much what is seen (K, 3) is aside of what was expected.
+    """Update with the innovations (K, 3).
 
-    By the root of the spread: with its inverse, covariances of those who were lost for long go astray.
+    Uses the Cholesky factor of the innovation covariance: with its inverse, covariances of long-lost tracks
+    diverge.
     """
     across, root = np.empty((STATE, 3)), np.zeros((3, 3))
     for number in range(len(mean)):
@@ -261,7 +262,7 @@ def _learn(
 def _root_of_spread(
     covariance: Floats, slope: Floats, noise: Floats, across: Floats, root: Floats
 ) -> None:  # pragma: no cover
-    """Return P H' (7, 3), and the lower root (3, 3) of H P H' + noise (Cholesky)."""
+    """Return P H' (7, 3) and the lower Cholesky factor (3, 3) of H P H' + noise."""
     _multiply(covariance, slope.T, across)
     _multiply(slope, across, root)
     for i in range(3):
@@ -274,7 +275,7 @@ def _root_of_spread(
 
 @njit(cache=True, nogil=True)
 def _solve(root: Floats, result: Floats) -> None:  # pragma: no cover
-    """Divide three numbers by a lower root (3, 3)."""
+    """Solve a lower triangular system (3, 3) by forward substitution."""
     for i in range(3):
         for j in range(i):
             result[i] -= root[i, j] * result[j]

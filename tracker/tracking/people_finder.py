@@ -1,4 +1,4 @@
-"""Who finds people in single frames."""
+"""Detection of people in single frames, in the thermal and the colour image."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from peopleboy.tracker.tracking.appearance import transfer_boxes
 from peopleboy.tracker.tracking.config import ColourDetectionConfig, DetectionTrackerConfig
 from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
-# Who is seen in the colour image, as in a room as warm as people, where the thermal one shows nobody.
+# Detection in the colour image, for rooms as warm as people, where the thermal image has no contrast.
 
 
 class ColourFinder:
-    """The learned detector on the brightness of the colour image, now and then.
+    """The learned detector on the brightness of the colour image, at intervals.
 
-    What it knows is relative: neither what a grey means nor whether people are brighter than what is behind
-    them. So it knows people by daylight, though fewer of them. It looks more often while it shows people
-    that the thermal image does not.
+    The detector uses relative contrast only: neither the meaning of a grey nor the sign of the contrast
+    matters. So it also detects people in daylight, though fewer of them. It runs more often while the colour
+    image shows people that the thermal image does not show.
     """
 
     def __init__(self, config: ColourDetectionConfig, weakest: float) -> None:
-        """Make one that keeps detections from some log odds on."""
+        """Make one that keeps detections above a log-odds threshold."""
         self._config = config
         self._detector = PeopleDetector(least_score=weakest)
         self._images = FreshImages(COLOUR)
@@ -39,9 +39,9 @@ class ColourFinder:
         self._way: Odometry | None = Odometry()
 
     def __call__(self, frame: Frame, thermal: Detections) -> Detections:
-        """Return who is seen in a frame, by heat or in colours, with boxes (M, 4) [px] in the thermal image.
+        """Return the people in a frame, from both cameras, with boxes (M, 4) [px] in the thermal image.
 
-        By heat alone, if it is too soon, there is no new image, or not both cameras are calibrated.
+        Only thermal detections if it is too soon, there is no new image, or not both cameras are calibrated.
         """
         here, there = frame.calibrations.get(COLOUR), frame.calibrations.get(THERMAL)
         if not self.accumulate_motion(frame) or frame.time_s - self._last_s < self._pause_s:
@@ -58,7 +58,7 @@ class ColourFinder:
         return self._config.beside_s if (thermal.score > 0.0).any() else self._config.every_s
 
     def _found(self, frame: Frame, here: PinholeCalibration, there: PinholeCalibration) -> Detections:
-        """Look for people in the colour image, and carry them over to the thermal one."""
+        """Detect people in the colour image, and transfer their boxes to the thermal image."""
         grey = np.asarray(cv2.cvtColor(frame.rgb(COLOUR), cv2.COLOR_RGB2GRAY), np.uint8)
         found = self._detector.update(grey, frame.time_s, self._way, mount_of(here, grey.shape[0]))
         self._last_s, self._way = frame.time_s, Odometry()
@@ -67,7 +67,7 @@ class ColourFinder:
         return seen.take(area(boxes) > 0.0)
 
     def accumulate_motion(self, frame: Frame) -> bool:
-        """Take in how the robot moved until the next new image, and tell whether a frame has that."""
+        """Accumulate the robot's motion until the next new image, and return whether the frame has one."""
         fresh = self._images.of(frame)
         if fresh is None:
             return False
@@ -76,10 +76,10 @@ class ColourFinder:
 
 
 def merge_cameras(thermal: Detections, colour: Detections, config: ColourDetectionConfig) -> Detections:
-    """Take together what both cameras show, all in the thermal image, the surest first.
+    """Merge the detections of both cameras in the thermal image, the highest score first.
 
-    Of a person in both, the box is the thermal one's, which is the more exact, and the score that of the
-    surer one. Colours alone show others only where the thermal image has nothing to say.
+    If both cameras detect a person, the thermal box, which is more accurate, and the higher score are kept.
+    Colour detections alone add people only where the thermal image has no evidence.
     """
     if len(colour.score) == 0:
         return thermal
@@ -91,7 +91,7 @@ def merge_cameras(thermal: Detections, colour: Detections, config: ColourDetecti
     for column in np.flatnonzero(is_same.any(axis=0)):
         row = overlap[:, column].argmax()
         score[row] = max(score[row], colour.score[column])
-    # By heat trees found nobody there: at most they leave it open.
+    # The thermal trees found nobody there; their score is at most neutral.
     both = Detections(
         np.concatenate([thermal.box, colour.box[is_alone]]),
         np.concatenate([score, colour.score[is_alone]]),
@@ -101,24 +101,24 @@ def merge_cameras(thermal: Detections, colour: Detections, config: ColourDetecti
 
 
 class Finder(Protocol):
-    """Whatever proposes people, frame by frame."""
+    """Detects people frame by frame."""
 
     def __call__(self, frame: Frame, expected: Detections, *, everywhere: bool) -> Detections:
-        """Return boxes [px] in the thermal image, as wide as the torso, and log odds.
+        """Return boxes [px] in the thermal image, as wide as the torso, and log-odds.
 
         Args:
-            frame: the next one.
-            expected: who is known.
-            everywhere: whether others are looked for, too.
+            frame: the next frame.
+            expected: predicted boxes of tracks.
+            everywhere: whether the whole image is searched.
         """
         ...
 
 
 class PeopleFinder:
-    """The learned detector on the thermal image, and now and then on the colour image."""
+    """The learned detector on the thermal image, and at intervals on the colour image."""
 
     def __init__(self, config: DetectionTrackerConfig) -> None:
-        """Make one for a tracker with such settings."""
+        """Make one for a tracker with these settings."""
         weakest = config.existence.weakest
         self._thermal = ThermalFinder(PeopleDetector(least_score=weakest))
         self._colour = ColourFinder(config.colour, weakest)
@@ -126,7 +126,7 @@ class PeopleFinder:
     def __call__(
         self, frame: Frame, expected: Detections = NO_DETECTIONS, *, everywhere: bool = True
     ) -> Detections:
-        """Look for people in the next frame; for those who are known in the thermal image alone."""
+        """Detect people in the next frame; predicted boxes are rescored in the thermal image alone."""
         seen = self._thermal(frame, expected, everywhere=everywhere)
         if not everywhere:
             self._colour.accumulate_motion(frame)
@@ -135,16 +135,16 @@ class PeopleFinder:
 
 
 class ThermalFinder:
-    """A detector on the thermal image, where people may stand if the camera is known."""
+    """A detector on the thermal image, restricted to the floor if the camera is calibrated."""
 
     def __init__(self, detector: PeopleDetector) -> None:
-        """Make one of a detector."""
+        """Make one from a detector."""
         self._detector = detector
 
     def __call__(
         self, frame: Frame, expected: Detections = NO_DETECTIONS, *, everywhere: bool = True
     ) -> Detections:
-        """Look for people in the next frame, or for those who are known."""
+        """Detect people in the next frame, or rescore predicted boxes."""
         grey, calibration = frame.grey(THERMAL), frame.calibrations.get(THERMAL)
         mount = None if calibration is None else mount_of(calibration, grey.shape[0])
         return self._detector.update(

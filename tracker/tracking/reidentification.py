@@ -1,7 +1,7 @@
-"""Who is who: decided late, when people who met have parted, and when a person new is sure to be there.
+"""Re-identification: identities are resolved late, after people part or a new track is confirmed.
 
-While people overlap, what is seen of one may be the other. What they look like afterwards is compared with
-what they looked like before, which is learned no further while they look like another person.
+While people overlap, their appearances mix. Appearance after an encounter is compared with appearance before
+it, which is not updated while a person resembles another one.
 """
 
 from __future__ import annotations
@@ -18,9 +18,10 @@ from peopleboy.tracker.tracking.track_state import TrackState
 def resolve_identity_swaps(
     targets: Sequence[TrackState], time_s: float, config: ReidentificationConfig
 ) -> None:
-    """Let people exchange their numbers who look like each other did before.
+    """Swap the identities of tracks that resemble each other's earlier appearance.
 
-    Who is seen apart from others for a while is compared with whoever is so, too, or is gone as long.
+    Tracks that have been separate for a while are compared with others that are separate, or lost for as
+    long.
     """
     known = [target for target in targets if target.is_confirmed and target.colours.any()]
     for one in known:
@@ -41,12 +42,12 @@ def resolve_identity_swaps(
 def reidentify(
     target: TrackState, lost: Sequence[TrackState], config: ReidentificationConfig
 ) -> TrackState | None:
-    """Return by colours which of those who were lost a person new is, if any.
+    """Return the lost track that a new track continues, by colours, or None.
 
     Args:
-        target: who is new.
-        lost: who may be meant.
-        config: how colour_similarity they must be.
+        target: the new track.
+        lost: candidate tracks.
+        config: required similarity.
     """
     likeness = [colour_similarity(target.colours, other.colours) for other in lost]
     best = int(np.argmax(likeness)) if likeness else -1
@@ -58,7 +59,7 @@ def _is_clear(target: TrackState, config: ReidentificationConfig) -> bool:
 
 
 def _gain(one: TrackState, other: TrackState, config: ReidentificationConfig) -> float:
-    """Return how much better people fit who they look like if both are the other one."""
+    """Return the gain in similarity of appearance if the two tracks swap identities."""
     gain = colour_similarity(one.recent, other.colours) - colour_similarity(one.recent, one.colours)
     if _is_clear(other, config):
         gain += colour_similarity(other.recent, one.colours) - colour_similarity(other.recent, other.colours)

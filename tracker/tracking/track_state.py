@@ -1,4 +1,4 @@
-"""A person who is followed, or who may be one."""
+"""State of one track of the detection tracker, confirmed or tentative."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from peopleboy.tracker.tracking.appearance import FEATURES, Colours, Pattern, bl
 from peopleboy.tracker.tracking.config import ExistenceConfig
 from peopleboy.tracker.tracking.template import Template
 
-_LEARNING: Final = 0.1  # share of what is seen now in what is remembered
-_LEARNING_SOON: Final = 0.2  # the same of what is compared with it
-_OWN: Final = 0.6  # Bhattacharyya's coefficient above which it looks like itself
+_LEARNING: Final = 0.1  # share of the new appearance in the remembered one
+_LEARNING_SOON: Final = 0.2  # the same in the recent appearance that is compared with it
+_OWN: Final = 0.6  # Bhattacharyya coefficient above which a person resembles their own earlier appearance
 
 
 class DetectionEvidence(NamedTuple):
-    """A person was found.
+    """A detection of a tracked person.
 
     Attributes:
-        score: log odds of the detection.
-        shared: how much of its box is of a person known, too, 0 to 1.
-        speed_m_s: how fast this one goes.
+        score: log-odds of the detection.
+        shared: share of its box that overlaps an existing track, 0 to 1.
+        speed_m_s: speed of the person.
     """
 
     score: float
@@ -35,30 +35,30 @@ class DetectionEvidence(NamedTuple):
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class TrackState:
-    """What is known of a person besides the path.
+    """State of a track apart from its motion filter.
 
     Attributes:
-        born_s: when it was first seen.
-        seen_s: when it was last.
-        pattern: how it looks in the thermal image.
-        colours: what it wears; 0 where nobody knows.
-        ratio: width of its box over the height.
-        shown: (4,) its box in the image in which it was last seen [px].
-        watched_s: for how long it was seen in all.
-        trees: log odds by the detector's trees alone, when it was last found among all.
-        score: log odds of the detection when the detector last found it.
-        rescored_s: when that was.
-        template: what it looked like then.
-        searched_s: when trees last found it among all.
-        log_odds: that it is a person.
-        surest: most that a single image said.
+        born_s: time of the first detection.
+        seen_s: time of the last detection.
+        pattern: thermal appearance.
+        colours: colours of the clothes; 0 where unknown.
+        ratio: width of the box divided by its height.
+        shown: (4,) box in the image of the last detection [px].
+        watched_s: total time with detections.
+        trees: log-odds by the detector's trees alone, at the last search of the whole image.
+        score: log-odds when the detector last found it.
+        rescored_s: time of the last rescoring.
+        template: image template cut at that time.
+        searched_s: when trees last found it in a search of the whole image.
+        log_odds: evidence that it is a person.
+        surest: greatest evidence of a single image.
         id: 0 as long as it is tentative.
-        sightings: images in which it was found.
-        confidence: 0..1, of the last images in which it was seen.
-        occluder: id of who hides it.
-        confirmed_s: since when it is confirmed.
-        recent: what it wears since it was last seen apart from others.
-        clear_s: for how long that is.
+        sightings: number of images with a detection.
+        confidence: 0..1, from the last images with a detection.
+        occluder: id of the track that occludes it.
+        confirmed_s: time of the confirmation.
+        recent: colours since the person was last seen apart from others.
+        clear_s: how long the person has been seen apart from others.
     """
 
     born_s: float
@@ -85,13 +85,13 @@ class TrackState:
 
     @property
     def is_confirmed(self) -> bool:
-        """Whether it is believed to be a person."""
+        """Whether the track is confirmed."""
         return self.id > 0
 
     def update_seen(
         self, seen: DetectionEvidence, time_s: float, dt_s: float, config: ExistenceConfig
     ) -> None:
-        """Take in that it was found."""
+        """Update the evidence with a detection."""
         self.seen_s, self.occluder = time_s, None
         self.sightings += 1
         self.watched_s += dt_s
@@ -107,27 +107,27 @@ class TrackState:
         self.confidence += _LEARNING * (1.0 / (1.0 + math.exp(-seen.score)) - self.confidence)
 
     def update_box(self, box: Floats) -> None:
-        """Take in its box (4,), and how wide that is over the height."""
+        """Update the box (4,) and its width relative to the height."""
         self.shown = box
         self.ratio += _LEARNING * (float(box[2] / box[3]) - self.ratio)
 
     def mark_separate(self, dt_s: float) -> None:
-        """Take in that it is seen apart from others now."""
+        """Record that the person is seen apart from others now."""
         self.clear_s += dt_s
 
     def update_appearance(self, pattern: Pattern, colours: Colours) -> None:
-        """Take in how it looks now, apart from others."""
+        """Update the appearance of a person who is seen apart from others."""
         self.pattern = self.pattern + np.float32(_LEARNING) * (pattern - self.pattern)
         self.recent = blend_colours(self.recent, colours, _LEARNING_SOON)
         if not self.colours.any() or colour_similarity(self.recent, self.colours) > _OWN:
             self.colours = blend_colours(self.colours, colours, max(_LEARNING, 1.0 / self.sightings))
 
     def mark_overlapping(self) -> None:
-        """Take in that it is not seen apart from others now."""
+        """Record that the person is not seen apart from others now."""
         self.clear_s, self.recent = 0.0, np.zeros_like(self.recent)
 
     def inherit(self, before: TrackState) -> None:
-        """Go on as a person who was lost, and is no more."""
+        """Continue a lost track as this one."""
         self.id, self.born_s = before.id, before.born_s
         self.confirmed_s = min(self.confirmed_s, before.confirmed_s)
         self.colours = blend_colours(before.colours, self.colours, _LEARNING)
@@ -137,9 +137,9 @@ class TrackState:
         before.id, before.seen_s = 0, -math.inf
 
     def update_missed(self, occluder: int | None, dt_s: float, config: ExistenceConfig) -> None:
-        """Take in that it was not found, and who may hide it.
+        """Record a missed detection and the possible occluder.
 
-        However long a person known is not found, the first image that says so brings him back.
+        However long a confirmed person is not found, one detection restores the track.
         """
         self.occluder = occluder
         loss = config.missed if occluder is None else config.missed_hidden
@@ -147,7 +147,7 @@ class TrackState:
         self.log_odds = max(self.log_odds - loss * dt_s / config.independent_s, least)
 
     def status(self, time_s: float) -> Status:
-        """Return how well it is seen now."""
+        """Return the current status."""
         if not self.is_confirmed:
             return Status.TENTATIVE
         if self.seen_s >= time_s:
@@ -155,7 +155,7 @@ class TrackState:
         return Status.PARTLY_OCCLUDED if self.occluder is None else Status.TOTALLY_OCCLUDED
 
     def is_output(self, time_s: float, config: ExistenceConfig) -> bool:
-        """Return whether it is still said to be where it is expected."""
+        """Return whether the track is still reported at its predicted position."""
         doubt = config.max_coast_s
         if self.occluder is not None:
             doubt = max(doubt, min(config.max_coast_occluded_s, config.coast_occluded_share * self.watched_s))
@@ -164,13 +164,13 @@ class TrackState:
         )
 
     def is_deleted(self, time_s: float, config: ExistenceConfig) -> bool:
-        """Return whether it would not be known again."""
+        """Return whether the track is deleted: it could not be reidentified."""
         gone = time_s - self.seen_s
         if not self.is_confirmed:
             return self.log_odds < config.deletion_log_odds or gone > config.max_coast_s
         return gone > (config.forget_s if self.watched_s > config.brief_s else config.brief_forget_s)
 
     def has_enough_evidence(self, config: ExistenceConfig) -> bool:
-        """Return whether it has enough evidence to be confirmed."""
+        """Return whether there is enough evidence for confirmation."""
         is_enough = self.sightings >= config.sightings or self.surest >= config.at_once
         return is_enough and self.log_odds > config.confirmed

@@ -1,4 +1,4 @@
-"""From metres round a camera to its image: people as upright lines on their feet.
+"""Projection from metres around a camera to its image: people are upright lines on their feet.
 
 The level frame has its origin in the camera: x to the right, y down, z ahead along the floor [m].
 """
@@ -19,7 +19,7 @@ from peopleboy.tracker.tracking.config import STATURE_M
 Floats = NDArray[np.float64]
 
 VIEW_ANGLE_DEG: Final = 44.0
-"""Vertical, of a camera of which nothing is known."""
+"""Vertical field of view of an uncalibrated camera."""
 
 NEAREST_M: Final = 0.3
 _ROBOT_FROM_LEVEL: Final = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
@@ -28,13 +28,13 @@ _LEAST_DEPTH_M: Final = 0.05
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Viewpoint:
-    """How a camera looks into the level frame.
+    """Pose and intrinsics of a camera relative to its level frame.
 
     Attributes:
         focal_px: focal lengths along columns and rows.
-        centre_px: where the optical axis meets the image.
+        centre_px: principal point.
         camera_from_level: (3, 3) rotation.
-        floor_m: how far below the camera the floor is; None if nobody knows.
+        floor_m: depth of the floor below the camera; None if unknown.
     """
 
     focal_px: tuple[float, float]
@@ -44,15 +44,15 @@ class Viewpoint:
 
     @property
     def breadth(self) -> float:
-        """How wide it pattern: the tangent of half the angle from side to side."""
+        """Half-width of the field of view: the tangent of half the horizontal angle."""
         return (self.centre_px[0] + 0.5) / self.focal_px[0]
 
     @classmethod
     def of(cls, calibration: Calibration | None, shape: tuple[int, int]) -> Viewpoint:
-        """Take a camera's calibration; one of which nothing is known is level.
+        """Make the viewpoint of a camera; an uncalibrated camera is assumed to be level.
 
         Args:
-            calibration: of the camera; None if nobody knows it.
+            calibration: of the camera; None if unknown.
             shape: rows and columns of its image [px].
         """
         if isinstance(calibration, PinholeCalibration):
@@ -68,11 +68,11 @@ class Viewpoint:
         return cls((focal, focal), ((columns - 1) / 2.0, (rows - 1) / 2.0), np.eye(3), None)
 
     def seen(self, feet_m: Floats, build: Floats) -> Floats:
-        """Return how people are seen: (K, 3) middle column, rows of head and feet.
+        """Project people: (K, 3) middle column and rows of head and feet.
 
         Args:
-            feet_m: (K, 3) where they stand.
-            build: (K,) logarithm of their stature over the usual one.
+            feet_m: (K, 3) positions of the feet.
+            build: (K,) logarithm of the stature divided by the usual stature.
         """
         result = np.empty((len(feet_m), 3))
         _see(feet_m, build, self.camera_from_level, self.focal_px, self.centre_px, result)
@@ -85,7 +85,7 @@ class Viewpoint:
         return slope
 
     def feet(self, boxes: Floats) -> Floats:
-        """Return where people with these boxes (K, 4) stand, (K, 3), if they are of the usual stature."""
+        """Return the positions (K, 3) of people with these boxes (K, 4), assuming the usual stature."""
         left, top, width, height = boxes.T
         aside = self._lean(boxes) * height / 2.0
         rays = self._rays(np.stack([left + width / 2.0 + aside, top + height], axis=1))
@@ -95,7 +95,7 @@ class Viewpoint:
         return rays * np.maximum(ahead, NEAREST_M)[:, None]
 
     def _lean(self, boxes: Floats) -> Floats:
-        """Return by how many columns a plumb line through middles of boxes moves on from row to row, (K,)."""
+        """Return the slope (K,), in columns per row, of a plumb line through the middles of boxes."""
         middle = (boxes[:, :2] + boxes[:, 2:] / 2.0 - self.centre_px) / self.focal_px
         plumb = self.camera_from_level[:, 1]
         across, down = (plumb[:2] - plumb[2] * middle).T
@@ -154,7 +154,7 @@ def _slope(
 def _seen_from(
     x: float, y: float, z: float, camera_from_level: Floats
 ) -> tuple[float, float, float]:  # pragma: no cover
-    """Return where a point is to the right, down and ahead of a camera, and that it is not behind it."""
+    """Return coordinates to the right, down and ahead of a camera, and whether the point is ahead of it."""
     right, down, ahead = camera_from_level
     depth = ahead[0] * x + ahead[1] * y + ahead[2] * z
     return (
