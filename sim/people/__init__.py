@@ -1,1 +1,1 @@
-"""Walking people: who they are, when they are where, and their bodies in the physics world."""
+"""Walking people: their settings, their movement, and their bodies in the physics world."""

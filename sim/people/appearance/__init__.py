@@ -1,1 +1,1 @@
-"""How people look where everything is drawn finely: usual clothes, warmth, folds, faces, hair."""
+"""The appearance of people in full detail: usual clothes, surface temperatures, folds, faces, hair."""

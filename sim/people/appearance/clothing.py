@@ -1,4 +1,4 @@
-"""Clothes as both cameras see them: warm where they lie on, cool where they hang, creased at the joints."""
+"""Finishes of clothes in heat and colour: warm where cloth touches the skin, cool where it hangs, creased."""
 
 import math
 from dataclasses import dataclass
@@ -12,15 +12,15 @@ from peopleboy.sim.people.body.clothes import Garment
 
 Grid = NDArray[np.float64]
 
-# How cloth hangs: our own choice, after what thermal cameras show of people who walk by. Where it lies on, it
-# is so near to the skin's temperature; where it stands off, so much nearer to the air's.
+# How cloth hangs: our own choice, after thermal images of people who walk by. Where cloth touches the skin,
+# its temperature moves by this share towards the skin's; where it stands off, by this share towards the air's.
 _LIES_ON, _STANDS_OFF = 0.85, 0.6
-_THIN_M = 0.010  # thickness at which little of the skin's warmth comes through
-_GAP = 0.5  # of the warmth of skin that shows in the openings of sleeves and collars
+_THIN_M = 0.010  # cloth of this thickness passes little of the skin's heat
+_GAP = 0.5  # share of the skin's warmth that shows in the openings of sleeves and collars
 _CREASE_K, _CREASE_SHADE, _RELIEF_SHADE = 2.6, 0.3, 0.12
 _EDGE = Soft(0.008)
 
-OPEN = ("jacket", "lab_coat")  # what may show a shirt beneath
+OPEN = ("jacket", "lab_coat")  # garments that may be worn open, over a shirt
 _BUTTONED = (*OPEN, "shirt", "checked_shirt")
 _BELTED = ("jeans", "trousers", "shorts")
 _TRUNK = ("chest", "abdomen", "pelvis")
@@ -31,12 +31,12 @@ class Worn:
     """One garment on one part of a person.
 
     Attributes:
-        part: name without its side.
-        garment: what covers it.
-        cloth_c, skin_c, air_c: [degC] mean of its surface, of the skin beneath, and the air.
+part: name of the part without its side.
+        garment: the garment that covers it.
+        cloth_c, skin_c, air_c: [degC] mean temperature of its surface, of the skin beneath, and of the air.
         half_depth_m: [m] of the part, from its axis to the front.
         outward: 1 on the left side, -1 on the right, 0 in the middle.
-        under_c: [degC] surface of what shows where a jacket is open.
+        under_c: [degC] surface temperature of the shirt under an open jacket.
     """
 
     part: str
@@ -50,7 +50,7 @@ class Worn:
 
 
 def paint_cloth(mesh: Mesh, sheet: FabricSheet, worn: Worn) -> Paint:
-    """Paint the folds of a garment; its mean temperature stays."""
+    """Paint the folds of a garment without changing its mean temperature."""
     paint = Paint(mesh)
     touch = np.tanh(0.8 * sheet.touch + 1.5 * _hang(worn.part, worn.outward, mesh))
     touch -= touch.mean()
@@ -67,7 +67,7 @@ def paint_cloth(mesh: Mesh, sheet: FabricSheet, worn: Worn) -> Paint:
 
 
 def _hang(part: str, outward: float, mesh: Mesh) -> Grid:
-    """Where cloth lies on (positive) and stands off (negative), whatever its folds."""
+    """Return where cloth touches the skin (positive) and stands off (negative), folds aside."""
     down, front, left = mesh.down, mesh.front, mesh.left
     out = left * outward
     if part == "chest":
@@ -88,7 +88,7 @@ def _hang(part: str, outward: float, mesh: Mesh) -> Grid:
 
 
 def _folded(part: str, mesh: Mesh) -> Grid:
-    """How much cloth is folded from row to row: most at elbows, knees, waist and over the shoes."""
+    """Return how strongly each row is folded: most at elbows, knees, waist and over the shoes."""
     joints = {
         "chest": ((0.95, 0.25),),
         "abdomen": ((0.6, 0.4),),
@@ -103,11 +103,11 @@ def _folded(part: str, mesh: Mesh) -> Grid:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Surface:
-    """Where on a part a texel lies.
+    """Position of each texel on a part.
 
     Attributes:
         across, along: (R, C) [m] to the left, and upwards from the part's origin.
-        is_front, is_back: (R, C) whether it is there, 0 or 1.
+        is_front, is_back: (R, C) 1 on that side, else 0.
         down: (R, C) 0 at the top, 1 at the bottom.
     """
 
@@ -127,13 +127,13 @@ def _surface(mesh: Mesh, worn: Worn) -> _Surface:
 
 
 def add_trimmings(paint: Paint, worn: Worn, traits: Traits, name: str) -> None:
-    """Add what is on clothes: an open front or buttons, a neckline, a belt, a telephone, straps, sweat.
+    """Add details to clothes: an open front or buttons, a neckline, a belt, a telephone, straps, sweat.
 
     Args:
-        paint: of the cloth.
+paint: the paint of the cloth.
         worn: the garment.
-        traits: who wears it how.
-        name: of the garment.
+        traits: the traits of the person.
+        name: name of the garment.
     """
     at = _surface(paint.mesh, worn)
     if worn.part in ("chest", "abdomen"):
@@ -156,7 +156,7 @@ def add_trimmings(paint: Paint, worn: Worn, traits: Traits, name: str) -> None:
 
 
 def _close_or_open(paint: Paint, worn: Worn, at: _Surface, *, is_open: bool) -> None:
-    """Show the shirt beneath an open jacket, wider below; or else a row of buttons."""
+    """Draw the shirt under an open jacket, wider at the bottom, or a row of buttons."""
     if is_open:
         half = (0.02 if worn.part == "chest" else 0.05) + 0.03 * at.down
         gap = at.is_front * _EDGE.within(at.across, -half, half)
@@ -167,13 +167,13 @@ def _close_or_open(paint: Paint, worn: Worn, at: _Surface, *, is_open: bool) -> 
 
 
 def _cut_neckline(paint: Paint, worn: Worn, at: _Surface, *, deep: float) -> None:
-    """Bare a wedge of skin below the neck, down to such a share of the chest."""
+    """Draw a wedge of bare skin below the neck, down to the given share of the chest."""
     neck = at.is_front * _EDGE.within(np.abs(at.across), -1.0, 0.16 * (deep - 1.3 * at.down))
     paint.lay(neck * (at.down < deep), kelvin=worn.skin_c - worn.cloth_c - 0.4, cover=1.0)
 
 
 def _put_in_pocket(paint: Paint, worn: Worn, at: _Surface) -> None:
-    """Press a cool telephone against the right thigh's front."""
+    """Draw a cool telephone at the front of the right thigh."""
     phone = (paint.mesh.front > 0.5) * _EDGE.within(at.down, 0.22, 0.5)
     phone = phone * _EDGE.within(at.across - 0.01, -0.036, 0.036)
     paint.lay(0.8 * phone, kelvin=-0.3 * (worn.cloth_c - worn.air_c), light=0.93)
@@ -187,7 +187,7 @@ def _wet(paint: Paint, traits: Traits, at: _Surface) -> None:
 
 
 def _add_straps(paint: Paint, worn: Worn, traits: Traits, at: _Surface) -> None:
-    """Lay bands of a bag over the trunk: cool and dark."""
+    """Draw the straps of a bag over the trunk: cool and dark."""
     kelvin = -0.5 * (worn.cloth_c - worn.air_c)
     is_chest = worn.part == "chest"
     if traits.strap in ("left", "right"):

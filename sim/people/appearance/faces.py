@@ -1,4 +1,4 @@
-"""Faces, hair and bare skin: what is warm and cool in them, and what is dark."""
+"""Finishes of faces, hair and bare skin in heat and colour."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,12 +19,12 @@ _EYE_ASIDE, _RADIUS = 0.018, 0.055
 # lower lip (Haddad et al. 2016, doi 10.1259/dmfr.20150264), by amounts that are our choice.
 _INNER_K, _CORNEA_K, _OUTER_K = 0.9, -0.1, -0.6
 _NOSE_K, _CHEEK_K, _MOUTH_K, _LIP_K, _EAR_K, _BEARD_K = -1.6, -0.7, 0.2, -0.4, -1.5, -1.3
-_COLD = 0.25  # of each kelvin below room warmth, by how much more nose and ears cool than the face
-_GLASS_SHARE = 0.4  # glass lets no long waves through: it is so far from the air's to the face's temperature
+_COLD = 0.25  # [K/K] extra cooling of nose and ears per kelvin of the air below 21 degC
+_GLASS_SHARE = 0.4  # glass is opaque to long-wave infrared: 0 is the air's temperature, 1 the face's
 
 
 def paint_face(mesh: Mesh, stature_m: float, face_c: float, air_c: float, traits: Traits) -> Paint:
-    """Paint a head: eyes, brows, nose, cheeks, mouth, ears, beard and glasses, by `Traits`."""
+    """Paint a head with eyes, brows, nose, cheeks, mouth, ears, beard and glasses, as `Traits` say."""
     paint = Paint(mesh)
     y = _RADIUS * mesh.left + 0.0 * mesh.z
     z = mesh.z / stature_m + 0.0 * mesh.turn
@@ -60,7 +60,7 @@ def paint_face(mesh: Mesh, stature_m: float, face_c: float, air_c: float, traits
 
 
 def _draw_features(paint: Paint, y: Grid, z: Grid, aside: Grid, is_front: Grid) -> None:
-    """Darken what a colour camera sees in a face."""
+    """Darken the features of a face that a colour camera sees."""
     fine = Soft(0.002)
     paint.light -= 0.18 * is_front * blob(aside, z - _EYES - 0.001, 0.013, 0.006)
     paint.light -= 0.25 * is_front * blob(y, z - _NOSE + 0.009, 0.006, 0.002)
@@ -95,11 +95,11 @@ def paint_hair(
     """Paint hair in strands, parted, warm at the hairline and cool at the tips; a cap in soft folds.
 
     Args:
-        mesh: the grid of the hair.
-        stature_m: [m] of the person.
-        hair: name of the garment.
-        share: of the contrasts, 1 in a room.
-        traits: the person's own.
+        mesh: grid of the hair.
+        stature_m: [m] stature of the person.
+        hair: name of the hair or cap in the catalogue.
+        share: factor on the contrasts, 1 in a room.
+        traits: the traits of the person.
         rng: draws the strands.
     """
     paint = Paint(mesh)
@@ -123,7 +123,7 @@ def paint_hair(
 
 
 def paint_skin(mesh: Mesh, sheet: FabricSheet, part: str, tip_k: float) -> Paint:
-    """Paint bare skin: blotched, cooler towards the tips by so much [K] in all, and over joints."""
+    """Paint bare skin: blotched, cooler over joints, and cooler towards the tip by `tip_k` [K]."""
     paint = Paint(mesh)
     paint.kelvin += 0.35 * sheet.touch + tip_k * (mesh.down - 0.5)
     joint = {"forearm": 0.0, "shin": 0.0, "thigh": 1.0, "upper_arm": 1.0}.get(part)

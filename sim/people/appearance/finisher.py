@@ -1,4 +1,4 @@
-"""How a person looks in full detail: warmth that follows the air, folds, a face, hair, and a bag."""
+"""The appearance of a person in full detail: temperatures that follow the air, folds, a face, hair, a bag."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -19,20 +19,20 @@ from peopleboy.sim.people.person_config import PersonConfig
 from peopleboy.sim.shapes.materials import COLOURS, Finish, Material, Rgb
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind
 
-# How warm skin and clothes are in air of any temperature.
+# Temperatures of skin and clothes in air of any temperature.
 #
-# A garment's surface lies between air and skin: T = air + (skin - air) * r. By the heat that goes through
-# the cloth and on from its surface, r = 1 / (1 + h R) with h [W / (m2 K)] of the surface and R [m2 K / W]
+# A garment's surface lies between air and skin: T = air + (skin - air) * r. The heat that flows through the
+# cloth leaves from its surface, so r = 1 / (1 + h R) with h [W / (m2 K)] of the surface and R [m2 K / W]
 # of the cloth (ISO 7730:2005, clause 4.1, solved for the surface). The catalogue gives T in air of 21
-# degC and by that each garment's r, so that there all is as the catalogue says.
+# degC, which gives each garment's r; in air of 21 degC all temperatures are those of the catalogue.
 
-ROOM_C = 21.0  # air of the catalogue's temperatures
+ROOM_C = 21.0  # [degC] air for which the catalogue's temperatures hold
 WARMEST_SKIN_C = 36.8
 _COVERED_SKIN_C = 33.4  # skin under clothes, in air of 21 degC
-_BY_RADIATION, _IN_A_ROOM = 4.5, 8.5  # W / (m2 K); in a room convection has the rest
-_LEAST, _MOST = 0.2, 0.95  # of r: a warm shoe, a stocking
+_BY_RADIATION, _IN_A_ROOM = 4.5, 8.5  # [W / (m2 K)] h by radiation, and in all; the rest is convection
+_LEAST, _MOST = 0.2, 0.95  # limits of r: a warm shoe, a stocking
 
-# [K] how much colder or warmer skin is than in air of 21 degC, in air of _AIR_C: an hour in still air of 50 %
+# [K] skin temperature in air of _AIR_C less that in air of 21 degC: after an hour in still air of 50 %
 # humidity, standing, at twice the basal metabolism, in clothes of 0.7 clo, of 1.2 clo at 15 degC, up to
 # 2.2 clo at -5 degC. Run with JOS-3 0.5 (Takahashi et al. 2021, Energy and Buildings 231, 110575), one man.
 _AIR_C = (-5.0, 5.0, 10.0, 15.0, 21.0, 25.0, 30.0, 35.0, 40.0)
@@ -52,62 +52,62 @@ _REGION = {
 
 
 def skin_change_k(part: str, air_c: float) -> float:
-    """Return by how much the skin of a part [K] differs in such air from what it is at 21 degC."""
+    """Return the skin temperature of a part in air of `air_c`, less that in air of 21 degC [K]."""
     bare = part.removeprefix("left_").removeprefix("right_")
     return float(np.interp(air_c, _AIR_C, _SKIN_K[_REGION.get(bare, "trunk")]))
 
 
 def bare_c(at_room_c: float, part: str, air_c: float) -> float:
-    """Return the temperature [degC] of skin that has another one in air of 21 degC."""
+    """Return the temperature [degC] of bare skin, given its temperature in air of 21 degC."""
     return min(at_room_c + skin_change_k(part, air_c), max(WARMEST_SKIN_C, at_room_c))
 
 
 def share_of_skin(at_room_c: float) -> float:
-    """Return r of a garment that has this temperature [degC] in air of 21 degC."""
+    """Return r of a garment, given its temperature [degC] in air of 21 degC."""
     return min(max((at_room_c - ROOM_C) / (_COVERED_SKIN_C - ROOM_C), _LEAST), _MOST)
 
 
 def under_cloth_c(part: str, air_c: float) -> float:
-    """Return the temperature [degC] of skin that clothes cover."""
+    """Return the temperature [degC] of skin under clothes."""
     return bare_c(_COVERED_SKIN_C, part, air_c)
 
 
 def wind_loss(moving_m_s: float) -> float:
-    """How many times as much heat a surface loses in air that moves so fast against it [m/s] as in a room.
+    """Return the heat loss of a surface in moving air [m/s], relative to the loss in a room.
 
-    Source: ISO 7730:2005, clause 4.1: 12.1 W / (m2 K) by convection at 1 m/s, which grows with the root of
+    Source: ISO 7730:2005, clause 4.1: 12.1 W / (m2 K) by convection at 1 m/s, proportional to the root of
     speed; 4.5 W / (m2 K) by radiation.
     """
     return max((12.1 * float(np.sqrt(moving_m_s)) + _BY_RADIATION) / _IN_A_ROOM, 1.0)
 
 
 def cloth_c(at_room_c: float, part: str, air_c: float, loss: float = 1.0) -> float:
-    """Return the temperature [degC] of a garment's surface that has another one in still air of 21 degC.
+    """Return the temperature [degC] of a garment's surface, given that in still air of 21 degC.
 
     Args:
-        at_room_c: [degC] that one.
-        part: what it covers.
-        air_c: [degC] of the air.
-        loss: how many times as much heat the surface loses as in a room: r = 1 / (1 + loss h R).
+        at_room_c: [degC] temperature of the surface in still air of 21 degC.
+        part: the part that it covers.
+        air_c: [degC] temperature of the air.
+        loss: heat loss of the surface relative to that in a room: r = 1 / (1 + loss h R).
     """
     r = share_of_skin(at_room_c)
     return air_c + (under_cloth_c(part, air_c) - air_c) * r / (r + loss * (1.0 - r))
 
 
 _CLOTH_TEXEL_M, _SKIN_TEXEL_M, _FACE_TEXEL_M, _HAIR_TEXEL_M = 0.007, 0.010, 0.003, 0.006
-# Garments of a kind fit tightly or hang: deviation of how far they are from the air, as a share of that.
+# Garments of one kind fit tightly or loosely: standard deviation of T - air, as a share of its mean.
 _FIT = 0.2
 _BAG_COLOURS = ("black", "dark_brown", "grey", "navy", "khaki", "red")
-_WIND_M_S = (0.3, 2.5)  # air against who walks on a street, more or less sheltered
+_WIND_M_S = (0.3, 2.5)  # wind speed on a street, from sheltered to open
 _SHIRT_C, _SHIRT_RGB = 30.2, COLOURS["white"]
-_FOLD_M = 0.12  # between folds round a part of 1 m; they grow by the root of its girth
+_FOLD_M = 0.12  # distance of folds round a part of 1 m girth; it grows with the root of the girth
 _COLD_HANDS = {"hand": 1.0, "foot": 0.8, "forearm": 0.4, "shin": 0.3}  # share by part
 
 
 class Finisher:
-    """Refines the appearance of one person's parts.
+    """Adds full detail to the appearance of one person's parts.
 
-    In air of 21 degC the mean temperature of a part is, over many people, as it is without.
+    In air of 21 degC the mean temperature of a part, over many people, is the same as without detail.
     """
 
     def __init__(
@@ -130,7 +130,7 @@ class Finisher:
     def finish(
         self, materials: Mapping[str, Material], geometry: Mapping[str, PartGeometry]
     ) -> dict[str, Material]:
-        """Refine looks by part, as `dress` gives them, of parts of these shapes."""
+        """Add detail to the materials that `dress` returns, for parts of the given shapes."""
         skin_rgb, hair_rgb = materials["head"].rgb, materials["hair"].rgb
         materials = {**materials, **dict.fromkeys(self.outfit.covers, materials["chest"])}
         brows = COLOURS["dark_brown"] if self._hair in ("bald", "cap") else hair_rgb
@@ -162,7 +162,7 @@ class Finisher:
         return bare_c(at_room_c, part, self._air_c) + own_k
 
     def _surface_c(self, at_room_c: float, part: str, name: str) -> float:
-        """[degC] of a garment's surface on this person."""
+        """Return the surface temperature [degC] of a garment on this person."""
         surface_c = cloth_c(at_room_c, part, self._air_c, self._loss)
         own_k = share_of_skin(at_room_c) * self._traits.warmer_k + self._fit[name] * (surface_c - self._air_c)
         return surface_c + own_k
@@ -214,12 +214,12 @@ class Finisher:
 
 
 def appearance_stream(seed: int, name: str) -> np.random.Generator:
-    """Return the stream from which a person's appearance is drawn, in a world of this seed."""
+    """Return the random stream of a person's appearance in a world of the given seed."""
     return stream(seed, f"person.{name}.looks")
 
 
 def draw_bearing(config: PersonConfig, rng: np.random.Generator) -> tuple[Outfit, Manner]:
-    """Draw first of all what a person wears how and carries, and how it moves."""
+    """Draw a person's outfit and manner, before anything else of its appearance."""
     outfit = draw_outfit(rng, config.clothes, config.sex, config.bag)
     carries = _hand_that_carries(config, outfit)
     return outfit, draw_manner(rng, carries, has_straps=_has_straps(outfit))
@@ -240,7 +240,7 @@ def _fold_m(depth_m: float) -> float:
 
 
 def _lay(geometry: PartGeometry, texel_m: float) -> tuple[Mesh, float]:
-    """Lay a grid round a part, and tell half its depth [m]."""
+    """Return a grid round a part, and half the part's depth [m]."""
     low, high = np.array([_reach(shape) for shape in geometry.shapes]).transpose(1, 0, 2)
     least, most = low.min(axis=0), high.max(axis=0)
     half = (most - least) / 2.0
@@ -249,7 +249,7 @@ def _lay(geometry: PartGeometry, texel_m: float) -> tuple[Mesh, float]:
 
 
 def _reach(shape: Shape) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Least and greatest corner (3,) [m] of a shape in its part's frame."""
+    """Return the least and greatest corners (3,) [m] of a shape in its part's frame."""
     at = np.array(shape.position)
     half = np.full(3, shape.size[0])
     if shape.kind == ShapeKind.BOX:

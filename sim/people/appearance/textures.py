@@ -1,4 +1,4 @@
-"""Grids wrapped round the parts of a body: crumpled cloth, and the paint that becomes a finish."""
+"""Grids wrapped round the parts of a body: crumpled cloth, and the paint of a finish."""
 
 from dataclasses import dataclass
 
@@ -12,11 +12,11 @@ Grid = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Mesh:
-    """The grid of one part's finish, as `Finish` has it.
+    """The grid of one part's finish, in the layout of `Finish`.
 
     Attributes:
-        lowest_m: [m] z of the first row.
-        texel_m: [m] from row to row.
+        lowest_m: [m] z of the lowest row, the first one.
+        texel_m: [m] distance between rows.
         turn: (1, C) [rad] direction from +x of each column, within -pi..pi.
         z: (R, 1) [m].
         down: (R, 1) 0 in the top row, 1 in the lowest.
@@ -45,7 +45,7 @@ class Mesh:
 
 
 def make_mesh(low_m: float, high_m: float, round_m: float, texel_m: float) -> Mesh:
-    """Lay a grid round a part that reaches from one height to another and is so far round [m]."""
+    """Return a grid round a part, from its lowest to its highest point and of the given girth [m]."""
     rows = max(int(np.ceil((high_m - low_m) / texel_m)) + 1, 3)
     columns = max(round(round_m / texel_m), 8)
     turn = (2.0 * np.pi * np.arange(columns) / columns + np.pi) % (2.0 * np.pi) - np.pi
@@ -55,12 +55,12 @@ def make_mesh(low_m: float, high_m: float, round_m: float, texel_m: float) -> Me
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FabricSheet:
-    """Crumpled cloth on a grid: row 0 is lowest, columns close up.
+    """Crumpled cloth on a grid: row 0 is the lowest, columns wrap around.
 
     Attributes:
-        touch: (R, C) about -1..1, high where the cloth lies on, low where it stands off.
+        touch: (R, C) about -1..1, high where the cloth touches the skin, low where it stands off.
         crease: (R, C) 0..1, high along sharp folds.
-        relief: (R, C) slope of the folds, deviation 1: positive faces up.
+        relief: (R, C) slope of the folds, standard deviation 1; positive faces up.
     """
 
     touch: Grid
@@ -69,7 +69,7 @@ class FabricSheet:
 
 
 def crumple(mesh: Mesh, fold_m: float, rng: np.random.Generator) -> FabricSheet:
-    """Draw the cloth of a grid, its folds so far apart [m], slanting across the part as they do on limbs."""
+    """Draw crumpled cloth with folds `fold_m` [m] apart that slant across the part, as on limbs."""
     shape = mesh.zeros.shape
     noise = [rng.standard_normal(shape) for _ in range(4)]
     touch = _band(noise[0], mesh.texel_m, 3.0 * fold_m, 6.0 * fold_m, 0.0)
@@ -81,14 +81,14 @@ def crumple(mesh: Mesh, fold_m: float, rng: np.random.Generator) -> FabricSheet:
 
 
 def streaks(mesh: Mesh, across_m: float, along_m: float, rng: np.random.Generator) -> Grid:
-    """Draw (R, C) streaks of deviation 1 along z, so wide and so long [m]: hair."""
+    """Draw (R, C) streaks of standard deviation 1 along z, of the given width and length [m], for hair."""
     return _band(rng.standard_normal(mesh.zeros.shape), mesh.texel_m, across_m, along_m, 0.0)
 
 
 def _band(noise: Grid, texel_m: float, across_m: float, along_m: float, slant: float) -> Grid:
-    """Keep waves of about these lengths [m] round and along the part, its crests sheared by a slant."""
+    """Band-pass noise to about these wavelengths [m] round and along the part, sheared by a slant."""
     rows, columns = noise.shape
-    # Twice as many rows keep top and bottom from being alike.
+    # The transform is periodic; twice as many rows keep the top from repeating the bottom.
     padded = np.concatenate([noise, noise[::-1]], axis=0)
     along = np.fft.fftfreq(2 * rows, texel_m)[:, None]
     across = np.fft.rfftfreq(columns, texel_m)[None, :]
@@ -107,7 +107,7 @@ _MOST_K = 14.0
 
 
 class Paint:
-    """Kelvin, light and cover of one part as they grow.
+    """Accumulates the temperature, light and cover of one part's finish.
 
     Attributes:
         mesh: the grid.
@@ -119,16 +119,16 @@ class Paint:
         self.kelvin, self.light, self.cover = mesh.zeros, mesh.zeros + 1.0, mesh.zeros
 
     def lay(self, share: Grid, *, kelvin: float, light: float = 1.0, cover: float = 0.0) -> None:
-        """Cover a share 0..1 of each texel with something of its own: a strap, a lens, a belt."""
+        """Cover a share 0..1 of each texel with another material: a strap, a lens, a belt."""
         for layer, value in ((self.kelvin, kelvin), (self.light, light), (self.cover, cover)):
             layer += share * (value - layer)
 
     def centre(self) -> None:
-        """Leave the mean temperature as it is without this paint."""
+        """Shift the temperatures so that the paint does not change their mean."""
         self.kelvin -= self.kelvin.mean()
 
     def finish(self, rgb: Rgb = (0.0, 0.0, 0.0)) -> Finish:
-        """Return what has been painted."""
+        """Return the finish that has been painted."""
         return Finish(
             lowest_m=self.mesh.lowest_m,
             texel_m=self.mesh.texel_m,
@@ -146,11 +146,11 @@ class Soft:
     edge: float
 
     def within(self, value: Grid, low: float | Grid, high: float | Grid) -> Grid:
-        """Where a value lies between two others."""
+        """Return 1 where a value lies between two others, with soft edges."""
         return self._step(value - low) * self._step(high - value)
 
     def oval(self, across: Grid, up: Grid, half_across: float, half_up: float) -> Grid:
-        """An ellipse round the origin."""
+        """Return an ellipse centred at the origin."""
         away = np.hypot(across / half_across, up / half_up)
         return self._step((1.0 - away) * min(half_across, half_up))
 
@@ -159,5 +159,5 @@ class Soft:
 
 
 def blob(across: Grid, up: Grid, sigma_across: float, sigma_up: float) -> Grid:
-    """A Gaussian hill round the origin, 1 on top."""
+    """Return a Gaussian centred at the origin, 1 at its peak."""
     return np.asarray(np.exp(-0.5 * ((across / sigma_across) ** 2 + (up / sigma_up) ** 2)))

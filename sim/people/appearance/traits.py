@@ -1,4 +1,4 @@
-"""What sets one person apart from the next: usual clothes by sex and warmth, glasses, straps, body warmth."""
+"""Individual traits of people: usual clothes by sex and air temperature, glasses, straps, body warmth."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,24 +13,24 @@ from peopleboy.sim.people.person_config import PersonConfig
 
 Strap = Literal["none", "left", "right", "both"]
 
-_GLASSES = 0.36  # of adults wear them all the time (Institut für Demoskopie Allensbach, Brillenstudie 2014)
-_BEARD = 0.35  # of men, a stubble or more: our choice
+_GLASSES = 0.36  # of adults always wear them (Institut für Demoskopie Allensbach, Brillenstudie 2014)
+_BEARD = 0.35  # share of men with a stubble or more: our choice
 _USUAL_SPEED_M_S = 1.2
-_K_PER_M_S = 1.2  # who walks faster is warmer
+_K_PER_M_S = 1.2  # faster walkers are warmer
 _OPEN_JACKET, _BELT, _PHONE, _PARTED = 0.55, 0.5, 0.3, 0.6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Traits:
-    """One person's own.
+    """Individual traits of one person.
 
     Attributes:
-        warmer_k: [K] skin against other people's, clothes by their share of it.
-        hands_k, nose_k: [K] hands and feet, and the nose, against other people's.
+        warmer_k: [K] skin temperature less that of the mean person; clothes take their share of it.
+        hands_k, nose_k: [K] the same for hands and feet, and for the nose.
         sweat: 0..1 how wet the back is.
-        glasses, beard, open_jacket, belt, phone: whether there is one.
-        strap: of what is carried, from which shoulder it comes.
-        parting: where the hair is parted, -1 the right side, 1 the left, 0 nowhere.
+        glasses, beard, open_jacket, belt, phone: whether the person has one.
+        strap: the shoulder from which the strap of a bag comes.
+        parting: side on which the hair is parted, -1 the right side, 1 the left, 0 nowhere.
     """
 
     warmer_k: float
@@ -69,31 +69,31 @@ def draw_traits(config: PersonConfig, outfit: Outfit, air_c: float, rng: np.rand
 
 
 def _strap(outfit: Outfit) -> Strap:
-    """A bag at one side hangs from the other shoulder."""
+    """Return the shoulder of a bag's strap: a bag at one side hangs from the other shoulder."""
     if outfit.carried == "shoulder_bag":
         return "left" if outfit.side == "right" else "right"
     return "both" if outfit.carried == "rucksack" else "none"
 
 
 def _normal(rng: np.random.Generator) -> float:
-    """A normal draw whose tails are cut off."""
+    """Draw from a normal distribution with truncated tails."""
     return float(np.clip(rng.normal(), -2.0, 2.0))
 
 
 Shares = Mapping[str, float]
 
-# Bald: 7.7 % of men have hardly any hair or none (GfK for Apotheken Umschau, 944 men, 2014); women as good as
-# never. Long hair on most women, on few men: our own count in street scenes. Caps come by the weather.
+# Bald: 7.7 % of men have hardly any hair or none (GfK for Apotheken Umschau, 944 men, 2014); women hardly
+# ever. Long hair on most women, on few men: our own count in street scenes. Caps depend on the weather.
 HAIR: Final[Mapping[Sex, Shares]] = {
     "female": {"long": 0.72, "short": 0.28},
     "male": {"short": 0.86, "bald": 0.077, "long": 0.063},
 }
-# Hair of central Europe is brown to dark blond in most people, red in few, grey in a fifth; the palette has
-# no more names than these.
+# Hair in central Europe is mostly brown to dark blond, rarely red, and grey in a fifth of people; the palette
+# has no further names.
 HAIR_COLOURS: Final[Shares] = {
     "dark_brown": 0.36, "brown": 0.2, "blond": 0.2, "black": 0.08, "grey": 0.1, "light_grey": 0.06
 }  # fmt: skip
-# Skirts on one woman in eight indoors, more in warm air, on no man; shorts by the warmth: our choice.
+# One woman in eight wears a skirt indoors, more in warm air; shorts depend on the temperature: our choice.
 _BOTTOMS: Final[Mapping[Sex, Mapping[str, Shares]]] = {
     "female": {
         "cold": {"jeans": 0.55, "trousers": 0.25, "leggings": 0.16, "skirt": 0.04},
@@ -106,7 +106,7 @@ _BOTTOMS: Final[Mapping[Sex, Mapping[str, Shares]]] = {
         "warm": {"jeans": 0.3, "trousers": 0.2, "shorts": 0.5},
     },
 }
-# Who is out in the cold wears as much as the insulation that ISO 11079 asks for: a jacket below some 12 degC.
+# In the cold people wear the insulation that ISO 11079 requires: a jacket below about 12 degC.
 _TOPS: Final[Mapping[str, Shares]] = {
     "cold": {"jacket": 0.72, "fleece": 0.13, "wool_jumper": 0.09, "striped_jumper": 0.03, "lab_coat": 0.03},
     "mild": {
@@ -140,7 +140,7 @@ _EITHER_SIDE_K = 4.0
 
 
 def usual_clothes(rng: np.random.Generator, sex: Sex, air_c: float) -> Clothes:
-    """Draw clothes as people of a sex wear them in air of such a temperature [degC]."""
+    """Draw clothes that people of a sex usually wear in air of the given temperature [degC]."""
     season = _season(rng, air_c)
     bottom = _pick(rng, _BOTTOMS[sex][season])
     hair = "cap" if rng.uniform() < _CAPS[season] else _pick(rng, HAIR[sex])
@@ -156,7 +156,7 @@ def usual_clothes(rng: np.random.Generator, sex: Sex, air_c: float) -> Clothes:
 
 
 def _season(rng: np.random.Generator, air_c: float) -> str:
-    """People do not agree on what is cold or warm: some dress up or down a few kelvin earlier."""
+    """Draw the season that a person dresses for; its limits differ by a few kelvin between people."""
     felt_c = air_c + float(rng.uniform(-_EITHER_SIDE_K, _EITHER_SIDE_K))
     if felt_c < _COLD_C:
         return "cold"

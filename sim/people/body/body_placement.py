@@ -1,4 +1,4 @@
-"""From turns of joints to bones above the floor and the parts that they carry, and reaching for a point."""
+"""Forward kinematics from joint rotations to bones and parts above the floor, and reaching for a point."""
 
 import math
 from collections.abc import Callable
@@ -27,12 +27,12 @@ Array = NDArray[np.float64]
 
 
 class BodyFrame(NamedTuple):
-    """How one person's parts hang together.
+    """The geometry that connects one person's bones and parts.
 
     Attributes:
         offsets: (17, 3) [m] from joint to joint.
         soles: (3, 3) [m] points of a sole, in the foot's frame.
-        bone: (P,) that carries each part.
+        bone: (P,) index of the bone that carries each part.
         part_offset: (P, 3) [m] from that bone's joint to the part's frame.
     """
 
@@ -54,15 +54,15 @@ def put_on_floor(
     place: tuple[float, float, float],
     bones: Array,
 ) -> None:
-    """Put bones so that the lowest point of both soles is on the floor.
+    """Place bones so that the lowest point of both soles is on the floor.
 
     Args:
         turns: (17, 3) [rad] rotation vector of each bone against its parent.
-        offsets: (17, 3) [m] as `joint_offsets` gives them.
+        offsets: (17, 3) [m] joint offsets as returned by `joint_offsets`.
         soles: (3, 3) [m] points of a sole, in the foot's frame.
-        shift: [m] the pelvis' offset to the front and to the left.
+        shift: [m] offset of the pelvis to the front and to the left.
         place: x, y [m] and heading [rad] of the person.
-        bones: (17, 4, 4) gets the poses, world frame.
+        bones: (17, 4, 4) output: the poses in the world frame.
     """
     own, world = offsets.copy(), np.eye(4)
     own[0, 0], own[0, 1], own[0, 2] = shift[0], shift[1], 0.0
@@ -85,7 +85,7 @@ def put_on_floor(
 
 @njit(cache=True, nogil=True)
 def carry(bones: Array, bone: NDArray[np.int64], offset_m: Array, poses: Array) -> None:
-    """Put P parts where bones (17, 4, 4) carry them, each by its `bone`, `offset_m` from the joint."""
+    """Return the poses of P parts carried by bones (17, 4, 4), each `offset_m` from the joint of its `bone`."""
     for p in range(len(bone)):
         own, pose, (x, y, z) = bones[bone[p]], poses[p], offset_m[p]
         for i in range(4):
@@ -95,15 +95,15 @@ def carry(bones: Array, bone: NDArray[np.int64], offset_m: Array, poses: Array) 
             pose[i, 3] += (own[i, 0] * x + own[i, 2] * z) + own[i, 1] * y
 
 
-_PALM = 0.5  # of the hand's length, from the wrist
-_STRETCHED = 0.97  # of the arm's length, beyond which one stoops
+_PALM = 0.5  # position of the palm as a share of the hand's length, from the wrist
+_STRETCHED = 0.97  # share of the arm's length beyond which a person stoops
 _DEEPEST = 2.0
 _HALVINGS, _TRIED = 8, 17
 _ELBOW = (-0.35, 0.45, -1.0)  # where elbows point: back, outwards and down
 
 
 def _bent_knees() -> Array:
-    """(17, 3) [rad] turns of the legs that lower the pelvis above the feet."""
+    """Return the (17, 3) [rad] leg rotations that lower the pelvis above the feet."""
     turns = np.zeros((len(BONES), 3))
     for bone, degrees in {"thigh": -55.0, "shin": 95.0, "foot": -40.0}.items():
         turns[[BONE_INDEX[f"{side}_{bone}"] for side in ("left", "right")], 1] = math.radians(degrees)
@@ -115,27 +115,27 @@ _KNEES = _bent_knees()
 
 
 def arm_length(stature_m: float) -> float:
-    """From the shoulder to the middle of the palm [m]."""
+    """Return the distance from the shoulder to the middle of the palm [m]."""
     return (UPPER_ARM_LENGTH + FOREARM_LENGTH + _PALM * HAND_LENGTH) * stature_m
 
 
 def stoop(share: float) -> tuple[Array, float]:
-    """Bend the trunk, from 0 to 1, and then the knees, too, from 1 to 2.
+    """Return the posture of a stoop: 0 to 1 bends the trunk, 1 to 2 the knees as well.
 
     Returns:
-        (17, 3) [rad] to be added to the bones' rotation vectors; feet stay level. And how far the pelvis goes
-        to the front [fractions of stature].
+        (17, 3) [rad] to be added to the bones' rotation vectors; feet stay level. And the shift of the
+        pelvis to the front [fractions of stature].
     """
     bow = min(share, 1.0)
     return bow * _BOW + max(share - 1.0, 0.0) * _KNEES, bow * pelvis_shift(Posture.BENDING)
 
 
 def least_stoop(gap_m: Callable[[float], float], arm_m: float) -> float:
-    """How far one must stoop so that the arm is long enough; where it never is, so far as gets nearest.
+    """Return the least stoop at which the arm reaches the target, or the one that gets nearest to it.
 
     Args:
-        gap_m: from the shoulder to the target [m], of one who stoops so far.
-        arm_m: length of the arm.
+        gap_m: maps a stoop to the distance [m] from the shoulder to the target.
+        arm_m: [m] length of the arm.
     """
     low, high = 0.0, _DEEPEST
     if gap_m(low) <= _STRETCHED * arm_m:
@@ -150,16 +150,16 @@ def least_stoop(gap_m: Callable[[float], float], arm_m: float) -> float:
 
 
 def turn_arm(rotations: Array, side: str, target: Array, stature_m: float) -> Array:
-    """Turn an arm so that the middle of its palm is at a point, or points there if it is too far.
+    """Turn an arm so that its palm is at a point, or points at it if it is out of reach.
 
     Args:
-        rotations: (17, 3) [rad] of the bones; not changed.
+        rotations: (17, 3) [rad] rotation vectors of the bones; not changed.
         side: "left" or "right".
         target: (3,) [m] from the shoulder, in the chest's frame.
-        stature_m: of the person.
+        stature_m: [m] stature of the person.
 
     Returns:
-        (17, 3) the same with the arm turned. By the law of cosines.
+        (17, 3) [rad] the rotations with the arm turned, by the law of cosines.
     """
     upper, lower = UPPER_ARM_LENGTH * stature_m, (FOREARM_LENGTH + _PALM * HAND_LENGTH) * stature_m
     far = max(float(np.linalg.norm(target)), 1e-6)
@@ -177,7 +177,7 @@ def turn_arm(rotations: Array, side: str, target: Array, stature_m: float) -> Ar
 
 
 def _across(along: Array, side: str) -> Array:
-    """The unit vector across a direction that comes nearest to where elbows point."""
+    """Return the unit vector perpendicular to a direction that is nearest to where elbows point."""
     x, y, z = _ELBOW
     pole = np.array([x, lateral(side) * y, z])
     across = pole - (pole @ along) * along

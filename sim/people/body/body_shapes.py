@@ -69,7 +69,7 @@ def sphere(centre: Vector, radius: float) -> Shape:
 
 
 def box(centre: Vector, size: Vector) -> Shape:
-    """Make a box of these full extents [m]."""
+    """Make a box of the given full extents [m]."""
     return Shape(kind=ShapeKind.BOX, size=size, position=centre)
 
 
@@ -77,9 +77,9 @@ def build_body(size: BodySize, hair: str, thickness_m: Mapping[str, float]) -> d
     """Make the parts of a body.
 
     Args:
-        size: whose body.
+        size: the sizes of the body.
         hair: "short", "long", "bald" or "cap".
-        thickness_m: [m] how far clothes stand off the skin, by part; 0 where a part is missing.
+        thickness_m: [m] distance of clothes from the skin, by part; 0 for parts that are missing.
     """
     parts = {**_head(size, hair), **_torso(size, thickness_m)}
     for side in SIDES:
@@ -89,7 +89,7 @@ def build_body(size: BodySize, hair: str, thickness_m: Mapping[str, float]) -> d
 
 
 def _head(size: BodySize, hair: str) -> dict[str, PartGeometry]:
-    """Face, hair and neck; the crown of the hair is at the stature, the chin at its tabled height."""
+    """Make face, hair and neck: the crown of the hair at the stature, the chin at its tabulated height."""
     h, g = size.stature_m, size.girths
     crown = 1.0 - ATLAS_HEIGHT
     breadth = g.head_breadth / 2.0
@@ -112,7 +112,7 @@ def _head(size: BodySize, hair: str) -> dict[str, PartGeometry]:
 
 
 def _hair(h: float, breadth: float, front: float, crown: float, hair: str) -> tuple[Shape, ...]:
-    """Skull cap, and what grows or sits on it."""
+    """Make the skull cap, and the hair or cap on it."""
     z = crown - breadth
     rim = front - breadth + 0.001 if hair == "cap" else 0.0035
     skull = capsule(((breadth - front) * h, 0.0, z * h), (rim * h, 0.0, z * h), breadth * h)
@@ -126,7 +126,7 @@ def _hair(h: float, breadth: float, front: float, crown: float, hair: str) -> tu
 
 
 def _strand(h: float, z: float, side: float) -> Shape:
-    """One of two locks that fall on the shoulders from the height of the skull's middle."""
+    """Make one of two locks of hair that fall to the shoulders from mid-height of the skull."""
     return capsule(
         (-0.020 * h, side * 0.018 * h, z * h), (-0.030 * h, side * 0.022 * h, -0.062 * h), 0.033 * h
     )
@@ -141,7 +141,7 @@ def _torso(size: BodySize, thickness_m: Mapping[str, float]) -> dict[str, PartGe
 
 
 def _chest(size: BodySize, cloth: float) -> PartGeometry:
-    """Ribs, the edges of the back, and the slopes from neck to shoulder with the joints at their ends."""
+    """Make ribs, the edges of the back, and the slopes from neck to shoulder joints."""
     h, g = size.stature_m, size.girths
     joint_y = shoulder_half_breadth(size)
     shoulder_z = table.SHOULDER_HEIGHT - _CHEST_CENTRE
@@ -170,7 +170,7 @@ def _times(scale: float, vector: Vector) -> Vector:
 
 
 def _abdomen(size: BodySize, cloth: float) -> PartGeometry:
-    """Two upright capsules side by side, and one across where a top ends over the trousers."""
+    """Make two upright capsules side by side, and one across at the hem of the top."""
     h, g = size.stature_m, size.girths
     radius = g.waist_depth / 2.0
     half = max(g.waist_breadth / 2.0 - radius, 0.004)
@@ -184,7 +184,7 @@ def _abdomen(size: BodySize, cloth: float) -> PartGeometry:
 
 
 def _pelvis(size: BodySize, cloth: float) -> PartGeometry:
-    """Hips and, above them, the rim of the pelvis, both lying across."""
+    """Make the hips and the rim of the pelvis above them, both horizontal."""
     h, g = size.stature_m, size.girths
     radius = g.buttock_depth / 2.0 * 0.96
     half = g.hip_breadth / 2.0 - radius
@@ -198,7 +198,7 @@ def _pelvis(size: BodySize, cloth: float) -> PartGeometry:
 
 
 def _arm(size: BodySize, side: str, thickness_m: Mapping[str, float]) -> dict[str, PartGeometry]:
-    """Upper arm, forearm and hand, each tapering; the upper arm's cap is the curve of the shoulder."""
+    """Make upper arm, forearm and hand, each tapering; the upper arm's cap forms the shoulder."""
     h, g = size.stature_m, size.girths
     upper, fore, hand = (f"{side}_{name}" for name in ("upper_arm", "forearm", "hand"))
     biceps = size.radius_of(g.biceps_circumference)
@@ -232,7 +232,7 @@ def _arm(size: BodySize, side: str, thickness_m: Mapping[str, float]) -> dict[st
 
 
 def _leg(size: BodySize, side: str, thickness_m: Mapping[str, float]) -> dict[str, PartGeometry]:
-    """Thigh, shin and foot; thigh and shin taper, the sole of the foot is flat."""
+    """Make thigh, shin and foot; thigh and shin taper, the sole of the foot is flat."""
     h, g = size.stature_m, size.girths
     thigh, shin, foot = (f"{side}_{name}" for name in ("thigh", "shin", "foot"))
     length, shank = (table.HIP_HEIGHT - table.KNEE_HEIGHT) * h, (table.KNEE_HEIGHT - table.ANKLE_HEIGHT) * h
@@ -265,7 +265,7 @@ def _leg(size: BodySize, side: str, thickness_m: Mapping[str, float]) -> dict[st
 
 
 def _foot(h: float) -> tuple[Shape, ...]:
-    """Flat sole from heel to ball, rounded toes, and the instep that carries the shin."""
+    """Make a foot: a flat sole from heel to ball, rounded toes, and the instep below the shin."""
     sole = -table.ANKLE_HEIGHT * h
     points = sole_points(h)
     heel_x, ball_x, toe_x = (float(x) for x in points[:, 0])
@@ -279,7 +279,7 @@ def _foot(h: float) -> tuple[Shape, ...]:
 
 
 def sole_points(stature_m: float) -> NDArray[np.float64]:
-    """(3, 3) [m] heel, ball and toe of a foot, in the foot's frame: its lowest points as it rolls."""
+    """Return (3, 3) [m] heel, ball and toe in the foot's frame: the lowest points of a rolling foot."""
     h = stature_m
     heel, toe = -0.040 * h, (table.FOOT_LENGTH - 0.040 - 0.0165) * h
     sole = -table.ANKLE_HEIGHT * h
@@ -287,11 +287,11 @@ def sole_points(stature_m: float) -> NDArray[np.float64]:
 
 
 def bag(side: str, stature_m: float) -> PartGeometry:
-    """A briefcase hanging from a hand."""
+    """Make a briefcase that hangs from a hand."""
     drop = (table.HAND_LENGTH * 0.75) * stature_m
     return PartGeometry(bone=f"{side}_hand", shapes=(box((0.0, 0.0, -drop - 0.15), (0.38, 0.10, 0.28)),))
 
 
 def bone_index(parts: Mapping[str, PartGeometry]) -> NDArray[np.int64]:
-    """(P,) which bone carries each part."""
+    """Return the (P,) index of the bone that carries each part."""
     return np.array([BONE_INDEX[part.bone] for part in parts.values()])

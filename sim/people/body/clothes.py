@@ -1,4 +1,4 @@
-"""Clothes, hair and skin: what covers which part of a person, how warm and how coloured it is."""
+"""Clothes, hair and skin: the parts of a person that they cover, their temperatures and colours."""
 
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field, replace
@@ -25,15 +25,15 @@ _PLAIN = Pattern()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Garment:
-    """One thing to wear.
+    """One garment of the catalogue.
 
     Attributes:
         covers: names of the parts that it covers.
-        temperature_c: [degC] mean surface temperature indoors: the thicker, the cooler.
-        thickness_m: [m] how far it stands off the skin.
+        temperature_c: [degC] mean surface temperature indoors; thicker garments are cooler.
+        thickness_m: [m] distance from the skin.
         variation_k: [K] amplitude of folds and gaps: smooth variation over the surface.
-        contrast_k, thermal_pattern: a pattern that a thermal camera sees, on the chest.
-        colour_pattern: a pattern that a colour camera sees, on all that it covers.
+        contrast_k, thermal_pattern: pattern on the chest in thermal images, and its contrast [K].
+        colour_pattern: pattern in colour images, on all parts that the garment covers.
         colour: name of its usual colour.
     """
 
@@ -130,10 +130,10 @@ HairName = Literal[*HAIR]  # type: ignore[valid-type]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Clothes:
-    """What a person wears, by names of the catalogue; a colour of None is the garment's usual one.
+    """Clothes of a person, by names of the catalogue; a colour of None is the garment's usual one.
 
     Raises:
-        BadInput: a garment or colour that the catalogue lacks.
+        BadInput: a garment or colour is not in the catalogue.
     """
 
     top: Annotated[TopName, Field(description="shirt, jumper or the like")] = "shirt"
@@ -153,7 +153,7 @@ class Clothes:
                 _resolve_colour(key, value)
 
     def garments(self) -> tuple[tuple[Garment, Rgb], ...]:
-        """Everything worn with its colour, from the skin outwards."""
+        """All garments with their colours, from the skin outwards."""
         top, bottom, shoes, hair = TOPS[self.top], BOTTOMS[self.bottom], SHOES[self.shoes], HAIR[self.hair]
         return (
             (hair, _resolve_colour("hair_colour", self.hair_colour or hair.colour)),
@@ -163,7 +163,7 @@ class Clothes:
         )
 
     def thickness_m(self) -> dict[str, float]:
-        """[m] how far clothes stand off the skin, by part."""
+        """[m] distance of clothes from the skin, by part."""
         return {part: garment.thickness_m for garment, _ in self.garments() for part in garment.covers}
 
 
@@ -182,13 +182,13 @@ def _resolve_colour(key: str, colour: str | Rgb) -> Rgb:
 
 
 def dress(clothes: Clothes, rng: np.random.Generator) -> dict[str, Material]:
-    """Decide the look of every part of a person.
+    """Return the material of every part of a person.
 
     People differ: each person's skin and each garment is up to half a kelvin warmer or cooler than the
     catalogue says, and complexions differ.
 
     Returns:
-        Look by part name.
+Material by part name.
     """
     skin_c = float(rng.uniform(-0.5, 0.5))
     complexion = tuple(float(c) for c in np.array(COLOURS["skin"]) * rng.uniform(0.35, 1.25))
@@ -233,7 +233,7 @@ def _cloth(garment: Garment, part: str, offset_k: float, rgb: Rgb) -> Material:
 
 
 def _second_colour(rgb: Rgb) -> Rgb:
-    """Light on dark clothes, dark on light ones."""
+    """Return a light colour for dark clothes, a dark one for light clothes."""
     return COLOURS["white"] if sum(rgb) < 0.9 else COLOURS["navy"]
 
 

@@ -1,4 +1,4 @@
-"""Gait: a motion-captured cycle of walking, tabulated by stride length and phase, and its look-up."""
+"""Gait: a motion-captured walking cycle, tabulated by stride length and phase, and its look-up."""
 
 import functools
 import json
@@ -21,14 +21,16 @@ Array = NDArray[np.float64]
 
 PHASES: Final = 48
 AMPLITUDES: Final = np.array([0.0, 0.15, 0.3, 0.5, 0.75, 1.0, 1.2, 1.4])
-_FULL_SPEED_M_S = 1.1  # a stride as long as the clip's, for a leg as long as the clip's
+_FULL_SPEED_M_S = 1.1  # speed at which a leg as long as the clip's makes the clip's stride
 
 
 @njit(cache=True, nogil=True)
 def amplitude_of(speed_m_s: float, root_scale: float) -> float:
-    """Length of the stride against the clip's at a walking speed, for legs of a scale of this root.
+    """Return the stride length relative to the clip's at a walking speed.
 
-    It grows with the root of speed, as cadence does.
+    `root_scale` is the root of the leg length relative to the clip's.
+
+The amplitude grows with the root of speed, as cadence does.
     """
     return min(math.sqrt(abs(speed_m_s) / (_FULL_SPEED_M_S * root_scale)), 1.4)
 
@@ -40,7 +42,7 @@ def gait_pose(
     """Look a pose up in tables (A, P, 17, 3) and (A, P, 3) of `Gait`, at a phase [cycles].
 
     Returns:
-        The pelvis' offset [m] to the front and to the left; `turns` (17, 3) gets the rotation vectors.
+        Offset of the pelvis [m] to the front and to the left; the rotation vectors are written to `turns` (17, 3).
     """
     last = len(AMPLITUDES) - 1
     i = last
@@ -77,8 +79,8 @@ class WalkingClip:
 
     Attributes:
         rotations: (2K+1, 17, 3) [rad] coefficients of 1, cos, sin, cos 2, ... of the bones' rotation vectors.
-        sway: (2K+1, 3) [m] the same of the pelvis' deviation from a steady walk; x front, y left, z up.
-        stride_m: [m] travel in a cycle.
+        sway: (2K+1, 3) [m] the same for the pelvis' deviation from steady motion; x front, y left, z up.
+        stride_m: [m] travel per cycle.
     """
 
     rotations: Array
@@ -87,7 +89,7 @@ class WalkingClip:
 
 
 def fourier_basis(phase: Array) -> Array:
-    """(..., 2K+1) the functions 1, cos, sin, cos 2, sin 2, ... at phases given in cycles."""
+    """Return (..., 2K+1) the functions 1, cos, sin, cos 2, sin 2, ... at phases given in cycles."""
     angles = 2.0 * math.pi * np.asarray(phase)[..., None] * np.arange(1, _HARMONICS + 1)
     waves = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     return np.concatenate([np.ones((*waves.shape[:-2], 1)), waves.reshape(*waves.shape[:-2], -1)], axis=-1)
@@ -95,7 +97,7 @@ def fourier_basis(phase: Array) -> Array:
 
 @functools.cache
 def load_walking_clip() -> WalkingClip:
-    """Read what five harmonics make of the clip, which tests fit anew.
+    """Read the clip as five harmonics; tests fit them again.
 
     Source: humanoid3d_walk.txt of pybullet_data, which is DeepMimic's (Peng et al., 2018; MIT licence).
     """
@@ -109,19 +111,19 @@ def load_walking_clip() -> WalkingClip:
 # The left foot of the clip is on the floor between these phases [cycles].
 _HEEL_STRIKE, _TOE_OFF = 0.485, 1.085
 _FLAT_RAD = math.radians(3.0)
-_MAX_REACH = 0.998  # [leg lengths] a walking knee is never quite straight
+_MAX_REACH = 0.998  # [leg lengths] a walking knee is never fully straight
 _STANDING_REACH = 0.9998
 _LEAD = (
-    0.055  # [cycles] how far the body is ahead of the middle of its feet, which makes the most of the legs
+    0.055  # [cycles] lead of the body over the middle of its feet, chosen for the longest reach of the legs
 )
-_BOB = 0.7  # people rise and fall less in each step than stiff legs would make them
-_LEAN = 0.5  # the clip's figure leans forward; people do so less
-# Who stands on one leg shifts the hips over it, and drops the other one.
+_BOB = 0.7  # people rise and fall less in each step than they would on stiff legs
+_LEAN = 0.5  # the clip's figure leans forward more than people do
+# On one leg the hips shift over that leg, and the other hip drops.
 _HIP_SHIFT, _HIP_DROP_RAD = 0.018, math.radians(5.0)
 
 
 class Gait:
-    """Poses of one body for every phase and length of its stride.
+    """Poses of one body for every phase and stride length.
 
     The motion capture clip gives the movement of pelvis, trunk and arms and the pitch of the feet; its swing
     is scaled by an amplitude. The feet follow the floor: during stance the sole rolls from heel over the flat
@@ -140,14 +142,14 @@ class Gait:
         self.unit_stride_m = load_walking_clip().stride_m * self._scale * manner.stride
 
     def stride_m(self, amplitude: float) -> float:
-        """Travel [m] in a cycle."""
+        """Return the travel [m] per cycle."""
         return float(self.unit_stride_m * amplitude)
 
     def pose(self, phase: float, amplitude: float) -> tuple[Array, Array]:
         """Look up the pose at a phase [cycles].
 
         Returns:
-            (17, 3) [rad] rotation vectors of the bones, and (2,) [m] the pelvis' offset from the person's
+            (17, 3) [rad] rotation vectors of the bones, and (2,) [m] offset of the pelvis from the person's
             steadily moving position, to the front and to the left.
         """
         turns = np.empty((len(BONES), 3))
@@ -155,12 +157,12 @@ class Gait:
         return turns, np.array(gait_pose(rotations, sway, phase, amplitude, turns))
 
     def rebind(self, rotations: Array, sway: Array) -> None:
-        """Keep the tables in other arrays from now on, which hold the same already."""
+        """Use other arrays for the tables from now on; they must hold the same values already."""
         self.tables = rotations, sway
 
     @cached_property
     def tables(self) -> tuple[Array, Array]:
-        """(A, P, 17, 3) and (A, P, 3) tables of all amplitudes, made for those who are looked at."""
+        """(A, P, 17, 3) and (A, P, 3) tables of all amplitudes, computed when a camera first needs them."""
         walks = [self._walk(float(amplitude)) for amplitude in AMPLITUDES]
         rotations = np.concatenate([rotations for rotations, _, _ in walks])
         pelvis = np.concatenate([pelvis for _, pelvis, _ in walks])
@@ -176,7 +178,7 @@ class Gait:
         """Compute a walk of one amplitude at every phase, legs aside.
 
         Returns:
-            (P, 17, 3) rotation vectors, (P, 3) [m] pelvis offsets, and the feet as `_foot_path` gives them.
+            (P, 17, 3) rotation vectors, (P, 3) [m] pelvis offsets, and the feet as returned by `_foot_path`.
         """
         phases = np.arange(PHASES) / PHASES
         rotations = self._clip_rotations(phases, amplitude)
@@ -189,7 +191,7 @@ class Gait:
         return rotations, pelvis, feet
 
     def _clip_rotations(self, phases: Array, amplitude: float) -> Array:
-        """Scale the clip's swing about its mean, and the mean towards standing; legs come later."""
+        """Scale the clip's swing about its mean, and the mean towards standing; legs aside."""
         coefficients = load_walking_clip().rotations
         swing = np.tensordot(fourier_basis(phases)[:, 1:], coefficients[1:], axes=1)
         mean = coefficients[0].copy()
@@ -205,7 +207,7 @@ class Gait:
         return rotations
 
     def _foot_path(self, side: str, phases: Array, amplitude: float) -> tuple[Array, Array]:
-        """Where the ankle goes, and how the foot is pitched.
+        """Return the path of the ankle and the pitch of the foot.
 
         Returns:
             (P, 3) [m] ankle in the person's frame, and (P,) [rad] pitch of the foot, toe down positive.
@@ -230,7 +232,7 @@ class Gait:
         return np.stack([x, y, z], axis=-1), pitch
 
     def _clip_pitch(self, own: Array, amplitude: float) -> Array:
-        """(P,) [rad] pitch of the clip's left foot at its own phases; small pitches count as flat."""
+        """Return (P,) [rad] pitch of the clip's left foot at its own phases; small pitches count as flat."""
         coefficients = load_walking_clip().rotations
         chain = [BONE_INDEX[name] for name in ("pelvis", "left_thigh", "left_shin", "left_foot")]
         vectors = np.tensordot(fourier_basis(own), coefficients[:, chain], axes=1)
@@ -239,17 +241,17 @@ class Gait:
         return flat
 
     def _rolled(self, pitch: Array) -> Array:
-        """How far the ankle has rolled forward [m] from where it is over the flat foot."""
+        """Return how far the ankle has rolled forward [m] from its position over the flat foot."""
         forward: Array = self._pivot(pitch) * (1.0 - np.cos(pitch)) - self._soles[0, 2] * np.sin(pitch)
         return forward
 
     def _pivot(self, pitch: Array) -> Array:
-        """Where along the sole the foot touches the floor [m]: at the toe or at the heel."""
+        """Return the point along the sole [m] that touches the floor: toe or heel."""
         pivot: Array = np.where(pitch > 0.0, self._soles[2, 0], self._soles[0, 0])
         return pivot
 
     def _roll(self, since_strike: Array, pitch: Array, amplitude: float) -> tuple[Array, Array]:
-        """Ankle x, z [m] of a foot that rolls on the floor, in the frame of the steadily moving person."""
+        """Return ankle x, z [m] of a foot that rolls on the floor, in the frame of the steadily moving person."""
         middle = (_TOE_OFF - _HEEL_STRIKE) / 2.0 - _LEAD
         anchor = self.stride_m(amplitude) * (middle - since_strike)
         height = -self._soles[0, 2] * np.cos(pitch) + self._pivot(pitch) * np.sin(pitch)
@@ -270,7 +272,7 @@ class Gait:
     def _hip_height(
         self, rotations: Array, sway: Array, feet: dict[str, tuple[Array, Array]], reach: float
     ) -> Array:
-        """(P,) [m] heights of the pelvis at which both legs reach their feet: a smooth curve."""
+        """Return (P,) [m] heights of the pelvis at which both legs reach their feet: a smooth curve."""
         limits = []
         reach, turn = reach * self._leg_lengths().sum(), Rotation.from_rotvec(rotations[:, 0])
         for side in SIDES:
@@ -286,11 +288,11 @@ class Gait:
         return height
 
     def _leg_lengths(self) -> Array:
-        """(2,) [m] thigh and shin."""
+        """Return (2,) [m] lengths of thigh and shin."""
         return -self._offsets[[BONE_INDEX["left_shin"], BONE_INDEX["left_foot"]], 2]
 
     def _bend_leg(self, side: str, rotations: Array, pelvis: Array, ankle: Array, pitch: Array) -> None:
-        """Turn thigh, shin and foot so that the ankle is where it should be (two-bone inverse kinematics)."""
+        """Turn thigh, shin and foot so that the ankle meets its target (two-bone inverse kinematics)."""
         thigh, shin = self._leg_lengths()
         hip_turn = Rotation.from_rotvec(rotations[:, 0])
         gap = ankle - pelvis - hip_turn.apply(self._offsets[BONE_INDEX[f"{side}_thigh"]])

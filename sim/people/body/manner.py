@@ -1,4 +1,4 @@
-"""How one person walks and holds itself: what sets one gait apart from the next."""
+"""The manner of one person: individual differences of gait and bearing."""
 
 import math
 from collections.abc import Mapping
@@ -17,22 +17,22 @@ Hold = Literal["free", "pocket", "strap", "telephone", "in_front", "carries"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Manner:
-    """One person's own gait and bearing; the defaults are what all have in common.
+    """Individual gait and bearing of one person; the defaults are those of the mean person.
 
     Attributes:
-        stride: length of the stride against others' of that stature and speed.
-        arm_swing: swing of the arms against others'.
-        arm_spread: share of how far off the trunk the motion capture clip's figure holds its arms.
-        arms_off_rad, elbow_rad: how far further the arms are held off, and the elbows bent.
-        stoop_rad: how far the trunk leans to the front.
-        head_rad: (2,) how far the head is bowed, and turned to the left.
-        looks_about_rad: how far the head turns from side to side.
-        stance_width: feet's distance across while standing, against the hip joints'.
-        narrows: how much less than that it is while walking.
-        stance_ahead: how far the left foot stands ahead of the right one, as a fraction of stature.
-        leans: share of the weight that standing puts on one leg, left if positive, -1..1.
-        toe_out_rad: how far feet point outwards.
-        holds: what the left and the right hand do while nothing else is asked of them.
+        stride: stride length relative to other people of the same stature and speed.
+        arm_swing: arm swing relative to other people.
+        arm_spread: distance of the arms from the trunk, relative to the motion capture clip.
+        arms_off_rad, elbow_rad: additional angle of the arms off the trunk, and elbow flexion.
+        stoop_rad: forward lean of the trunk.
+        head_rad: (2,) angles by which the head is bowed, and turned to the left.
+        looks_about_rad: amplitude of head turning from side to side.
+        stance_width: foot distance while standing, relative to that of the hip joints.
+        narrows: reduction of that distance while walking.
+        stance_ahead: lead of the left foot over the right one while standing, as a fraction of stature.
+        leans: shift of the weight to one leg while standing, -1..1, positive for the left.
+        toe_out_rad: outward angle of the feet.
+        holds: what the left and the right hand hold when they are not needed otherwise.
     """
 
     stride: float = 1.0
@@ -56,7 +56,7 @@ USUAL: Final = Manner()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spread:
-    """A normal distribution whose tails are cut off at two deviations, and below `least`."""
+    """A normal distribution truncated at two standard deviations, and below `least`."""
 
     mean: float
     deviation: float
@@ -67,7 +67,7 @@ class Spread:
 
 # Women's steps are 0.66 m long at 1.31 m/s, 0.41 of their stature; feet walk 7 to 8 cm apart, and toes point
 # 6 to 7 degrees out (Murray, Drought and Kory 1964, Walking patterns of normal men; Murray, Kory and Sepic
-# 1970, Walking patterns of normal women). Deviations and all else are our choice, feet 2 cm wider among them.
+# 1970, Walking patterns of normal women). Standard deviations and the rest are our choice, and so are feet 2 cm wider.
 SPREADS: Final[Mapping[str, Spread]] = {
     "stride": Spread(
         mean=1.04, deviation=0.05, unit="", what="stride length, relative to the motion capture clip"
@@ -101,10 +101,10 @@ SPREADS: Final[Mapping[str, Spread]] = {
 HOLDS: Final[Mapping[Hold, float]] = {
     "free": 0.68, "pocket": 0.13, "strap": 0.05, "telephone": 0.05, "in_front": 0.09,
 }  # fmt: skip
-_BOTH_ALIKE: Final = 0.5  # of those with a hand in a pocket or before the belly, both hands are
+_BOTH_ALIKE: Final = 0.5  # share of people with a hand in a pocket or before the belly who hold both hands there
 _ARM_SPREAD: Final = (0.35, 0.95)
 
-# Whither left elbows and palms are, from the shoulder in the chest's frame, as fractions of stature.
+# Directions of left elbows and palms from the shoulder in the chest's frame, as fractions of stature.
 _ELBOW_AND_PALM: Final[dict[Hold, tuple[tuple[float, float, float], tuple[float, float, float]]]] = {
     "pocket": ((-0.09, 0.09, -0.14), (0.03, -0.01, -0.32)),
     "strap": ((0.0, 0.06, -0.175), (0.095, -0.05, -0.065)),
@@ -118,9 +118,9 @@ def draw_manner(rng: np.random.Generator, carries: str | None, *, has_straps: bo
     """Draw how a person walks and stands.
 
     Args:
-        rng: draws it.
-        carries: the side of the hand that carries something, if one does.
-        has_straps: whether there is a strap over a shoulder for a hand to hold.
+        rng: random generator.
+        carries: side of the hand that carries something, or None.
+        has_straps: whether there is a shoulder strap for a hand to hold.
     """
 
     def near(name: str) -> float:
@@ -178,7 +178,7 @@ def held_arms(holds: tuple[Hold, Hold]) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def bearing(manner: Manner) -> Array:
-    """Return by how much (17, 3) [rad] a person's trunk, head and arms are turned further than others'."""
+    """Return the (17, 3) [rad] additional rotations of a person's trunk, head and arms."""
     turns = np.zeros((len(BONES), 3))
     bow, aside = manner.head_rad
     turns[BONE_INDEX["abdomen"], 1] = turns[BONE_INDEX["chest"], 1] = 0.5 * manner.stoop_rad

@@ -1,4 +1,4 @@
-"""What changes a person's outline beside the catalogue of clothes: coats, wide legs, hair, hats, bags."""
+"""Outfits, which change a person's outline: coats, wide trousers, hairdos, hats and bags."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -28,17 +28,17 @@ Carried = Literal["nothing", "rucksack", "shoulder_bag", "shopping_bag"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Outfit:
-    """What one person wears how, and carries; the defaults are as the catalogue has it.
+    """How one person wears its clothes, and what it carries; the defaults are those of the catalogue.
 
     Attributes:
-        coat: how far a jacket reaches: over the hips, or to the middle of the thighs.
+        coat: length of a jacket: over the hips, or to the middle of the thighs.
         leg_m: [m] radius of trouser legs at their hem; 0 follows the leg.
         sleeve_m: [m] radius of sleeves at the wrist; 0 follows the arm.
-        hair_m: [m] how far hair stands off the head.
-        hairdo: how hair is worn.
-        headgear: beside caps, which are of the catalogue.
-        carried: on the back, at the side or in a hand.
-        side: on which it is, "left" or "right".
+        hair_m: [m] thickness of the hair.
+        hairdo: style of the hair.
+        headgear: hood or hat; caps belong to the catalogue.
+        carried: bag on the back, at the side or in a hand.
+        side: side of the bag, "left" or "right".
     """
 
     coat: Coat = "none"
@@ -52,7 +52,7 @@ class Outfit:
 
     @property
     def covers(self) -> tuple[str, ...]:
-        """Parts that the top covers beside those of the catalogue."""
+        """Parts that the top covers in addition to those of the catalogue."""
         legs = tuple(f"{side}_thigh" for side in SIDES) if self.coat == "long" else ()
         hips = () if self.coat == "none" else ("pelvis",)
         return (*hips, *legs, *(("hair",) if self.headgear == "hood" else ()))
@@ -60,22 +60,22 @@ class Outfit:
 
 NOTHING_MORE: Final = Outfit()
 
-# How often: our own choice.
-_LONG_COAT, _OVER_HIPS = 0.3, 0.45  # of jackets; of other tops 0.75 reach over the hips
-_HOOD_UP, _HAT = 0.12, 0.04  # of those who could
-_TAIL, _BUN = 0.25, 0.12  # of long hair
+# Frequencies: our own choice.
+_LONG_COAT, _OVER_HIPS = 0.3, 0.45  # shares of jackets; 0.75 of other tops reach over the hips
+_HOOD_UP, _HAT = 0.12, 0.04  # shares of people whose clothes and hair allow it
+_TAIL, _BUN = 0.25, 0.12  # shares of long hair
 CARRIED: Final[Mapping[Carried, float]] = {
     "nothing": 0.52, "rucksack": 0.18, "shoulder_bag": 0.18, "shopping_bag": 0.12,
 }  # fmt: skip
 _SLEEVES_M: Final = (0.045, 0.062)
-_HAIR_M: Final = {"short": 0.018, "long": 0.035}  # as thick at most
-_HOOD_M: Final = 0.016  # [m] how thick a hood is
+_HAIR_M: Final = {"short": 0.018, "long": 0.035}  # [m] greatest thickness
+_HOOD_M: Final = 0.016  # [m] thickness of a hood
 _HOODED: Final = ("jacket", "fleece")
 _LONG_TOPS: Final = ("jacket", "fleece", "wool_jumper", "shirt", "t_shirt", "checked_shirt")
 
 
 def draw_outfit(rng: np.random.Generator, clothes: Clothes, sex: Sex, has_bag: bool) -> Outfit:
-    """Draw how a person wears these clothes, and what they carry beside a bag that they have already."""
+    """Draw how a person wears the given clothes, and what they carry in addition to a configured bag."""
     reach, cover, tied, loose = (float(rng.uniform()) for _ in range(4))
     carried = list(CARRIED)[int(rng.choice(len(CARRIED), p=list(CARRIED.values())))]
     is_sleeve_wide = clothes.top in (*_HOODED, "lab_coat")
@@ -106,7 +106,7 @@ def _coat(top: str, draw: float) -> Coat:
 
 
 def _leg(bottom: str, sex: Sex, draw: float) -> float:
-    """Hems of trousers are 30 to 48 cm round, women's more often narrow."""
+    """Return the radius of a trouser hem: its girth is 30 to 48 cm, women's more often narrow."""
     if bottom not in ("jeans", "trousers"):
         return 0.0
     return 0.056 + 0.020 * draw if sex == "male" else 0.046 + 0.030 * draw**2
@@ -123,7 +123,7 @@ def _headgear(clothes: Clothes, draw: float) -> Headgear:
 def put_on(
     parts: Mapping[str, PartGeometry], size: BodySize, outfit: Outfit, thickness_m: Mapping[str, float]
 ) -> dict[str, PartGeometry]:
-    """Change a body's parts as an outfit does, and add what is carried. What it hides is left out."""
+    """Change a body's parts by an outfit, add the bag, and leave out parts that are hidden."""
     h = size.stature_m
     shapes = {name: part.shapes for name, part in parts.items()}
     shapes["hair"] = _head(size, outfit, shapes["hair"])
@@ -139,12 +139,12 @@ def put_on(
 
 
 def _tube(start: Vector, end: Vector, radius: float) -> Shape:
-    """A cylinder between the middles of its two ends [m]: cloth that ends straight."""
+    """Make a cylinder between the centres of its two ends [m]: cloth with a straight hem."""
     return replace(capsule(start, end, radius), kind=ShapeKind.CYLINDER)
 
 
 def _tails(size: BodySize, outfit: Outfit, thickness_m: Mapping[str, float]) -> tuple[Shape, ...]:
-    """The part of a coat that hangs over the hips, a little off them."""
+    """Make the part of a coat that hangs over the hips, a little off them."""
     if outfit.coat == "none":
         return ()
     h, g = size.stature_m, size.girths
@@ -157,7 +157,7 @@ def _tails(size: BodySize, outfit: Outfit, thickness_m: Mapping[str, float]) -> 
 
 
 def _skirts(size: BodySize, outfit: Outfit, cloth: float, side: str) -> tuple[Shape, ...]:
-    """Half of a long coat's lower end, which swings with a thigh and is wider than it."""
+    """Make half of a long coat's lower end, which swings with a thigh and is wider than it."""
     if outfit.coat != "long":
         return ()
     h = size.stature_m
@@ -168,7 +168,7 @@ def _skirts(size: BodySize, outfit: Outfit, cloth: float, side: str) -> tuple[Sh
 
 
 def _hem(h: float, radius: float, shin: tuple[Shape, ...]) -> tuple[Shape, ...]:
-    """A trouser leg that hangs from the knee; its end is open, and lies on the shoe."""
+    """Make a trouser leg that hangs from the knee; its end is open, and rests on the shoe."""
     if radius == 0.0:
         return shin
     shank = (table.KNEE_HEIGHT - table.ANKLE_HEIGHT) * h
@@ -177,7 +177,7 @@ def _hem(h: float, radius: float, shin: tuple[Shape, ...]) -> tuple[Shape, ...]:
 
 
 def _cuff(h: float, radius: float, forearm: tuple[Shape, ...]) -> tuple[Shape, ...]:
-    """A sleeve that is as wide at the wrist as at the elbow."""
+    """Make a sleeve as wide at the wrist as at the elbow."""
     if radius == 0.0:
         return forearm
     elbow = forearm[0]
@@ -185,7 +185,7 @@ def _cuff(h: float, radius: float, forearm: tuple[Shape, ...]) -> tuple[Shape, .
 
 
 def _head(size: BodySize, outfit: Outfit, hair: tuple[Shape, ...]) -> tuple[Shape, ...]:
-    """Hair, and what is on it; a hood hides it."""
+    """Make hair and headgear; a hood hides the hair."""
     h = size.stature_m
     breadth, front = size.girths.head_breadth / 2.0 * h, size.girths.head_length / 2.0 * h
     back, z = breadth - front, (1.0 - ATLAS_HEIGHT) * h - breadth
@@ -197,7 +197,7 @@ def _head(size: BodySize, outfit: Outfit, hair: tuple[Shape, ...]) -> tuple[Shap
 
 
 def _mop(h: float, breadth: float, at: tuple[float, float], thick: float) -> tuple[Shape, ...]:
-    """Skull cap and nape of hair that stands off so far [m], by half of that upwards; faces stay bare."""
+    """Make hair of a given thickness [m], half as thick on top; the face stays bare."""
     back, z = at
     low, rim = z - 0.5 * thick, 0.0035 * h - thick
     skull = capsule((back, 0.0, low), (rim, 0.0, low), breadth + thick)
@@ -205,7 +205,7 @@ def _mop(h: float, breadth: float, at: tuple[float, float], thick: float) -> tup
 
 
 def _tied(h: float, at: tuple[float, float], hairdo: Hairdo) -> tuple[Shape, ...]:
-    """What long hair is tied to, behind the head."""
+    """Make a tail or bun of long hair behind the head."""
     back, z = at
     if hairdo == "bun":
         return (sphere((back - 0.045 * h, 0.0, z + 0.012 * h), 0.023 * h),)
@@ -215,7 +215,7 @@ def _tied(h: float, at: tuple[float, float], hairdo: Hairdo) -> tuple[Shape, ...
 
 
 def _hood(h: float, breadth: float, back: float, z: float) -> tuple[Shape, ...]:
-    """A hood, over head and ears and on the shoulders."""
+    """Make a hood over head and ears, down to the shoulders."""
     sides = tuple(
         capsule((-0.004 * h, y * 0.030 * h, z), (-0.012 * h, y * 0.032 * h, -0.035 * h), 0.022 * h)
         for y in (1.0, -1.0)
@@ -225,7 +225,7 @@ def _hood(h: float, breadth: float, back: float, z: float) -> tuple[Shape, ...]:
 
 
 def _carried(size: BodySize, outfit: Outfit, cloth: float) -> PartGeometry:
-    """A rucksack, or a bag at the hip or in a hand."""
+    """Make a rucksack, or a bag at the hip or in a hand."""
     h, g, y = size.stature_m, size.girths, lateral(outfit.side)
     if outfit.carried == "rucksack":
         x = -(g.chest_depth / 2.0 * h + cloth + 0.05)

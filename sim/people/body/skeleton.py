@@ -1,4 +1,4 @@
-"""Bones, the joints between them, postures as turns of the joints, and where a pose puts the bones."""
+"""Bones, joints, postures as joint rotations, and forward kinematics of the bones."""
 
 import math
 from enum import StrEnum
@@ -39,7 +39,7 @@ BONE_INDEX = {name: i for i, name in enumerate(BONES)}
 ARM_BONES = [i for name, i in BONE_INDEX.items() if name.endswith(("upper_arm", "forearm", "hand"))]
 PARENT_INDEX = np.array([-1 if parent is None else BONE_INDEX[parent] for parent in PARENTS.values()])
 
-# Where we cut the trunk, as fractions of stature.
+# Heights at which we divide the trunk, as fractions of stature.
 LUMBAR_HEIGHT = 0.585
 THORAX_HEIGHT = 0.665
 NECK_HEIGHT = 0.822
@@ -47,7 +47,7 @@ ATLAS_HEIGHT = 0.895
 
 
 def lateral(side: str) -> float:
-    """Sign of y on a side of the body: +1 left, -1 right."""
+    """Return the sign of y on a side of the body: +1 left, -1 right."""
     return 1.0 if side == "left" else -1.0
 
 
@@ -60,16 +60,16 @@ def mirror(rotations: Array) -> Array:
 
 
 def shoulder_half_breadth(size: BodySize) -> float:
-    """Distance of a shoulder joint from the middle, as a fraction of stature.
+    """Return the distance of a shoulder joint from the middle, as a fraction of stature.
 
-    Upper arms that hang a little outwards are as far apart, outside, as the survey's deltoids.
+    Upper arms hang a little outwards, and span the survey's bideltoid breadth.
     """
     girths = size.girths
     return girths.bideltoid_breadth / 2.0 - girths.biceps_circumference / (2.0 * math.pi) - 0.005
 
 
 def joint_offsets(size: BodySize) -> Array:
-    """(17, 3) [m] each bone's joint in its parent's frame, upright; the pelvis at the origin."""
+    """Return (17, 3) [m] each bone's joint in its parent's frame, upright; the pelvis at the origin."""
     girths = size.girths
     shoulder_y = shoulder_half_breadth(size)
     hip_y = girths.hip_breadth / 2.0 - girths.thigh_circumference / (2.0 * math.pi) * 0.96
@@ -95,7 +95,7 @@ def joint_offsets(size: BodySize) -> Array:
 def point_along(direction: tuple[float, float, float]) -> tuple[float, float, float]:
     """Find the rotation vector [rad] that turns a hanging limb (-z) into a direction of its parent's frame.
 
-    The shortest such turn; a limb that points straight up gets there forwards.
+    The rotation is the shortest; a limb that points straight up is raised forwards.
     """
     x, y, z = np.asarray(direction) / np.linalg.norm(direction)
     sine = math.hypot(x, y)
@@ -149,7 +149,7 @@ JOINT_NAMES = (
     "right_elbow", "left_wrist", "right_wrist", "left_hip", "right_hip", "left_knee", "right_knee",
     "left_ankle", "right_ankle",
 )  # fmt: skip
-# Each lies where a bone begins.
+# Each lies at the start of a bone.
 _BONE_OF = {
     "shoulder": "upper_arm",
     "elbow": "forearm",
@@ -161,7 +161,7 @@ _BONE_OF = {
 
 
 def joint_points(size: BodySize) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Tie the joints to the bones.
+    """Return the bone and the position on it of each joint.
 
     Returns:
         (17,) index of the bone of each joint, and (17, 3) [m] the joint in that bone's frame.
@@ -179,7 +179,7 @@ def joint_points(size: BodySize) -> tuple[NDArray[np.int64], NDArray[np.float64]
 
 
 def _face_point(size: BodySize, joint: str, side: str) -> tuple[float, float, float]:
-    """Nose, eye or ear in the head's frame, as fractions of stature, just below the surface."""
+    """Return nose, eye or ear in the head's frame, as fractions of stature, just below the surface."""
     front = size.girths.head_length / 2.0
     if joint == "nose":
         return (front + 0.004, 0.0, 0.023)
@@ -188,7 +188,7 @@ def _face_point(size: BodySize, joint: str, side: str) -> tuple[float, float, fl
     return (-0.002, lateral(side) * size.girths.head_breadth / 2.0 * 0.96, 0.030)
 
 
-# Postures other than walking, as turns of the joints.
+# Postures other than walking, as joint rotations.
 
 Vector = tuple[float, float, float]
 
@@ -205,11 +205,11 @@ class Posture(StrEnum):
 
 
 def _pitch(degrees: float) -> Vector:
-    """Turn towards the front (a trunk that bends) or to the back (a hanging limb)."""
+    """Return a pitch rotation: a trunk bends forwards, a hanging limb swings backwards."""
     return (0.0, math.radians(degrees), 0.0)
 
 
-# Left limbs only: the right ones mirror them, unless given.
+# Left limbs only: the right ones mirror them unless given.
 _STANDING: dict[str, Vector] = {
     "left_upper_arm": point_along((0.02, 0.11, -1.0)),
     "left_forearm": point_along((0.16, -0.05, -1.0)),
@@ -249,15 +249,15 @@ _CHANGES: dict[Posture, dict[str, Vector]] = {
         "right_forearm": point_along((0.16, 0.05, -1.0)),
     },
 }
-RISE_S = 0.6  # the time that it takes to sit down, to rise, or to change any other posture
-# Who calls waves so; the left arm, as bags are carried in the right hand.
+RISE_S = 0.6  # time to sit down, to rise, or to change any other posture
+# The wave of a calling person; with the left arm, as bags are carried in the right hand.
 WAVE_RAD, WAVE_HZ = math.radians(20.0), 1.2
-# [fractions of stature] how far pelvis and trunk move to the front, so that the body stays above its feet.
+# [fractions of stature] forward shift of pelvis and trunk that keeps the body above its feet.
 _PELVIS_SHIFT = {Posture.SITTING: -0.13, Posture.BENDING: -0.075}
 
 
 def _both_sides(left: dict[str, Vector]) -> Array:
-    """(17, 3) [rad] rotation vectors from those of trunk and left limbs."""
+    """Return (17, 3) [rad] rotation vectors from those of trunk and left limbs."""
     rotations = np.zeros((len(BONES), 3))
     for bone, vector in left.items():
         rotations[BONE_INDEX[bone]] = vector
@@ -269,12 +269,12 @@ def _both_sides(left: dict[str, Vector]) -> Array:
 
 
 def standing_rotations() -> Array:
-    """(17, 3) [rad] upright, the arms hanging."""
+    """Return (17, 3) [rad] rotation vectors of standing upright with hanging arms."""
     return _both_sides(_STANDING)
 
 
 def posture_rotations(posture: Posture) -> Array:
-    """(17, 3) [rad] the bones' rotation vectors in a posture; feet stay level."""
+    """Return (17, 3) [rad] rotation vectors of the bones in a posture; feet stay level."""
     rotations = _both_sides({**_STANDING, **_CHANGES[posture]})
     if posture is Posture.ARMS_CROSSED:
         _cross_forearms(rotations)
@@ -293,5 +293,5 @@ def _cross_forearms(rotations: Array) -> None:
 
 
 def pelvis_shift(posture: Posture) -> float:
-    """How far the pelvis moves to the front [fractions of stature]."""
+    """Return the forward shift of the pelvis [fractions of stature]."""
     return _PELVIS_SHIFT.get(posture, 0.0)

@@ -1,4 +1,4 @@
-"""How people hold themselves from instant to instant, as arrays for kernels."""
+"""The time-varying stance of people (gait phase, postures, gaze) as arrays for kernels."""
 
 import math
 from collections.abc import Mapping
@@ -21,15 +21,15 @@ from peopleboy.sim.people.body.skeleton import (
     posture_rotations,
 )
 
-# How far the head turns against the body, how fast, and which bone turns by what share of it: our choice.
+# Range and rate of head turning, and the share of each bone in it: our choice.
 _FARTHEST_RAD: Final = math.radians(100.0)
 _RATE_RAD_S: Final = math.radians(200.0)
 GAZE_SHARES: Final[Mapping[str, float]] = {"chest": 0.2, "neck": 0.3, "head": 0.5}
-_BEHIND_RAD: Final = math.radians(150.0)  # beyond which one keeps looking over the same shoulder
+_BEHIND_RAD: Final = math.radians(150.0)  # beyond this bearing a person keeps looking over the same shoulder
 
 
 class Gaze:
-    """How far a person looks to the left [rad], which follows what is to be looked at."""
+    """The head's direction to the left [rad], which follows a target."""
 
     def __init__(self) -> None:
         self.left_rad = 0.0
@@ -52,13 +52,13 @@ STANCE: Final = np.dtype(
     [
         ("phase", np.float64),  # [cycles]
         ("speed", np.float64),  # [m/s] of the legs
-        ("blend", np.float64, len(POSTURES)),  # how far in each posture, without easing
+        ("blend", np.float64, len(POSTURES)),  # progress into each posture, before easing
         ("time_s", np.float64),
         ("sway_phase", np.float64),  # [cycles]
         ("gaze_rad", np.float64),  # to the left
     ]
 )
-"""What changes of one person from instant to instant, its place and heading aside."""
+"""The time-varying state of one person, its position and heading aside."""
 
 _STANDING, _CALLING = POSTURES[Posture.STANDING], POSTURES[Posture.CALLING]
 _ROTATIONS = np.array([posture_rotations(posture) for posture in Posture])
@@ -72,22 +72,22 @@ _PELVIS, _HEAD, _WAVING = BONE_INDEX["pelvis"], BONE_INDEX["head"], BONE_INDEX["
 _BONES = len(BONES)
 
 _BAG_SWING = 0.25
-_HELD_SWING = 0.2  # of what free arms swing
+_HELD_SWING = 0.2  # swing of an arm that holds something, relative to a free arm
 _SWAY_RAD, _SWAY_HZ = 0.006, 0.23
-_LOOK_RATIO = 0.57  # how often one looks about, to how often one sways
-_CYCLES_PER_RAD = 0.4  # steps of who turns on the spot
+_LOOK_RATIO = 0.57  # frequency of looking about relative to that of swaying
+_CYCLES_PER_RAD = 0.4  # [gait cycles/rad] steps while turning on the spot
 _SPEED_CHANGE_M_S2 = 3.0
 
 
 class Builds(NamedTuple):
-    """What never changes of Q people.
+    """The constant properties of Q people.
 
     Attributes:
-        rotations, sway: (Q, A, P, 17, 3) [rad] and (Q, A, P, 3) [m] their gaits by amplitude and phase.
-        root_scale: (Q,) of the gaits, see `Gait`.
+        rotations, sway: (Q, A, P, 17, 3) [rad] and (Q, A, P, 3) [m] gait tables by amplitude and phase.
+        root_scale: (Q,) scale of the gaits, see `Gait`.
         height_m: (Q,).
         held, is_held: (Q, 17, 3) [rad] and (Q, 17) arms that hold something.
-        arms: (Q,) number of the posture in which they always have their arms, -1 for none.
+        arms: (Q,) index of the posture that the arms always keep, -1 for none.
         has_bag: (Q,).
         looks_about_rad: (Q,).
     """
@@ -118,14 +118,14 @@ def move_limbs(
     """Advance gait and postures of one of Q people by a time step.
 
     Args:
-        stances: (Q,) records STANCE; that of the person is changed.
+        stances: (Q,) records STANCE; the person's record is changed in place.
         q: number of the person.
         unit_stride_m: see `Gait`.
         root_scale: likewise.
-        pace_m_s: at which the feet move over the floor.
-        turn_rad_s: at which the person turns.
-        is_walking: whether it is on its way.
-        posture: number of the posture to take up, see `POSTURES`.
+        pace_m_s: speed of the feet over the floor.
+        turn_rad_s: turn rate of the person.
+        is_walking: whether the person is walking.
+        posture: index of the posture to take up in `POSTURES`.
         dt_s: [s].
     """
     stance, change = stances[q], _SPEED_CHANGE_M_S2 * dt_s
@@ -142,10 +142,10 @@ def move_limbs(
 
 @njit(cache=True, nogil=True)
 def hold(builds: Builds, stances: Stances, q: int, turns: Array) -> tuple[float, float]:
-    """Tell how one of Q people holds itself: gait, postures, arms, gaze, and that nobody stands quite still.
+    """Return the pose of one of Q people from gait, postures, arms, gaze and sway.
 
     Returns:
-        The pelvis' offset [m] to the front and to the left; `turns` (17, 3) gets the rotation vectors [rad].
+        Offset of the pelvis [m] to the front and to the left; rotation vectors [rad] are written to `turns` (17, 3).
     """
     stance = stances[q]
     amplitude = amplitude_of(stance.speed, builds.root_scale[q])
@@ -175,7 +175,7 @@ def hold(builds: Builds, stances: Stances, q: int, turns: Array) -> tuple[float,
 
 @njit(cache=True)
 def _keep_arms(builds: Builds, q: int, share: float, turns: Array) -> None:
-    """Let arms hold what they hold, hang as far as a posture asks for it, and swing little with a bag."""
+    """Apply held arms, arms that hang as a posture requires, and the smaller swing of a hand with a bag."""
     standing = _ROTATIONS[_STANDING]
     for bone in range(_BONES):
         if builds.is_held[q, bone]:
@@ -192,7 +192,7 @@ def _keep_arms(builds: Builds, q: int, share: float, turns: Array) -> None:
 
 @njit(cache=True)
 def _sway(time_s: float, sway_phase: float, head_sweep_rad: float, turns: Array) -> None:
-    """Lean a little about the ankles."""
+    """Sway about the ankles."""
     angle = 2.0 * math.pi * (_SWAY_HZ * time_s + sway_phase)
     lean = _SWAY_RAD * math.sin(angle), _SWAY_RAD * math.cos(0.71 * angle)
     for k in range(2):
