@@ -1,4 +1,4 @@
-"""How people behave towards the robot and their group: reactions, leading, and what makes up their minds."""
+"""How people behave towards the robot and their group: reactions, leading, and decisions."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -16,8 +16,8 @@ from peopleboy.sim.people.walking.walker import AS_PLANNED, Wish
 
 Array = NDArray[np.float64]
 
-_FORGOTTEN_M: Final = 1.0  # so much farther than where it began an encounter ends
-_ROOM_M: Final = 0.3  # that a person keeps from walls
+_FORGOTTEN_M: Final = 1.0  # an encounter ends at this distance beyond the one at which it began
+_ROOM_M: Final = 0.3  # distance that a person keeps from walls
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -25,13 +25,13 @@ class ConductSituation:
     """A person and the robot at an instant.
 
     Attributes:
-        at: (2,) [m] where the person is.
-        heading: [rad] where its body faces.
-        home: (2,) [m] the waypoint at which it is to be now; None on the way to the next one.
-        is_walking: whether it is on its way to the next one.
+        at: (2,) [m] position of the person.
+        heading: [rad] direction of its body.
+        home: (2,) [m] the waypoint at which the script has it stay now; None on the way to the next one.
+        is_walking: whether it is on the way to the next waypoint.
         is_seated: whether it sits.
         robot: the robot's state.
-        walls: (K, 4) [m] rectangles that nobody walks or sees through.
+        walls: (K, 4) [m] rectangles that block people and their view.
     """
 
     at: Array
@@ -44,31 +44,31 @@ class ConductSituation:
 
     @property
     def gap_m(self) -> float:
-        """[m] from the person's middle to the robot's."""
+        """[m] distance between the centres of person and robot."""
         return math.dist(self.at, self.robot.position)
 
     @property
     def away(self) -> Array:
-        """(2,) unit vector from the robot to the person; along x if both are in one place."""
+        """(2,) unit vector from the robot to the person; along x if their positions are equal."""
         way = self.at - self.robot.position
         length = float(np.hypot(*way))
         return way / length if length > 1e-6 else np.array([1.0, 0.0])
 
     @property
     def is_in_sight(self) -> bool:
-        """Whether nothing stands between the two."""
+        """Whether the line of sight between the two is free."""
         return is_free(self.at, self.robot.position, self.walls)
 
     def can_go(self, place: Array) -> bool:
-        """Whether the straight way to a place (2,) [m] is free."""
+        """Return whether the straight path to a point (2,) [m] is free."""
         return is_free(self.at, place, self.walls, _ROOM_M)
 
 
 class Encounter:
-    """Decides from instant to instant whether a person and the robot have met.
+    """Decides at every step whether a person and the robot have met.
 
-    They meet when the robot is near enough and in sight, and part when it is a metre farther off; what gets
-    between them meanwhile does not part them.
+    They meet when the robot is near enough and in sight, and part when it is a metre farther away. Losing
+    sight of each other meanwhile does not end the encounter.
     """
 
     def __init__(self, from_m: float) -> None:
@@ -76,7 +76,7 @@ class Encounter:
         self._is_on = False
 
     def update(self, now: ConductSituation) -> bool:
-        """Take in an instant, and tell whether the two have met."""
+        """Update with the current situation, and return whether the two have met."""
         gap_m = now.gap_m
         if self._is_on:
             self._is_on = gap_m <= self._from_m + _FORGOTTEN_M
@@ -85,15 +85,15 @@ class Encounter:
         return self._is_on
 
 
-_COMES_M_S: Final = 0.05  # a slower robot stands
-_FORESEEN_S: Final = 4.0  # who stands steps aside for a robot that comes so soon
-_SPARE_M: Final = 0.3  # more than is to be kept, so that one step is enough
-_RETREAT_M: Final = 1.2  # more than is to be kept, to be left alone for a while
+_COMES_M_S: Final = 0.05  # a slower robot counts as standing
+_FORESEEN_S: Final = 4.0  # a standing person steps aside for a robot that arrives within this time
+_SPARE_M: Final = 0.3  # added to the distance to keep, so that one step is enough
+_RETREAT_M: Final = 1.2  # added to the distance to keep, so that the robot takes a while to come near again
 _ARRIVED_M: Final = 0.3
-_IN_THE_WAY_M: Final = 0.6  # within which of the place to be one is in the robot's way
-_CHASE_S: Final = 15.0  # after which a robot that is not reached is let go
-_PASSES_M: Final = 0.9  # from the robot's middle, where it is in the way of who goes on
-_NECK_RAD: Final = math.radians(70.0)  # who looks farther round turns the body, too
+_IN_THE_WAY_M: Final = 0.6  # a person this near to its target point is in the robot's way
+_CHASE_S: Final = 15.0  # time after which a person gives up reaching the robot
+_PASSES_M: Final = 0.9  # distance from the robot's centre within which it blocks a person who goes on
+_NECK_RAD: Final = math.radians(70.0)  # beyond this head angle the body turns, too
 _WAYS_OUT_RAD: Final = tuple(math.radians(side * off) for off in (0.0, 30.0, 60.0, 90.0) for side in (1, -1))
 
 
@@ -101,27 +101,27 @@ class Conduct(Protocol):
     """What a person does during one encounter with the robot."""
 
     def wish(self, dt_s: float, now: ConductSituation) -> Wish:
-        """Return what the person would rather do than its script."""
+        """Return the person's change to its script."""
         ...
 
 
 class Ignoring:
-    """Neither looks nor makes way; stops only where it would walk into the robot."""
+    """Neither looks at the robot nor makes way; stops only to avoid walking into it."""
 
     def wish(self, dt_s: float, now: ConductSituation) -> Wish:  # noqa: ARG002
-        """Return what the person would rather do than its script."""
+        """Return the person's change to its script."""
         return Wish(heeds_robot=False)
 
 
 class MakingWay:
-    """Walks round the robot in good time, steps aside for one that comes, and looks at it."""
+    """Walks round the robot early, steps aside when it approaches, and looks at it."""
 
     def __init__(self, reaction: Reaction) -> None:
         self._keep_m = reaction.distance_m
         self._aside: Array | None = None
 
     def wish(self, dt_s: float, now: ConductSituation) -> Wish:  # noqa: ARG002
-        """Return what the person would rather do than its script."""
+        """Return the person's change to its script."""
         robot = now.robot.position
         if now.is_walking or now.is_seated:
             return Wish(clear_m=self._keep_m, gaze_at=robot)
@@ -135,7 +135,7 @@ class MakingWay:
         return Wish(clear_m=self._keep_m, gaze_at=robot, goes_to=self._aside, stands=True, faces=robot)
 
     def _place_aside(self, now: ConductSituation) -> Array | None:
-        """Where to stand so that the robot passes, on the nearer side of its way if there is room."""
+        """Return where to stand so that the robot passes: the nearer side of its path, if there is room."""
         lateral = _lateral_m(now.at, now, self._keep_m)
         if lateral is None:
             return None
@@ -150,14 +150,14 @@ class MakingWay:
 
 
 class Wary:
-    """Keeps clear of the robot, walks away from one that comes nearer, and looks back at it."""
+    """Keeps clear of the robot, walks away when it approaches, and looks back at it."""
 
     def __init__(self, reaction: Reaction) -> None:
         self._keep_m = reaction.distance_m
         self._refuge: Array | None = None
 
     def wish(self, dt_s: float, now: ConductSituation) -> Wish:  # noqa: ARG002
-        """Return what the person would rather do than its script."""
+        """Return the person's change to its script."""
         robot = now.robot.position
         if now.is_seated or (now.is_walking and now.gap_m > self._keep_m):
             self._refuge = None
@@ -173,7 +173,7 @@ class Wary:
         return Wish(clear_m=self._keep_m, gaze_at=robot, stands=stays, faces=robot if stays else None)
 
     def _place_away(self, now: ConductSituation) -> Array | None:
-        """Where to be clear of the robot again: straight away from it, or as far aside as walls demand."""
+        """Return where to be clear of the robot again: straight away from it, or aside where walls are."""
         away = now.away
         for turn in _WAYS_OUT_RAD:
             cos, sin = math.cos(turn), math.sin(turn)
@@ -193,7 +193,7 @@ class Curious:
         self._chases_s = _CHASE_S
 
     def wish(self, dt_s: float, now: ConductSituation) -> Wish:
-        """Return what the person would rather do than its script."""
+        """Return the person's change to its script."""
         if self._gaze_s <= 0.0 or self._chases_s <= 0.0:
             return Wish(clear_m=_PASSES_M)
         robot = now.robot.position
@@ -216,7 +216,7 @@ class Blocking:
         self._chases_s = _CHASE_S
 
     def wish(self, dt_s: float, now: ConductSituation) -> Wish:
-        """Return what the person would rather do than its script."""
+        """Return the person's change to its script."""
         if self._stands_s <= 0.0 or self._chases_s <= 0.0:
             return Wish(clear_m=_PASSES_M)
         robot = now.robot
@@ -240,7 +240,7 @@ class Surprised:
         self._stands_s = reaction.duration_s
 
     def wish(self, dt_s: float, now: ConductSituation) -> Wish:
-        """Return what the person would rather do than its script."""
+        """Return the person's change to its script."""
         if self._stands_s <= 0.0:
             return Wish(clear_m=_PASSES_M)
         self._stands_s -= dt_s
@@ -250,7 +250,7 @@ class Surprised:
 
 
 def _lateral_m(place: Array, now: ConductSituation, keep_m: float) -> float | None:
-    """How far to the left [m] of the robot's way a place is; None if it does not come there soon and near."""
+    """Return a place's offset to the left of the robot's path [m]; None if the robot will not come near."""
     velocity = now.robot.velocity
     speed = float(np.hypot(*velocity))
     if speed < _COMES_M_S:
@@ -276,7 +276,7 @@ class Leading:
         self._walked_s = 0.0
 
     def wish(self, dt_s: float, now: ConductSituation) -> Wish:
-        """Return what the person would rather do than its script, once a control step of dt_s [s]."""
+        """Return the person's change to its script; called once per control step of dt_s [s]."""
         robot, gap_m, lead = now.robot.position, now.gap_m, self._lead
         if gap_m <= lead.goes_on_within_m:
             self._waited_s, self._has_given_up = None, False
@@ -292,21 +292,21 @@ class Leading:
         return Wish(gaze_at=robot if is_glancing else None)
 
 
-# What a person makes of the robot and of its group, put together instant by instant.
+# A person's reaction to the robot and to its group, combined at every step.
 
 Point = tuple[float, float]
 
-_EASY_M: Final = 0.4  # up to which nobody cares who is ahead
-_WAITS_M: Final = 1.5  # ahead of the last of the group, where one waits
+_EASY_M: Final = 0.4  # a smaller lead over the group is ignored
+_WAITS_M: Final = 1.5  # lead over the last of the group at which a person waits
 
 
 def pace_among(points: Sequence[Point], progress: float, company: Iterable[float]) -> float:
-    """Return what share of its planned speed a person walks at, so as not to leave its group behind.
+    """Return the share of its planned speed at which a person walks to stay with its group.
 
     Args:
         points: [m] of the person's own path.
-        progress: how far it has got: waypoints reached and the share of the way to the next one.
-        company: the same of the others of the group, whose paths have as many points.
+        progress: its progress: waypoints reached, plus the share of the path to the next one.
+        company: progress of the others in the group, whose paths have the same number of points.
 
     Returns:
         1 up to 0.4 m ahead of the last of the group, 0 from 1.5 m on, linear between.
@@ -317,7 +317,7 @@ def pace_among(points: Sequence[Point], progress: float, company: Iterable[float
 
 
 def _along(points: Sequence[Point], progress: float) -> float:
-    """How far along a path [m] a progress is."""
+    """Return the distance along a path [m] of a progress."""
     ways = [0.0, *accumulate(math.dist(a, b) for a, b in pairwise(points))]
     index = min(int(progress), len(ways) - 1)
     if index == len(ways) - 1:
@@ -336,12 +336,12 @@ _CONDUCTS: Final[Mapping[Way, Callable[[Reaction], Conduct]]] = {
 
 
 class Mind:
-    """Decides how a person changes its script; one that has nothing to decide never does.
+    """Decides how a person changes its script; without a reaction, lead or group it never does.
 
     Args:
-        points: [m] of its path.
-        reacts: how it takes to the robot; None for no way in particular.
-        leads: how it leads the robot; None if it does not.
+        points: [m] the points of its path.
+        reacts: its reaction to the robot, or None.
+        leads: how it leads the robot, or None.
     """
 
     def __init__(self, points: Sequence[Point], reacts: Reaction | None, leads: Lead | None) -> None:
@@ -354,13 +354,13 @@ class Mind:
     def wish(
         self, dt_s: float, now: ConductSituation | None, progress: float, company: Iterable[float]
     ) -> Wish:
-        """Return what the person would rather do than its script.
+        """Return the person's change to its script.
 
         Args:
             dt_s: [s] length of the control step.
-            now: where person and robot are; None if there is no robot.
-            progress: how far along its path the person is, as `pace_among` has it.
-            company: the same of the others of its group.
+            now: state of person and robot; None without a robot.
+            progress: progress along its path, as in `pace_among`.
+            company: progress of the others in its group.
         """
         wish = AS_PLANNED if now is None else self._take_to_robot(dt_s, now)
         pace = pace_among(self._points, progress, company)

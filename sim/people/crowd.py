@@ -1,4 +1,4 @@
-"""The people of a world: they walk by their scripts, and their bodies and hands move in the physics world."""
+"""The people of a world: they follow their scripts, and their bodies and hands move in the physics world."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -28,24 +28,24 @@ from peopleboy.sim.places.place import Place, air_of, is_outdoors
 from peopleboy.sim.shapes.materials import Detail, Material
 from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Shape, ShapeKind
 
-# What robots bump into and sonars hear: an upright capsule, which no camera sees.
+# Contacts and sonar use an upright capsule, which no camera sees.
 _SOLID = "solid"
 
 _TWO = 2.0  # see `walk_on`
-_OUT_OF_REACH_M = 1.5  # nobody who is so far away and the robot meet within a control step
+_OUT_OF_REACH_M = 1.5  # person and robot cannot meet within a control step from this distance
 
 
 class Crowd:
-    """All people of a world and their bodies.
+    """All people of a world, with their bodies.
 
-    Each visible part is a body of its own, put where the gait says it is. Contacts and sonar meet one
-    upright capsule per person instead, which moves in every physics step. Who appears where the robot stands
-    is passed through until they are apart, as physics would throw the robot away. Where nobody looks, people
-    are made of that capsule alone.
+    Each visible part is a separate body, placed by the gait. Contacts and sonar use one upright capsule per
+    person instead, which moves in every physics step. A person who appears where the robot stands has no
+    capsule until they are apart, as physics would throw the robot away. Without cameras, people consist of
+    that capsule alone.
 
     Attributes:
-        is_scripted: whether scripts and who is in the way alone guide all, among walls that stand still.
-        walks: (N,) records WALK of where all are on their ways.
+        is_scripted: whether all people only follow scripts and give way, among static walls.
+        walks: (N,) records WALK, the state of all walks.
     """
 
     def __init__(
@@ -80,22 +80,22 @@ class Crowd:
 
     @property
     def scripts(self) -> tuple[Script, ...]:
-        """What all are to do."""
+        """The scripts of all people."""
         return tuple(person.walker.script for person in self.people)
 
     @property
     def walls(self) -> NDArray[np.float64]:
-        """(K, 4) [m] rectangles min_x, min_y, max_x, max_y that a scripted crowd makes way for."""
+        """(K, 4) [m] rectangles min_x, min_y, max_x, max_y that a scripted crowd avoids."""
         return self._place.obstacles
 
     def rebind(self, walks: Records) -> None:
-        """Keep the records of where all are in another array from now on, which holds the same already."""
+        """Use another array for the walk records from now on; it must hold the same values already."""
         self.walks = walks
         for k, person in enumerate(self.people):
             person.walker.rebind(walks[k : k + 1])
 
     def step(self, time_s: float, dt_s: float, robot: PlanarState) -> None:
-        """Let everybody walk on for dt_s from time_s, knowing where the others and the robot are now."""
+        """Advance all people by dt_s from time_s, given the current states of the others and the robot."""
         self._before.clear()
         for person in self.people:
             if person.name in self._solid and math.dist(person.position, robot.position) < _OUT_OF_REACH_M:
@@ -109,7 +109,7 @@ class Crowd:
             self._step_each(time_s, dt_s, robot)
 
     def _step_each(self, time_s: float, dt_s: float, robot: PlanarState) -> None:
-        """Let everybody make up their minds and walk on, one after the other."""
+        """Advance people one after the other, each with its own decisions."""
         present, obstacles = those_present(self.people), self._place.obstacles_at(time_s)
         members = [(p, p.progress) for p in self.people if p.present and p.config.group is not None]
         for person in self.people:
@@ -121,9 +121,9 @@ class Crowd:
             person.step(time_s, dt_s, present, robot, obstacles, company)
 
     def move_bodies(self, share: float) -> None:
-        """Move the solid capsules to where people are when this share of the control step has passed.
+        """Move the solid capsules to the people's positions at a share of the control step.
 
-        Those whom the robot may meet: all others are put where they are when it is over.
+        This applies to people near the robot; all others are placed at the end of the step at once.
         """
         for person in self.people:
             before = self._before.get(person.name)
@@ -132,16 +132,16 @@ class Crowd:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Everybody's, present or not."""
+        """Names of all people, present or not."""
         return tuple(person.name for person in self.people)
 
     @property
     def capsules(self) -> tuple[str, ...]:
-        """Names of the bodies by which people are met."""
+        """Names of the solid bodies of people."""
         return tuple(f"{person.name}/{_SOLID}" for person in self.people)
 
     def show(self, gap_to_robot: Callable[[float, float], float]) -> None:
-        """Put every visible part where its person is now; those who are away are hidden.
+        """Place every visible part at its person's current pose; absent people are hidden.
 
         Args:
             gap_to_robot: distance [m] between the robot's outline and a point x, y [m] on the floor.
@@ -163,7 +163,7 @@ class Crowd:
         return Person(config, stream(seed, name), self._finisher(config, seed) if self._is_fine else None)
 
     def _finisher(self, config: PersonConfig, seed: int) -> Finisher:
-        """Who refines a person, by the air of the place."""
+        """Return the finisher of a person, for the air of the place."""
         rng = appearance_stream(seed, config.name)
         return Finisher(config, air_of(self._place), rng, is_outdoors=is_outdoors(self._place))
 
@@ -187,7 +187,7 @@ class Crowd:
             self._physics.set_hidden(f"{person.name}/{_SOLID}", True)
 
     def _make_solid(self, person: Person, gap_to_robot: Callable[[float, float], float]) -> None:
-        """Return a person who has just appeared its solid capsule, as soon as the robot is not in it."""
+        """Make the solid capsule of a person who has just appeared, as soon as the robot is outside it."""
         if person.name not in self._solid and gap_to_robot(*person.position.tolist()) > person.radius_m:
             self._solid.add(person.name)
             self._physics.set_hidden(f"{person.name}/{_SOLID}", False)
@@ -201,22 +201,22 @@ class Crowd:
 
 
 def those_present(people: Sequence[Person]) -> Present:
-    """Return where those are who are in the world now, and how they move."""
+    """Return positions and velocities of the people who are in the world now."""
     there = [person for person in people if person.present]
     motion = np.array([(*person.position, *person.velocity) for person in there], np.float64)
     return Present({person.name: row for row, person in enumerate(there)}, motion.reshape(-1, 4))
 
 
-REACH_S = 0.6  # for a hand to get to a thing, and back
+REACH_S = 0.6  # time for a hand to reach a thing, and to return
 
 
 class Handling:
-    """Puts every thing that is moved where it is at an instant, and people's hands to it.
+    """Places moving things, and the hands of the people who move them.
 
     Args:
-        physics: the physics world, with all fixtures of the place.
-        place: whose movers they are.
-        people: who may move them.
+        physics: the physics world with all fixtures of the place.
+        place: the place with the movers.
+        people: the people who may move them.
     """
 
     def __init__(self, physics: Physics, place: Place, people: Sequence[Person]) -> None:
@@ -231,7 +231,7 @@ class Handling:
         self._by = [(mover, action) for mover in place.movers for action in mover.actions if action.by]
 
     def show(self, time_s: float) -> None:
-        """Put things and hands where they are at a time [s]."""
+        """Place things and hands as they are at a time [s]."""
         for mover in self._movers:
             self._put(mover, mover.at(time_s))
         for name in dict.fromkeys(str(action.by) for _, action in self._by):
@@ -247,7 +247,7 @@ class Handling:
         self._shown[mover.name] = state
 
     def _reach(self, person: Person, time_s: float) -> None:
-        """Let a person's hand be at the thing that it moves, be on the way there, or hang."""
+        """Place a person's hand at the thing that it moves, on the way there, or hanging."""
         own = [(mover, action) for mover, action in self._by if action.by == person.name]
         mover, action = max(own, key=lambda one: (_share(one[1], time_s), one[1].at_s))
         share = _share(action, time_s)
@@ -260,6 +260,6 @@ class Handling:
 
 
 def _share(action: Action, time_s: float) -> float:
-    """How far the hand is at the thing: 1 while the action lasts, less before and after it."""
+    """Return how far the hand has reached: 1 during the action, less before and after it."""
     away_s = max(action.at_s - time_s, time_s - action.ends_s, 0.0)
     return max(1.0 - away_s / REACH_S, 0.0)

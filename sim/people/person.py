@@ -1,4 +1,4 @@
-"""Walking people: what they are made of, how they move, where their parts are."""
+"""Walking people: their parts, their movement, and the poses of their parts."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -54,15 +54,15 @@ _ARM_POSTURES: dict[Arms, Posture | None] = {
 _BAG_LOOK = Material(temperature_c=23.5, variation_k=0.2, rgb=(0.05, 0.03, 0.02))
 _BAG_HAND = "right"
 _ARM = ("upper_arm", "forearm", "hand")
-_FREE = 0.3  # share up to which the other hand may still take over, as who has just come yet turns
-_AHEAD_M = 0.1  # so far to the left the right hand reaches as well
-# Who turns on the spot takes small steps: as if the feet went round a circle.
+_FREE = 0.3  # share of a reach up to which the other hand may take over, while the person still turns
+_AHEAD_M = 0.1  # the right hand also reaches this far to the left
+# People who turn on the spot take small steps, as if the feet went round a circle.
 _TURNING_RADIUS_M = 0.04
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Grasp:
-    """Where a hand is to be: a point (3,) [m] of the world, how far it has got there, and which hand."""
+    """Target of a hand: a world point (3,) [m], the progress towards it, and which hand."""
 
     point: Array
     share: float
@@ -70,15 +70,15 @@ class _Grasp:
 
 
 class Person:
-    """A person that follows its script; a finisher refines its appearance.
+    """A person that follows its script; a finisher adds detail to its appearance.
 
     Attributes:
-        config: as given.
-        name: as configured.
-        parts: what it is made of, fixed for life; `poses` is in their order.
-        stance: (1,) records STANCE, how it holds itself now.
-        walker: where it goes, and how.
-        gait: how it walks.
+        config: the settings.
+        name: the configured name.
+        parts: its parts, which never change; `poses` is in their order.
+        stance: (1,) records STANCE, its current stance.
+        walker: its movement over the floor.
+        gait: its gait.
     """
 
     def __init__(
@@ -124,7 +124,7 @@ class Person:
 
     @property
     def heading(self) -> float:
-        """[rad] the direction that the body faces."""
+        """[rad] direction of the body."""
         return self.walker.heading
 
     @property
@@ -134,17 +134,17 @@ class Person:
 
     @property
     def posture(self) -> Posture:
-        """The posture that it has or is about to take up."""
+        """The current or next posture."""
         return Posture.CALLING if self._wish.calls else self.walker.posture
 
     @property
     def progress(self) -> float:
-        """How far along its path it is: waypoints reached, and the share of the way to the next one."""
+        """Progress along its path: waypoints reached, plus the share of the path to the next one."""
         return self.walker.progress
 
     @property
     def radius_m(self) -> float:
-        """[m] of the upright capsule that stands for the person in contacts and sonar."""
+        """[m] radius of the upright capsule that represents the person in contacts and sonar."""
         girths = self._size.girths
         return (girths.bideltoid_breadth + girths.chest_depth) / 4.0 * self._size.stature_m
 
@@ -157,15 +157,15 @@ class Person:
         walls: Array,
         company: Iterable[float] = (),
     ) -> None:
-        """Move on.
+        """Advance the person by a control step.
 
         Args:
             time_s: [s] at the start of the step.
             dt_s: [s] length of the step.
-            people: all who are present.
-            robot: None if there is none.
+            people: all people who are present.
+            robot: state of the robot, or None.
             walls: (K, 4) [m] rectangles min_x, min_y, max_x, max_y.
-            company: progress of the others of its group who are present.
+            company: progress of the others in its group who are present.
         """
         around = Surroundings(people=people, walker=people.rows.get(self.name, -1), robot=robot, walls=walls)
         if self.walker.come_or_go(time_s + dt_s):
@@ -177,7 +177,7 @@ class Person:
         self.move_limbs(dt_s)
 
     def move_limbs(self, dt_s: float) -> None:
-        """Advance gait and postures by a time step, in which it has walked on."""
+        """Advance gait and postures by a time step, after the person has moved."""
         walker, gait = self.walker, self.gait
         self.stance["time_s"] = walker.now_s
         if walker.has_moved:
@@ -203,7 +203,7 @@ class Person:
         return self._mind.wish(dt_s, now, walker.progress if self.config.group else 0.0, company)
 
     def _look(self, dt_s: float, robot: PlanarState | None) -> None:
-        """Turn the head towards what is to be looked at, else back to the front."""
+        """Turn the head towards its target, or back to the front without one."""
         target = self._wish.gaze_at
         if target is None and robot is not None and self.walker.is_awaiting(robot):
             target = robot.position
@@ -215,9 +215,9 @@ class Person:
         self.stance["gaze_rad"] = self._gaze.left_rad
 
     def reach_for(self, point: Array, share: float, halfway: Array) -> None:
-        """Have a hand at a point (3,) [m] of the world; by less than a share of 1, on the way there.
+        """Place a hand at a world point (3,) [m], or on the way there for a share below 1.
 
-        It is the hand on whose side the point halfway of what it is about to do is.
+        The hand is the one on the side of the point `halfway` through the action.
         """
         held = self._grasp
         side = self._near_side(halfway) if held is None or held.share < _FREE else held.side
@@ -225,41 +225,41 @@ class Person:
         self._bones = None
 
     def let_go(self) -> None:
-        """Have both hands free again."""
+        """Release both hands."""
         if self._grasp is not None:
             self._grasp = self._bones = None
 
     def palm(self, side: str) -> Array:
-        """(3,) [m] the middle of a hand, world frame."""
+        """Return the (3,) [m] middle of a hand, world frame."""
         hand = self._world_bones()[BONE_INDEX[f"{side}_hand"]]
         palm: Array = hand[:3, 3] - 0.5 * HAND_LENGTH * self.config.height_m * hand[:3, 2]
         return palm
 
     def _near_side(self, point: Array) -> str:
-        """The side on which a point is; right if it is ahead, and left of one who carries a bag."""
+        """Return the side of a point: right if it is ahead, but left if the person carries a bag."""
         dx, dy = point[:2] - self.position
         aside = math.cos(self.heading) * dy - math.sin(self.heading) * dx
         return "left" if self.config.bag or aside > _AHEAD_M else "right"
 
     @property
     def frame(self) -> BodyFrame:
-        """How its parts hang together."""
+        """The geometry that connects its bones and parts."""
         return BodyFrame(self._offsets, self._soles, self._part_bone, self._part_offset)
 
     @property
     def is_handling(self) -> bool:
-        """Whether a hand is at something, or on the way there or back."""
+        """Whether a hand is at a thing, or on the way there or back."""
         return self._grasp is not None
 
     @property
     def build(self) -> Builds:
-        """What never changes of it."""
+        """Its constant properties."""
         if self._build is None:
             self._build = self._know_build()
         return self._build
 
     def rebind(self, stance: Stances, builds: Builds) -> None:
-        """Keep its stance and its build in other arrays from now on, which hold the same already."""
+        """Use other arrays for stance and build from now on; they must hold the same values already."""
         self.stance, self._build = stance, builds
         self.gait.rebind(builds.rotations[0], builds.sway[0])
 
@@ -297,7 +297,7 @@ class Person:
         return self._bones
 
     def _place(self) -> Array:
-        """Put the bones above the floor, at the person's place and heading."""
+        """Place the bones above the floor, at the person's position and heading."""
         rotations, shift = self._pose()
         if self._grasp is not None:
             rotations, shift = self._reach(self._grasp, rotations, shift)
@@ -335,14 +335,14 @@ class Person:
         return bowed, shift
 
     def _pose(self) -> tuple[Array, tuple[float, float]]:
-        """(17, 3) [rad] rotation vectors and the pelvis' offset [m] to the front and to the left."""
+        """Return (17, 3) [rad] rotation vectors and the pelvis' offset [m] to the front and to the left."""
         rotations = np.empty((len(BONES), 3))
         shift: tuple[float, float] = hold(self.build, self.stance, 0, rotations)
         return rotations, shift
 
 
 def pace_m_s(velocity: Sequence[float], turn_rad_s: float) -> float:
-    """How fast feet move over the floor, at a velocity x, y [m/s] and a rate of turning [rad/s]."""
+    """Return the speed of the feet over the floor at a velocity x, y [m/s] and a turn rate [rad/s]."""
     return math.hypot(*velocity, _TURNING_RADIUS_M * turn_rad_s)
 
 

@@ -1,4 +1,4 @@
-"""The settings of one person: its path, its reaction to the robot, what it does on the way, and its body."""
+"""The settings of one person: its path, its reaction to the robot, its actions on the way, and its body."""
 
 import math
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ Way = Literal["ignores", "makes_way", "curious", "wary", "blocks", "surprised"]
 Meeting = Annotated[float, Field(ge=0.8, le=20.0)]
 Lasting = Annotated[float, Field(ge=0.2, le=600.0)]
 
-# What each reaction takes, and its usual value: a personal distance of 1.2 m (E. T. Hall, The Hidden
+# Settings of each reaction, with their default values: a personal distance of 1.2 m (E. T. Hall, The Hidden
 # Dimension, 1966) to stand before a person or to pass; the rest is our choice.
 USUAL: Final[Mapping[Way, Mapping[str, float]]] = {
     "ignores": {},
@@ -40,10 +40,10 @@ _WORDS: Final[Mapping[Way, str]] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reaction:
-    """What a person does when the robot comes near, while nothing hides it; again at each encounter.
+    """Reaction of a person to a robot that comes near and is in sight; it repeats at each encounter.
 
     Raises:
-        BadInput: a value beyond its limits, or that this reaction does not take.
+        BadInput: a value is out of range, or the reaction does not use it.
     """
 
     to: Annotated[Literal["robot"], Field(description="to whom")] = "robot"
@@ -51,10 +51,10 @@ class Reaction:
         Way,
         Field(
             alias="as",
-            description="`ignores`: neither looks nor makes way, and stops only where it would walk into the "
-            "robot; `makes_way`: walks round it, steps aside for one that comes, and looks at it; "
+            description="`ignores`: neither looks nor makes way, and stops only to avoid walking into the "
+            "robot; `makes_way`: walks round it, steps aside when it approaches, and looks at it; "
             "`curious`: walks up to it, looks at it for a while, and goes on; `wary`: keeps clear of it, "
-            "walks away from one that comes nearer, and looks back at it; `blocks`: steps into its way, "
+            "walks away when it approaches, and looks back at it; `blocks`: steps into its way, "
             "stands before it for a while, and goes on; `surprised`: stops and looks at it for a while, and "
             "goes on",
         ),
@@ -62,8 +62,8 @@ class Reaction:
     from_m: Annotated[
         Meeting | None,
         Field(
-            description="distance at which an encounter begins; it ends 1 m farther off; left out, 3 for "
-            "`surprised`, 4 for `makes_way` and `blocks`, 5 for `curious` and `wary`; `ignores` takes none"
+            description="distance at which an encounter begins; it ends 1 m farther away; default 3 for "
+            "`surprised`, 4 for `makes_way` and `blocks`, 5 for `curious` and `wary`; unused by `ignores`"
         ),
     ] = None
     keep_m: Annotated[
@@ -71,28 +71,28 @@ class Reaction:
         Field(
             ge=0.6,
             le=8.0,
-            description="distance kept between the middles of person and robot: at least, for `makes_way` "
-            "(left out, 1.2) and `wary` (2.5); about, for `curious` (1.2) and `blocks` (1.0); others take "
-            "none",
+            description="distance between the centres of person and robot: the minimum for `makes_way` "
+            "(default 1.2) and `wary` (2.5), approximate for `curious` (1.2) and `blocks` (1.0); unused by "
+            "others",
         ),
     ] = None
     lasts_s: Annotated[
         Lasting | None,
         Field(
-            description="how long it looks (`curious`; left out, 5), is in the way (`blocks`; 5) or stands "
-            "(`surprised`; 2.5); others take none"
+            description="how long the person looks (`curious`; default 5), blocks (`blocks`; 5) or stands "
+            "(`surprised`; 2.5); unused by others"
         ),
     ] = None
 
     def __post_init__(self) -> None:
-        """Refuse what this reaction does not take, and distances that contradict each other."""
+        """Refuse settings that the reaction does not use, and distances that contradict each other."""
         if self.way not in USUAL:
             raise BadInput(f"{self.way!r} must be one of {', '.join(USUAL)}", key=("as",))
         check_limits(self)
         for key in ("from_m", "keep_m", "lasts_s"):
             value = getattr(self, key)
             if value is not None and key not in USUAL[self.way]:
-                raise BadInput(f"{key} {value:g}: a person who {_WORDS[self.way]} takes none; leave it out")
+                raise BadInput(f"{key} {value:g}: not used by a person who {_WORDS[self.way]}; leave it out")
         if self.distance_m > self.begins_m:
             raise BadInput(f"keep_m {self.distance_m:g} must be at most from_m, {self.begins_m:g}")
 
@@ -118,24 +118,22 @@ class Reaction:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Lead:
-    """How a person leads the robot along its path: it looks back now and then, and waits, calling.
+    """How a person leads the robot along its path: it looks back now and then, waits and calls.
 
     Raises:
-        BadInput: a value beyond its limits.
+        BadInput: a value is out of range.
     """
 
-    follower: Annotated[Literal["robot"], Field(description="what is led")] = "robot"
+    follower: Annotated[Literal["robot"], Field(description="the one that follows")] = "robot"
     waits_beyond_m: Annotated[
         Meeting,
-        Field(
-            description="a robot farther away has fallen behind: the person stops, turns to it and calls it"
-        ),
+        Field(description="distance beyond which the person stops for the robot, turns to it and calls it"),
     ] = 4.5
     goes_on_within_m: Annotated[
-        Meeting, Field(description="the person goes on when the robot is so near again")
+        Meeting, Field(description="distance within which the robot has caught up and the person goes on")
     ] = 3.5
     at_most_s: Annotated[
-        Lasting, Field(description="after which the person goes on without it, until it has been near again")
+        Lasting, Field(description="longest wait; the person then goes on until the robot has caught up")
     ] = 20.0
 
     def __post_init__(self) -> None:
@@ -160,23 +158,23 @@ _SAME_POINT_M: Final = 0.01
 class Waypoint:
     """A point of a person's path."""
 
-    at_m: Annotated[Point, Field(description="where it is")]
+    at_m: Annotated[Point, Field(description="position")]
     speed_m_s: Annotated[
-        float, Field(ge=SPEEDS_M_S[0], le=SPEEDS_M_S[1], description="walking speed on the way there")
+        float, Field(ge=SPEEDS_M_S[0], le=SPEEDS_M_S[1], description="walking speed on the way to this point")
     ] = 1.2
     pause_s: Annotated[Seconds, Field(description="how long the person stays there")] = 0.0
     face: Annotated[
         Face | None,
         Field(
-            description="what the person turns to meanwhile: robot, another person's name, or a point; left "
-            "out, the direction stays"
+            description="what the person faces in the pause: robot, another person's name, or a point; by "
+            "default the direction stays"
         ),
     ] = None
     until_robot_within_m: Annotated[
         Meeting | None,
         Field(
-            description="the pause lasts until the robot is so near, too, to which the person turns if "
-            "`face` says nothing else; left out, it does not wait for the robot"
+            description="the pause also lasts until the robot is this near; without `face` the person faces "
+            "the robot; by default it does not wait for the robot"
         ),
     ] = None
     waits_at_most_s: Annotated[
@@ -193,7 +191,7 @@ class Waypoint:
     ] = Posture.STANDING
 
     def __post_init__(self) -> None:
-        """Refuse values beyond their limits."""
+        """Refuse values that are out of range."""
         check_limits(self)
         for key in ("at_m", "face"):
             point = getattr(self, key)
@@ -211,30 +209,30 @@ class WalkConfig:
             strict=False,
             min_length=1,
             max_length=500,
-            description="the points that they walk to, one after the other",
+            description="the points of the path, in order",
         ),
     ]
-    enter_s: Annotated[Seconds, Field(description="when they appear, at the first point")] = 0.0
+    enter_s: Annotated[Seconds, Field(description="time at which they appear, at the first point")] = 0.0
     leave_s: Annotated[
-        Seconds | None, Field(description="when they vanish; left out, they stay at the last point")
+        Seconds | None, Field(description="time at which they vanish; by default they stay at the last point")
     ] = None
     yields: Annotated[
         bool,
         Field(
-            description="whether they make way for the robot and for each other; others walk their path "
+            description="whether they give way to the robot and to each other; if not, they walk their path "
             "exactly, and wait for a robot that is in their way"
         ),
     ] = False
     group: Annotated[
         Name | None,
         Field(
-            description="word for people who keep together: the one ahead slows for those behind, and waits; "
-            "all of one word have paths of as many points"
+            description="name of a group that keeps together: people ahead wait for those behind; "
+            "all its paths have the same number of points"
         ),
     ] = None
     reacts: Annotated[
         Reaction | None,
-        Field(description="how they react to the robot; left out, they take no note of it in particular"),
+        Field(description="how they react to the robot; by default they have no particular reaction"),
     ] = None
 
     def __post_init__(self) -> None:
@@ -250,14 +248,14 @@ class WalkConfig:
 
 @dataclass(frozen=True, kw_only=True)
 class ActorConfig(WalkConfig):
-    """A person whose body is not decided yet."""
+    """A person whose body is not specified yet."""
 
-    name: Annotated[Name, Field(description="unlike all other names in the scenario")]
+    name: Annotated[Name, Field(description="unique name in the scenario")]
     bag: Annotated[bool, Field(description="whether the person carries a bag")] = False
     arms: Annotated[Arms, Field(description="what the arms do while walking")] = "swinging"
     leads: Annotated[
         Lead | None,
-        Field(description="how the person leads the robot along its path; left out, it does not"),
+        Field(description="how the person leads the robot along its path; by default it does not"),
     ] = None
 
     def __post_init__(self) -> None:
@@ -265,7 +263,7 @@ class ActorConfig(WalkConfig):
         super().__post_init__()
         if self.leads is not None and self.reacts is not None:
             raise BadInput(
-                "a person who leads the robot looks out for it already; leave out reacts, or leads",
+                "a person who leads the robot cannot also react to it; leave out reacts or leads",
                 key=("leads",),
             )
 
@@ -275,27 +273,27 @@ class PersonConfig(ActorConfig):
     """One person with its body.
 
     Raises:
-        BadInput: a value beyond its limits, or one that contradicts another; with the person's name.
+        BadInput: a value is out of range or contradicts another; with the person's name.
     """
 
     height_m: Annotated[float, Field(ge=1.5, le=2.0, description="from the floor to the top of the head")] = (
         1.75
     )
-    sex: Annotated[Sex, Field(description="decides proportions and usual height")] = "male"
+    sex: Annotated[Sex, Field(description="determines proportions and the default height")] = "male"
     build: Annotated[Build, Field(description="how wide the body is for its height")] = "average"
-    clothes: Annotated[Clothes, Field(description="what the person wears")] = field(default_factory=Clothes)
+    clothes: Annotated[Clothes, Field(description="clothes of the person")] = field(default_factory=Clothes)
 
     def __post_init__(self) -> None:
-        """Refuse a person that cannot be."""
+        """Refuse values that contradict each other."""
         if not self.name:
             raise BadInput("person: name must not be empty")
         with found_in(f"person {self.name!r}"):
             super().__post_init__()
             if not self.path:
-                raise BadInput("must have at least 1 entries, got ()", key=("path",))
+                raise BadInput("must have at least 1 entry, got ()", key=("path",))
             for index, (a, b) in enumerate(pairwise(self.path), start=1):
                 if math.dist(a.at_m, b.at_m) < _SAME_POINT_M:
                     raise BadInput(
-                        f"{b.at_m!r} is the point before; use pause_s there to stay",
+                        f"{b.at_m!r} repeats the previous point; to stay there, use its pause_s",
                         key=("path", index, "at_m"),
                     )

@@ -85,7 +85,7 @@ def put_on_floor(
 
 @njit(cache=True, nogil=True)
 def carry(bones: Array, bone: NDArray[np.int64], offset_m: Array, poses: Array) -> None:
-    """Return the poses of P parts carried by bones (17, 4, 4), each `offset_m` from the joint of its `bone`."""
+    """Return the poses of P parts carried by bones (17, 4, 4), `offset_m` from the joint of their `bone`."""
     for p in range(len(bone)):
         own, pose, (x, y, z) = bones[bone[p]], poses[p], offset_m[p]
         for i in range(4):

@@ -28,9 +28,9 @@ _FULL_SPEED_M_S = 1.1  # speed at which a leg as long as the clip's makes the cl
 def amplitude_of(speed_m_s: float, root_scale: float) -> float:
     """Return the stride length relative to the clip's at a walking speed.
 
-    `root_scale` is the root of the leg length relative to the clip's.
+        `root_scale` is the root of the leg length relative to the clip's.
 
-The amplitude grows with the root of speed, as cadence does.
+    The amplitude grows with the root of speed, as cadence does.
     """
     return min(math.sqrt(abs(speed_m_s) / (_FULL_SPEED_M_S * root_scale)), 1.4)
 
@@ -42,7 +42,7 @@ def gait_pose(
     """Look a pose up in tables (A, P, 17, 3) and (A, P, 3) of `Gait`, at a phase [cycles].
 
     Returns:
-        Offset of the pelvis [m] to the front and to the left; the rotation vectors are written to `turns` (17, 3).
+        Offset of the pelvis [m] to the front and to the left; fills `turns` (17, 3) with rotation vectors.
     """
     last = len(AMPLITUDES) - 1
     i = last
@@ -251,7 +251,7 @@ class Gait:
         return pivot
 
     def _roll(self, since_strike: Array, pitch: Array, amplitude: float) -> tuple[Array, Array]:
-        """Return ankle x, z [m] of a foot that rolls on the floor, in the frame of the steadily moving person."""
+        """Return ankle x, z [m] of a foot rolling on the floor, in the steadily moving frame."""
         middle = (_TOE_OFF - _HEEL_STRIKE) / 2.0 - _LEAD
         anchor = self.stride_m(amplitude) * (middle - since_strike)
         height = -self._soles[0, 2] * np.cos(pitch) + self._pivot(pitch) * np.sin(pitch)

@@ -67,7 +67,7 @@ class Spread:
 
 # Women's steps are 0.66 m long at 1.31 m/s, 0.41 of their stature; feet walk 7 to 8 cm apart, and toes point
 # 6 to 7 degrees out (Murray, Drought and Kory 1964, Walking patterns of normal men; Murray, Kory and Sepic
-# 1970, Walking patterns of normal women). Standard deviations and the rest are our choice, and so are feet 2 cm wider.
+# 1970, Walking patterns of normal women). Deviations, and feet 2 cm wider, are our choice.
 SPREADS: Final[Mapping[str, Spread]] = {
     "stride": Spread(
         mean=1.04, deviation=0.05, unit="", what="stride length, relative to the motion capture clip"
@@ -101,7 +101,7 @@ SPREADS: Final[Mapping[str, Spread]] = {
 HOLDS: Final[Mapping[Hold, float]] = {
     "free": 0.68, "pocket": 0.13, "strap": 0.05, "telephone": 0.05, "in_front": 0.09,
 }  # fmt: skip
-_BOTH_ALIKE: Final = 0.5  # share of people with a hand in a pocket or before the belly who hold both hands there
+_BOTH_ALIKE: Final = 0.5  # share of people who put both hands in the pockets or before the belly, not one
 _ARM_SPREAD: Final = (0.35, 0.95)
 
 # Directions of left elbows and palms from the shoulder in the chest's frame, as fractions of stature.

@@ -145,7 +145,7 @@ def hold(builds: Builds, stances: Stances, q: int, turns: Array) -> tuple[float,
     """Return the pose of one of Q people from gait, postures, arms, gaze and sway.
 
     Returns:
-        Offset of the pelvis [m] to the front and to the left; rotation vectors [rad] are written to `turns` (17, 3).
+        Offset of the pelvis [m] to the front and to the left; the rotation vectors [rad] go to `turns`.
     """
     stance = stances[q]
     amplitude = amplitude_of(stance.speed, builds.root_scale[q])

@@ -1,1 +1,1 @@
-"""How people get about: paths, scripts, giving way."""
+"""The movement of people over the floor: paths, scripts, and giving way."""

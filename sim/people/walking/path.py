@@ -1,4 +1,4 @@
-"""Paths over the floor: straight lines joined by arcs, and whether walls stand in between."""
+"""Paths over the floor: straight lines joined by arcs, and whether walls block a line."""
 
 import math
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 
-# How far an arc may cut a corner [m], and the turn at which one stops and turns instead.
+# How far an arc may cut a corner [m], and the turn from which a person stops and turns on the spot.
 CORNER_CUT_M = 0.05
 _ABOUT_TURN_RAD = math.radians(115.0)
 
@@ -25,7 +25,7 @@ class PathPiece:
         heading_rad: [rad] direction at the start.
         length_m: [m].
         curvature: [1/m] positive turns left, 0 is straight.
-        goal: index of the waypoint that it leads to.
+        goal: index of the waypoint at its end.
     """
 
     start: Point
@@ -36,17 +36,17 @@ class PathPiece:
 
 
 def turn_between(before: float, after: float) -> float:
-    """Signed angle [rad] from one direction to another, in -pi..pi."""
+    """Return the signed angle [rad] from one direction to another, in -pi..pi."""
     return math.remainder(after - before, 2.0 * math.pi)
 
 
 def route(points: Sequence[Point], first_goal: int) -> tuple[PathPiece, ...]:
-    """Join points by lines, and round the corners between them.
+    """Join points by lines with rounded corners.
 
     An arc leaves the corner by at most `CORNER_CUT_M` and takes up to half of the shorter line.
 
     Args:
-        points: two or more, no two neighbours alike.
+        points: two or more points; neighbours differ.
         first_goal: index of the waypoint at the second point.
     """
     legs = [np.subtract(b, a) for a, b in pairwise(points)]
@@ -73,7 +73,7 @@ def _piece(start: Array, heading: float, length: float, curvature: float, goal: 
 
 
 def _corner(turn: float, longest_trim: float) -> tuple[float, float]:
-    """Find how much an arc takes off both lines at a corner, and its radius [m]."""
+    """Return the length that an arc takes off both lines at a corner, and its radius [m]."""
     if abs(turn) < 1e-6:
         return 0.0, math.inf
     tangent = math.tan(abs(turn) / 2.0)
@@ -82,20 +82,20 @@ def _corner(turn: float, longest_trim: float) -> tuple[float, float]:
 
 
 def is_about_turn(before: Point, corner: Point, after: Point) -> bool:
-    """Return whether a corner is so sharp that people stop and turn there."""
+    """Return whether a corner is so sharp that people stop and turn on the spot."""
     first, second = np.subtract(corner, before), np.subtract(after, corner)
     turn = turn_between(math.atan2(first[1], first[0]), math.atan2(second[1], second[0]))
     return abs(turn) > _ABOUT_TURN_RAD
 
 
 def abreast(path: Sequence[Point], offset_m: float) -> tuple[Point, ...]:
-    """Shift a path sideways, for a person who walks beside the one that follows it.
+    """Shift a path sideways, for a person who walks beside another one.
 
     Every line of the result is parallel to its original at the given distance; corners are where the shifted
     lines meet.
 
     Args:
-        path: two or more points, no two neighbours alike.
+        path: two or more points; neighbours differ.
         offset_m: [m] positive to the left of the walking direction.
     """
     points = np.array(path, dtype=float)
@@ -116,8 +116,8 @@ def abreast(path: Sequence[Point], offset_m: float) -> tuple[Point, ...]:
 def is_free(start: Array, end: Array, walls: Array, margin_m: float = 0.0) -> bool:
     """Return whether a straight line keeps clear of all rectangles.
 
-    One in which the line starts is passed over, such as the chair that a person sits on, and to one that is
-    nearer to the start than the margin the line may come as near as it is at the start.
+    A rectangle that contains the start is ignored, such as the chair that a person sits on. If a rectangle is
+    nearer to the start than the margin, its distance at the start is the margin.
 
     Args:
         start: (2,) [m].

@@ -1,4 +1,4 @@
-"""Scripts of people, and how far along them the people are, as arrays for kernels."""
+"""Scripts of people, and their progress along them, as arrays for kernels."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -17,7 +17,7 @@ Records = NDArray[Any]
 
 TURN_RATE_RAD_S = math.radians(150.0)
 
-NOTHING, POINT, ROBOT, ABSENT = 0, 1, 2, 3  # what to face while pausing; the last: a person who is not there
+NOTHING, POINT, ROBOT, ABSENT = 0, 1, 2, 3  # target to face in a pause; ABSENT: a person who is away
 WAYPOINT: Final = np.dtype(
     [
         ("at", np.float64, 2),  # [m]
@@ -25,15 +25,15 @@ WAYPOINT: Final = np.dtype(
         ("has_pause", np.bool_),
         ("until_robot_within_m", np.float64),  # negative: does not wait for the robot
         ("waits_at_most_s", np.float64),
-        ("posture", np.int64),  # there, its number in `POSTURES`
+        ("posture", np.int64),  # during the pause, index in `POSTURES`
         ("faces", np.int64),
         ("face", np.float64, 2),  # [m]
-        ("speed", np.float64),  # [m/s] on the way there, as planned
-        ("first_piece", np.int64),  # of the way on from here to the next stop
+        ("speed", np.float64),  # [m/s] planned, on the way to the waypoint
+        ("first_piece", np.int64),  # of the path from here to the next stop
         ("end_piece", np.int64),
     ]
 )
-"""A `Waypoint`; numbers of pieces are those within a script."""
+"""Record of a `Waypoint`; piece numbers are relative to the script."""
 
 PIECE: Final = np.dtype(
     [
@@ -41,8 +41,8 @@ PIECE: Final = np.dtype(
         ("heading", np.float64),  # [rad] at the start
         ("length", np.float64),  # [m]
         ("curvature", np.float64),  # [1/m]
-        ("goal", np.int64),  # number of the waypoint to which it leads
-        ("speed", np.float64),  # [m/s] as planned
+        ("goal", np.int64),  # number of the waypoint at its end
+        ("speed", np.float64),  # [m/s] planned
         ("speed_squared", np.float64),
     ]
 )
@@ -59,16 +59,16 @@ WALK: Final = np.dtype(
         ("pause_left", np.float64),  # [s]
         ("wait_left", np.float64),  # [s] after the pause, for the robot
         ("on_feet_in", np.float64),  # [s]
-        ("blocked_s", np.float64),  # for how long it has made little progress
+        ("blocked_s", np.float64),  # duration of little progress
         ("reached", np.int64),  # number of the last waypoint reached
-        ("piece", np.int64),  # under way on it; -1 in a pause
+        ("piece", np.int64),  # the current piece; -1 in a pause
         ("end_piece", np.int64),
-        ("posture", np.int64),  # the one to take up, its number in `POSTURES`
-        ("is_astray", np.bool_),  # off the way of the script
-        ("is_homing", np.bool_),  # under way to the waypoint reached, from astray
-        ("is_turned_away", np.bool_),  # from the way, after a stop
+        ("posture", np.int64),  # the one to take up, index in `POSTURES`
+        ("is_astray", np.bool_),  # off the path of the script
+        ("is_homing", np.bool_),  # on the way back to the waypoint reached
+        ("is_turned_away", np.bool_),  # from the direction of the path, after a stop
         ("is_present", np.bool_),
-        ("has_moved", np.bool_),  # in the last step, there before and after it
+        ("has_moved", np.bool_),  # in the last step, present before and after it
         ("now_s", np.float64),  # [s] at the end of the last step
         ("enter_s", np.float64),
         ("leave_s", np.float64),  # inf for never
@@ -81,17 +81,17 @@ WALK: Final = np.dtype(
         ("faces", np.float64, 2),  # [m]
         ("has_face", np.bool_),  # whether `faces` counts
         ("pace", np.float64),
-        ("clear_m", np.float64),  # negative for what is usual
+        ("clear_m", np.float64),  # negative for the default
         ("heeds_robot", np.bool_),
     ]
 )
-"""Where a person is on its way through its script."""
+"""Record of a person's progress through its script."""
 
 
 class Script(NamedTuple):
-    """What a person is to do: (W,) records WAYPOINT and (P,) records PIECE.
+    """Script of one person: (W,) records WAYPOINT and (P,) records PIECE.
 
-    The last pieces are room for one leg that is planned anew, see `plan_leg`.
+    The last pieces are space for one leg that is planned again, see `plan_leg`.
     """
 
     waypoints: Records
@@ -102,8 +102,8 @@ class Scripts(NamedTuple):
     """The scripts of Q people, one after the other.
 
     Attributes:
-        waypoints, pieces: of all of them.
-        first_waypoint, first_piece: (Q,) where each one's begin.
+        waypoints, pieces: records of all people.
+        first_waypoint, first_piece: (Q,) index of each person's first record.
     """
 
     waypoints: Records
@@ -113,7 +113,7 @@ class Scripts(NamedTuple):
 
 
 def is_scripted(config: PersonConfig) -> bool:
-    """Return whether nothing decides where a person walks and looks but its script and who is in its way."""
+    """Return whether a person only follows its script and gives way, without a reaction, lead or group."""
     is_alone = config.reacts is None and config.leads is None and config.group is None
     return is_alone and all(
         waypoint.until_robot_within_m is None
@@ -130,7 +130,7 @@ def has_pause(path: Sequence[Waypoint], index: int) -> bool:
 
 
 def stops_at(path: Sequence[Waypoint], index: int) -> bool:
-    """Return whether a person comes to a stand at a waypoint."""
+    """Return whether a person stops at a waypoint."""
     if has_pause(path, index):
         return True
     before, corner, after = (w.at_m for w in path[index - 1 : index + 2])
@@ -138,7 +138,7 @@ def stops_at(path: Sequence[Waypoint], index: int) -> bool:
 
 
 def write_script(path: Sequence[Waypoint]) -> Script:
-    """Plan the ways between all stops of a path."""
+    """Plan the paths between all stops."""
     stops = [0, *(index for index in range(1, len(path)) if stops_at(path, index))]
     pieces: list[PathPiece] = []
     waypoints = np.zeros(len(path), WAYPOINT)
@@ -155,7 +155,7 @@ def write_script(path: Sequence[Waypoint]) -> Script:
             row["faces"], row["face"] = POINT, waypoint.face
     for start, stop in pairwise(stops):
         leg = route([each.at_m for each in path[start : stop + 1]], start + 1)
-        for index in range(start, stop):  # who was astray may go on from between two stops
+        for index in range(start, stop):  # a person who left the path may continue from between two stops
             skipped = next(k for k, piece in enumerate(leg) if piece.goal == index + 1)
             waypoints[index]["first_piece"] = len(pieces) + skipped
             waypoints[index]["end_piece"] = len(pieces) + len(leg)
@@ -165,7 +165,7 @@ def write_script(path: Sequence[Waypoint]) -> Script:
 
 
 def plan_leg(path: Sequence[Waypoint], script: Script, start: tuple[float, float], reached: int) -> slice:
-    """Plan the way from a point [m] beside a waypoint to the next stop, into the last pieces of a script.
+    """Plan the path from a point [m] near a waypoint to the next stop, into the last pieces of a script.
 
     Returns:
         Which of the pieces they are.
@@ -189,13 +189,13 @@ def _piece_rows(path: Sequence[Waypoint], pieces: Sequence[PathPiece]) -> Record
 
 
 def _piece_speed(path: Sequence[Waypoint], piece: PathPiece) -> float:
-    """Planned speed [m/s], less where the arc is too tight to turn so fast."""
+    """Return the planned speed [m/s], reduced on arcs that are too tight for it."""
     speed = path[piece.goal].speed_m_s
     return speed if piece.curvature == 0.0 else min(speed, TURN_RATE_RAD_S * 0.8 / abs(piece.curvature))
 
 
 def face_people(path: Sequence[Waypoint], script: Script, places: Mapping[str, NDArray[np.float64]]) -> None:
-    """Write down where the people are now, by name (2,) [m], whom a script says to face."""
+    """Write the current positions, by name (2,) [m], of the people that a script faces."""
     for waypoint, row in zip(path, script.waypoints, strict=True):
         if isinstance(waypoint.face, str) and waypoint.face != "robot":
             place = places.get(waypoint.face)
@@ -205,7 +205,7 @@ def face_people(path: Sequence[Waypoint], script: Script, places: Mapping[str, N
 
 
 def start_walk(path: Sequence[Waypoint], script: Script, *, yields: bool, radius_m: float) -> Records:
-    """(1,) records WALK of a person who is there for good and has not moved yet."""
+    """Return (1,) records WALK of a person who is always present and has not moved yet."""
     walks, first = np.zeros(1, WALK), script.waypoints[0]
     walk = walks[0]
     walk["position"], walk["pause_left"], walk["piece"] = first["at"], first["pause_s"], -1
@@ -225,12 +225,12 @@ def start_walk(path: Sequence[Waypoint], script: Script, *, yields: bool, radius
 
 
 def join_records(records: Sequence[Records], kind: np.dtype[Any]) -> Records:
-    """Put records of one kind one after the other, as bytes: else numpy compares kinds field by field."""
+    """Concatenate records of one kind, as bytes: otherwise numpy compares dtypes field by field."""
     return np.concatenate([np.zeros(0, np.uint8), *(each.view(np.uint8) for each in records)]).view(kind)
 
 
 def join_scripts(scripts: Sequence[Script]) -> Scripts:
-    """Put scripts one after the other."""
+    """Concatenate scripts."""
     return Scripts(
         waypoints=join_records([script.waypoints for script in scripts], WAYPOINT),
         pieces=join_records([script.pieces for script in scripts], PIECE),

@@ -1,4 +1,4 @@
-"""How people give way: the social force model (numba kernels)."""
+"""The social force model, by which people give way (numba kernels)."""
 
 import math
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 RobotMotion: TypeAlias = tuple[float, float, float, float, float]
-"""Where a robot is [m], x and y of its velocity [m/s], and its radius [m]; negative if there is none."""
+"""Position [m] and velocity x, y [m/s] of a robot, and its radius [m]; negative without a robot."""
 
 NO_ROBOT: Final[RobotMotion] = (0.0, 0.0, 0.0, 0.0, -1.0)
 
@@ -20,27 +20,27 @@ PEOPLE_STRENGTH = 2.1  # [m2/s2] V0
 PEOPLE_RANGE_M = 0.3  # sigma
 WALL_STRENGTH = 10.0  # [m2/s2] U0
 WALL_RANGE_M = 0.2  # R
-STEP_TIME_S = 1.0  # delta t: how far ahead a step is foreseen
+STEP_TIME_S = 1.0  # delta t: time ahead of a foreseen step
 HALF_SIGHT_RAD = math.radians(100.0)  # phi
-BEHIND = 0.5  # c: weight of what is out of sight
+BEHIND = 0.5  # c: weight of people out of sight
 # Helbing, Farkas and Vicsek, Simulating dynamical features of escape panic, Nature 407, 487 (2000): the push
 # of bodies about to touch; B is theirs, the strength a third of their A / m, for people who are not in panic.
 TOUCH_STRENGTH = 8.0  # [m/s2]
 TOUCH_RANGE_M = 0.08
-# Ours: who comes head-on is passed on the right, so that nobody gets stuck; a force bends by this much.
+# Ours: people who meet head-on pass on the right, so that they do not get stuck; a force bends by this angle.
 KEEP_RIGHT_RAD = 0.25
 POINT_RADIUS_M = 0.25  # the size of the bodies that the constants were made for
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlanarState:
-    """A person or something that moves over the floor.
+    """State of a person or an object that moves over the floor.
 
     Attributes:
         position: (2,) [m] in the world frame.
         velocity: (2,) [m/s].
-        radius_m: [m] of the circle that it takes up.
-        heading_rad: [rad] where its front is; of people it is not asked for.
+        radius_m: [m] radius of its circular outline.
+        heading_rad: [rad] direction of its front; unused for people.
     """
 
     position: Array
@@ -50,19 +50,19 @@ class PlanarState:
 
 
 def robot_motion(robot: PlanarState | None) -> RobotMotion:
-    """Where a robot is and how it moves, as kernels take it."""
+    """Return the position and motion of a robot in the format of the kernels."""
     if robot is None:
         return NO_ROBOT
     return *robot.position.tolist(), *robot.velocity.tolist(), robot.radius_m
 
 
 class Obstacles(NamedTuple):
-    """What a person who walks makes way for.
+    """Obstacles to a walking person.
 
     Attributes:
-        people: (N, 4) x, y [m] and velocities [m/s] of all.
-        walker: whose row of `people` is the person's own; -1 if none is.
-        robot: where it is and how it moves.
+        people: (N, 4) positions x, y [m] and velocities [m/s] of all people.
+        walker: row of `people` that is the person's own; -1 for none.
+        robot: position and motion of the robot.
         walls: (K, 4) [m] rectangles min_x, min_y, max_x, max_y.
     """
 
@@ -80,7 +80,7 @@ def social_force(
     obstacles: Obstacles,
     bend_rad: float,
 ) -> tuple[float, float]:
-    """Sum what pulls a person to the goal and pushes it away from others and walls.
+    """Sum the attraction to the goal and the repulsion by others and walls.
 
     Source: Helbing and Molnar (1995), eqs. 2 to 10, without attraction and fluctuations.
 
@@ -88,8 +88,8 @@ def social_force(
         at: [m].
         velocity: [m/s].
         desired: [m/s] velocity towards the goal.
-        obstacles: what is around.
-        bend_rad: [rad] by how much a push from ahead is turned to pass on the right; negative for the left.
+        obstacles: people, robot and walls around.
+        bend_rad: [rad] angle by which a force from ahead is turned to pass right; negative for the left.
 
     Returns:
         [m/s2] acceleration.
@@ -128,12 +128,12 @@ def _push_of(
     heading: tuple[float, float],
     turn: tuple[float, float],
 ) -> tuple[float, float]:
-    """Return the repulsion [m/s2] by another one, who is as far away as the gap [m] says.
+    """Return the repulsion [m/s2] by another person or the robot at a gap [m].
 
     It falls off with ellipses that reach out along the coming step. Our change to eq. 4: the step is that of
     the velocity relative to the walker, half as long (Johansson, Helbing and Shukla 2007), so that a robot
-    that stands still is avoided like a person who comes. What comes from ahead is turned by an angle, whose
-    cosine and sine are given; what lies out of sight weighs less (eqs. 8 and 9).
+    that stands still is avoided like an approaching person. A force from ahead is turned by an angle, whose
+    cosine and sine are given; a force from out of sight has less weight (eqs. 8 and 9).
     """
     sight = _sight_weight(heading, -gap_x, -gap_y)
     distance = max(math.hypot(gap_x, gap_y), 1e-3)
@@ -155,7 +155,7 @@ def _push_of(
 
 @njit(cache=True)
 def _sight_weight(heading: tuple[float, float], x: float, y: float) -> float:
-    """Return the weight of what lies in a direction: 1 in sight, `BEHIND` out of it (eqs. 8 and 9)."""
+    """Return the weight of a direction: 1 in sight, `BEHIND` out of sight (eqs. 8 and 9)."""
     limit = math.hypot(heading[0], heading[1]) * math.hypot(x, y) * math.cos(HALF_SIGHT_RAD)
     return 1.0 if x * heading[0] + y * heading[1] >= limit else BEHIND
 
@@ -176,20 +176,20 @@ def _push_of_wall(at: tuple[float, float], walls: Array) -> tuple[float, float]:
     return push * gap_x, push * gap_y
 
 
-# What follows from the force: the next velocity, the side on which to pass, when a waypoint is reached.
+# Consequences of the force: the next velocity, the side on which to pass, and when a waypoint is reached.
 
-HURRY: Final = 1.3  # who gives way may be this much faster than planned (Helbing and Molnar 1995, eq. 11)
-TAKEN_WITHIN_M: Final = 1.0  # how near to a waypoint one looks whether a person stands on it
-TAKEN_BY_M: Final = 0.6  # how near to it a person stands then
-_SETTLES_M_S: Final = 0.4  # so slow one settles beside a place that is taken
-_PASSED_M: Final = 0.35  # how near to a waypoint one goes on to the next
-_PASSED_TAKEN_M: Final = 0.9  # the same where others stand on it
-TURNS_M_S: Final = 0.15  # who is slower keeps facing where he does
-_ARRIVED_M: Final = 0.02  # how near to where one stops one does
-_STUCK_M: Final = 0.5  # the same of who gets no nearer, as a wall or others are too near
+HURRY: Final = 1.3  # greatest speed relative to the planned one (Helbing and Molnar 1995, eq. 11)
+TAKEN_WITHIN_M: Final = 1.0  # distance to a waypoint from which a person checks whether it is occupied
+TAKEN_BY_M: Final = 0.6  # distance to a waypoint within which another person occupies it
+_SETTLES_M_S: Final = 0.4  # a person slower than this stops beside an occupied waypoint
+_PASSED_M: Final = 0.35  # distance to a waypoint at which a person goes on to the next
+_PASSED_TAKEN_M: Final = 0.9  # the same for an occupied waypoint
+TURNS_M_S: Final = 0.15  # a slower person keeps its heading
+_ARRIVED_M: Final = 0.02  # distance to a stop at which a person has arrived
+_STUCK_M: Final = 0.5  # the same for a person who is held up by a wall or by others
 _STUCK_S: Final = 1.0
 _MOST_M_S2: Final = 4.0
-_TRY_SIDE_S: Final = 2.0  # how long one tries to pass on one side
+_TRY_SIDE_S: Final = 2.0  # time of trying to pass on one side
 
 
 @njit(cache=True, nogil=True)
@@ -202,9 +202,9 @@ def velocity_by_force(
     bend_rad: float,
     dt_s: float,
 ) -> tuple[float, float]:
-    """Return the velocity [m/s] after a step of a person who wants to a goal [m], at a speed.
+    """Return the velocity [m/s] of a person after a step towards a goal [m] at a desired speed.
 
-    Nobody's changes by more than 4 m/s2; for the rest see `social_force`.
+    It changes by at most 4 m/s2; for the rest see `social_force`.
     """
     gap_x, gap_y = goal[0] - at[0], goal[1] - at[1]
     pace = wanted_m_s / max(math.hypot(gap_x, gap_y), 1e-9)
@@ -215,20 +215,20 @@ def velocity_by_force(
 
 @njit(cache=True)
 def bend_rad(blocked_s: float) -> float:
-    """To which side to give way [rad]: to the right; if that does not help, left and right in turn."""
+    """Return the angle [rad] for giving way: to the right; if that fails, left and right in turn."""
     side = 1.0 if int(blocked_s / _TRY_SIDE_S) % 2 == 0 else -1.0
     return side * KEEP_RIGHT_RAD * (1.0 + min(blocked_s / _TRY_SIDE_S, 4.0))
 
 
 @njit(cache=True)
 def blocked_s(blocked_s: float, speed_m_s: float, wanted_m_s: float, dt_s: float) -> float:
-    """Return for how long one has been slower than half as fast as one wanted to be, a step later."""
+    """Return the updated time [s] for which a person has been slower than half its desired speed."""
     return blocked_s + dt_s if speed_m_s < 0.5 * wanted_m_s else max(blocked_s - dt_s, 0.0)
 
 
 @njit(cache=True)
 def has_arrived(distance_m: float, blocked_s: float, speed_m_s: float, is_occupied: bool) -> bool:
-    """Whether one stops where one is, so far from where the script says."""
+    """Return whether a person at this distance from its stop has arrived."""
     if is_occupied and speed_m_s < _SETTLES_M_S:
         return True
     return distance_m < (_STUCK_M if blocked_s > _STUCK_S else _ARRIVED_M)
@@ -236,13 +236,13 @@ def has_arrived(distance_m: float, blocked_s: float, speed_m_s: float, is_occupi
 
 @njit(cache=True)
 def has_passed(distance_m: float, is_occupied: bool) -> bool:
-    """Whether one goes on to the next waypoint, so far from this one."""
+    """Return whether a person at this distance from a waypoint goes on to the next one."""
     return distance_m < (_PASSED_TAKEN_M if is_occupied else _PASSED_M)
 
 
 @njit(cache=True)
 def is_taken(place: tuple[float, float], obstacles: Obstacles) -> bool:
-    """Whether anybody else, or the robot, stands on a place [m]."""
+    """Return whether another person or the robot occupies a place [m]."""
     people, walker, robot, _ = obstacles
     nearest = math.inf
     if robot[4] >= 0.0:

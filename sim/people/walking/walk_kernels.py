@@ -1,6 +1,6 @@
 """One control step of people: following scripts and wishes, giving way, waiting (numba kernels).
 
-Records are WALK of all people, changed in place; those of the scripts are read only.
+Records WALK of all people are changed in place; the scripts are read-only.
 """
 
 import math
@@ -44,12 +44,12 @@ Record = Any  # a row of records
 ACCELERATION_M_S2: Final = 1.0
 LONGEST_STEP_S: Final = 1.0 / 60.0  # longer control steps are divided
 _BRAKE_M_S2: Final = 2.0
-_KEEP_CLEAR_M: Final = 0.25  # of the robot, where a person that waits for it comes to stand
+_KEEP_CLEAR_M: Final = 0.25  # distance from the robot at which a person that waits for it stops
 _STEER_GAIN: Final = 8.0  # [1/s]
 _START_WITHIN_RAD: Final = math.radians(25.0)
-_ERRAND_M_S: Final = 1.2  # how fast one goes where no script sends one
-_NEARLY_M: Final = 0.1  # how near to the goal of an errand one has arrived
-_SIDESTEP_M: Final = 0.8  # the last of an errand, on which one does not turn away from what one faces
+_ERRAND_M_S: Final = 1.2  # walking speed off the script
+_NEARLY_M: Final = 0.1  # distance to the goal of an errand at which a person has arrived
+_SIDESTEP_M: Final = 0.8  # last part of an errand, on which a person keeps facing its target
 _STANDING, _SITTING = POSTURES[Posture.STANDING], POSTURES[Posture.SITTING]
 _CALLING = POSTURES[Posture.CALLING]
 
@@ -66,18 +66,18 @@ def walk_on(
     walls: Array,
     two: float,
 ) -> None:
-    """Let the people of a world walk on, come and go, who follow their scripts alone.
+    """Advance the people of a world who only follow their scripts: they walk, enter and leave.
 
     Args:
-        first: number of the first of them.
-        end: and after the last.
-        walks: (Q,) of all people.
-        scripts: of all people.
+        first: number of the first person.
+        end: number after the last person.
+        walks: (Q,) records of all people.
+        scripts: scripts of all people.
         time_s: [s] at the start of the step.
         dt_s: [s] length of the step.
-        robot: where it is now, and how it moves.
-        walls: (K, 4) [m] rectangles min_x, min_y, max_x, max_y, for those who make way.
-        two: 2, an argument so that squares are made by the library's power, as Python makes them.
+        robot: its current position and motion.
+        walls: (K, 4) [m] rectangles min_x, min_y, max_x, max_y, for people who give way.
+        two: 2, an argument so that squares use the library's power function, as in Python.
     """
     people, row = _motion_of(first, end, walks), -1
     for q in range(first, end):
@@ -91,7 +91,7 @@ def walk_on(
 
 @njit(cache=True)
 def _motion_of(first: int, end: int, walks: Records) -> Array:
-    """(N, 4) x, y [m] and velocities [m/s] of those who are present."""
+    """Return (N, 4) positions x, y [m] and velocities [m/s] of the people who are present."""
     count, motion = 0, np.empty((end - first, 4))
     for q in range(first, end):
         walk = walks[q]
@@ -104,13 +104,13 @@ def _motion_of(first: int, end: int, walks: Records) -> Array:
 
 @njit(cache=True)
 def steps_in(dt_s: float) -> int:
-    """How many equal steps, none longer than `LONGEST_STEP_S`, a control step is divided into."""
+    """Return the number of equal steps, none longer than `LONGEST_STEP_S`, in a control step."""
     return max(math.ceil(dt_s / LONGEST_STEP_S - 1e-9), 1)
 
 
 @njit(cache=True, nogil=True)
 def come_or_go(walks: Records, q: int, now_s: float) -> bool:
-    """Take a person into the world or out of it at a time [s], and return whether it walks until then."""
+    """Add a person to the world or remove it at a time [s]; return whether it walks until then."""
     walk = walks[q]
     was_present = walk.is_present
     walk.now_s = now_s
@@ -121,7 +121,7 @@ def come_or_go(walks: Records, q: int, now_s: float) -> bool:
 
 @njit(cache=True, nogil=True)
 def enter(walks: Records, q: int, scripts: Scripts, robot: RobotMotion) -> None:
-    """Let a person who has just come face at once what its first waypoint says, if it is there."""
+    """Turn a person who has just entered to the target of its first waypoint, if that is present."""
     walk, waypoint = walks[q], scripts.waypoints[scripts.first_waypoint[q]]
     if waypoint.has_pause and waypoint.faces != NOTHING:
         walk.heading = _faced(walk, waypoint.faces, waypoint, robot)
@@ -131,19 +131,19 @@ def enter(walks: Records, q: int, scripts: Scripts, robot: RobotMotion) -> None:
 def walk_person(
     walks: Records, q: int, scripts: Scripts, dt_s: float, steps: int, obstacles: Obstacles, two: float
 ) -> int:
-    """Move one person on by its script, as far as its wish leaves it.
+    """Advance one person by its script, as modified by its wish.
 
     Args:
         walks: see `walk_on`.
-        q: number of the person.
+        q: index of the person.
         scripts: see `walk_on`.
         dt_s: [s] length of the control step.
-        steps: how many of its steps are to be done.
-        obstacles: what is around at the start of the control step.
+        steps: number of its steps to do.
+        obstacles: obstacles at the start of the control step.
         two: see `walk_on`.
 
     Returns:
-        -1 mostly; how many steps are left if the person has set off from beside its waypoint, so that its way
+        -1 normally. If the person sets off from a point near its waypoint, the number of steps left: its path
         must be planned before they are done.
     """
     walk, dt_s = walks[q], dt_s / steps_in(dt_s)
@@ -167,7 +167,7 @@ def walk_person(
 
 @njit(cache=True)
 def _pause(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: RobotMotion) -> bool:
-    """Stand, turn to what the script says, set off when the pause is over; returns what `_set_off` does."""
+    """Stand, face the target, and set off when the pause is over; return the result of `_set_off`."""
     walk.velocity[0] = walk.velocity[1] = walk.speed = 0.0
     walk.pause_left -= dt_s
     waypoint = scripts.waypoints[scripts.first_waypoint[q] + walk.reached]
@@ -176,7 +176,7 @@ def _pause(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: RobotMoti
     if walk.pause_left > 1e-9 or is_awaiting:
         if walk.pause_left <= 1e-9 or walk.pause_left == math.inf:
             walk.wait_left -= dt_s
-        if waits and not is_awaiting and walk.posture == _CALLING:  # its call was heard: the robot has come
+        if waits and not is_awaiting and walk.posture == _CALLING:  # the robot has come
             walk.posture = _STANDING
         faces = waypoint.faces
         if is_awaiting and faces == NOTHING:
@@ -205,9 +205,9 @@ def _awaits(walk: Record, waypoint: Record, robot: RobotMotion) -> bool:
 
 @njit(cache=True)
 def _set_off(walk: Record, scripts: Scripts, q: int) -> bool:
-    """Start on the way to the next stop; return whether it must be planned first.
+    """Start on the path to the next stop; return whether it must be planned first.
 
-    Who makes way needs no more of a way than its waypoints; others follow lines, which begin at the waypoint.
+    People who give way need only the waypoints; others follow lines, which begin at the waypoint.
     """
     waypoint = scripts.waypoints[scripts.first_waypoint[q] + walk.reached]
     walk.piece, walk.end_piece = waypoint.first_piece, waypoint.end_piece
@@ -218,7 +218,7 @@ def _set_off(walk: Record, scripts: Scripts, q: int) -> bool:
 
 @njit(cache=True)
 def _halt(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: RobotMotion, two: float) -> None:
-    """Come to a stand, and turn to what is to be faced."""
+    """Stop, and turn to the target."""
     if walk.speed > 0.0 and walk.piece >= 0 and not walk.is_astray and not walk.yields:
         _follow(walk, scripts, q, dt_s, robot, 0.0, two)
         return
@@ -239,7 +239,7 @@ def _halt(walk: Record, scripts: Scripts, q: int, dt_s: float, robot: RobotMotio
 
 @njit(cache=True)
 def _turn_to_the_way(walk: Record, scripts: Scripts, q: int, dt_s: float) -> None:
-    """Turn back to where the way leads, after a stop to look elsewhere."""
+    """Turn back to the direction of the path after a stop."""
     goal = scripts.waypoints[scripts.first_waypoint[q] + _goal_of(walk, scripts, q)]
     bearing = _bearing(walk, goal.at[0], goal.at[1])
     _turn(walk, dt_s, bearing)
@@ -248,7 +248,7 @@ def _turn_to_the_way(walk: Record, scripts: Scripts, q: int, dt_s: float) -> Non
 
 @njit(cache=True)
 def _stray(walk: Record, scripts: Scripts, q: int, dt_s: float, obstacles: Obstacles, two: float) -> None:
-    """Leave the way of the script, on foot, for a point of the floor."""
+    """Leave the path of the script for a point on the floor."""
     if walk.posture != _STANDING:
         walk.posture = _STANDING
         walk.on_feet_in = RISE_S
@@ -267,7 +267,7 @@ def _stray(walk: Record, scripts: Scripts, q: int, dt_s: float, obstacles: Obsta
 
 @njit(cache=True)
 def _turn_back(walk: Record, scripts: Scripts, q: int) -> None:
-    """Start on the way back to the script: to the waypoint to stay at, or to the next one."""
+    """Start to return to the script: to the waypoint to stay at, or to the next one."""
     if walk.pause_left <= 0.0:
         _set_off(walk, scripts, q)
         return
@@ -280,7 +280,7 @@ def _turn_back(walk: Record, scripts: Scripts, q: int) -> None:
 
 @njit(cache=True)
 def _goal_of(walk: Record, scripts: Scripts, q: int) -> int:
-    """Number of the waypoint to which a person is under way."""
+    """Return the number of the waypoint that a person walks to."""
     return int(walk.reached if walk.is_homing else scripts.pieces[scripts.first_piece[q] + walk.piece].goal)
 
 
@@ -288,7 +288,7 @@ def _goal_of(walk: Record, scripts: Scripts, q: int) -> int:
 def _follow(
     walk: Record, scripts: Scripts, q: int, dt_s: float, robot: RobotMotion, pace: float, two: float
 ) -> None:
-    """Move along the planned way, exactly, at a share of the planned speed."""
+    """Move exactly along the planned path, at a share of the planned speed."""
     pieces, first = scripts.pieces, scripts.first_piece[q]
     piece = pieces[first + walk.piece]
     ahead = piece.heading + piece.curvature * walk.along
@@ -314,7 +314,7 @@ def _follow(
 
 @njit(cache=True)
 def _put(walk: Record, piece: Record) -> float:
-    """Put a person where it has got to on a piece, and return its direction there."""
+    """Place a person at its progress on a piece, and return the direction there."""
     heading: float = piece.heading + piece.curvature * walk.along
     if piece.curvature == 0.0:
         walk.position[0] = piece.start[0] + walk.along * math.cos(heading)
@@ -329,7 +329,7 @@ def _put(walk: Record, piece: Record) -> float:
 
 @njit(cache=True)
 def _speed_limit(walk: Record, scripts: Scripts, q: int, dt_s: float, two: float) -> float:
-    """Speed [m/s] from which every slower piece ahead, and the stop, can be reached by gentle braking."""
+    """Return the speed [m/s] that allows gentle braking for every slower piece ahead and for the stop."""
     first = scripts.first_piece[q]
     piece = scripts.pieces[first + walk.piece]
     limit: float = piece.speed
@@ -343,14 +343,14 @@ def _speed_limit(walk: Record, scripts: Scripts, q: int, dt_s: float, two: float
 
 @njit(cache=True)
 def _braking_speed(distance: float, final_squared: float, dt_s: float, two: float) -> float:
-    """Highest speed [m/s] for this step from which the final one is reached within a distance [m]."""
+    """Return the highest speed [m/s] from which the final one can be reached within a distance [m]."""
     lost = ACCELERATION_M_S2 * dt_s / 2.0
     return math.sqrt(lost**two + 2.0 * ACCELERATION_M_S2 * max(distance, 0.0) + final_squared) - lost
 
 
 @njit(cache=True)
 def _limit_by_robot(walk: Record, robot: RobotMotion, direction: float, two: float) -> float:
-    """Speed [m/s] in a direction [rad] at which a person does not walk into a robot that stands there."""
+    """Return the speed [m/s] in a direction [rad] at which a person does not walk into the robot."""
     if robot[4] < 0.0:
         return math.inf
     x, y = robot[0] - walk.position[0], robot[1] - walk.position[1]
@@ -400,10 +400,10 @@ def _walk_by_force(
     obstacles: Obstacles,
     two: float,
 ) -> Obstacles:
-    """Move by social force towards a goal [m], as fast as is wanted, up to a limit [m/s].
+    """Move by social force towards a goal [m], at the desired speed, up to a limit [m/s].
 
     Returns:
-        What the person makes way for: for the robot as if it were larger, or not at all, if it wishes so.
+        The obstacles, with the robot enlarged or left out as the wish says.
     """
     robot = obstacles.robot
     if not walk.heeds_robot:
@@ -430,10 +430,10 @@ def _walk_by_force(
 
 @njit(cache=True)
 def _arrive(walk: Record, scripts: Scripts, q: int, goal: int) -> None:
-    """Stop at the end of the planned way."""
+    """Stop at the end of the planned path."""
     waypoint = scripts.waypoints[scripts.first_waypoint[q] + goal]
     walk.velocity[0] = walk.velocity[1] = walk.speed = 0.0
-    if goal > walk.reached:  # else it has come back to where it was to stay
+    if goal > walk.reached:  # otherwise it has returned to where it should stay
         walk.pause_left, walk.wait_left = waypoint.pause_s, waypoint.waits_at_most_s
     walk.reached, walk.piece, walk.is_astray, walk.is_homing = goal, -1, False, False
     if waypoint.has_pause:
@@ -451,7 +451,7 @@ def _turn(walk: Record, dt_s: float, wanted: float) -> None:
 
 @njit(cache=True)
 def _faced(walk: Record, faces: int, waypoint: Record, robot: RobotMotion) -> float:
-    """Direction [rad] of what is to be faced; the present heading if it is not there."""
+    """Return the direction [rad] of the target to face; the current heading if it is absent."""
     if faces == POINT:
         return _bearing(walk, waypoint.face[0], waypoint.face[1])
     if faces == ABSENT or robot[4] < 0.0:
@@ -461,7 +461,7 @@ def _faced(walk: Record, faces: int, waypoint: Record, robot: RobotMotion) -> fl
 
 @njit(cache=True)
 def _bearing(walk: Record, x: float, y: float) -> float:
-    """Direction [rad] of a point [m]; the present heading if it is here."""
+    """Return the direction [rad] to a point [m]; the current heading if it is here."""
     dx, dy = x - walk.position[0], y - walk.position[1]
     heading: float = walk.heading
     return heading if math.hypot(dx, dy) < 1e-6 else math.atan2(dy, dx)
@@ -469,14 +469,14 @@ def _bearing(walk: Record, x: float, y: float) -> float:
 
 @njit(cache=True)
 def _gap(walk: Record, x: float, y: float) -> float:
-    """Distance [m] of a point [m]."""
+    """Return the distance [m] to a point [m]."""
     dx, dy = x - walk.position[0], y - walk.position[1]
     return math.sqrt(dx * dx + dy * dy)
 
 
 @njit(cache=True)
 def _hypot(x: float, y: float) -> float:
-    """Length of a vector, correctly rounded as by Python's `math.hypot`; the one of numba is not."""
+    """Return the length of a vector, correctly rounded as by `math.hypot`; numba's is not."""
     low, high = min(abs(x), abs(y)), max(abs(x), abs(y))
     squared = high * high + low * low
     if squared == 0.0:

@@ -1,4 +1,4 @@
-"""One person's walk along its script: what guides it besides, and when it is where if nothing disturbs it."""
+"""One person's walk along its script, the wishes that modify it, and its undisturbed timetable."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -26,11 +26,11 @@ Array = NDArray[np.float64]
 
 
 class Present(NamedTuple):
-    """People who are there.
+    """People who are present.
 
     Attributes:
-        rows: of `motion`, by name.
-        motion: (N, 4) where they are and how they move: x, y [m], and their velocities [m/s].
+        rows: row in `motion` by name.
+        motion: (N, 4) positions x, y [m] and velocities [m/s].
     """
 
     rows: Mapping[str, int]
@@ -42,12 +42,12 @@ NOBODY: Final = Present({}, np.empty((0, 4)))
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Surroundings:
-    """What a walker may have to give way to.
+    """People, robot and walls around a walker.
 
     Attributes:
-        people: who is there, the walker as well.
-        walker: its row among them; -1 if it is not there.
-        robot: None if there is none.
+        people: the people who are present, including the walker.
+        walker: its row among them; -1 if it is absent.
+        robot: state of the robot, or None.
         walls: (K, 4) [m] rectangles min_x, min_y, max_x, max_y.
     """
 
@@ -57,7 +57,7 @@ class Surroundings:
     walls: Array
 
     def find(self, face: tuple[float, float] | str) -> Array | None:
-        """Position (2,) [m] of what a person turns to; None if it is not there."""
+        """Return the position (2,) [m] of a person's target to face; None if it is absent."""
         if not isinstance(face, str):
             return np.array(face)
         if face == "robot":
@@ -71,16 +71,16 @@ ALONE: Final = Surroundings(people=NOBODY, walker=-1, robot=None, walls=np.empty
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Wish:
-    """What changes a person's script at an instant; the defaults change nothing.
+    """Change of a person's script at one step; the defaults change nothing.
 
     Attributes:
-        goes_to: (2,) [m] where it goes in place of its way, giving way to all; None to keep to its way.
-        stands: whether it stops where it is; its pauses stand still meanwhile.
-        faces: (2,) [m] to what its body turns when it stands, and over the last steps to `goes_to`.
-        looks_at: (2,) [m] to what its head turns; None for straight ahead.
+        goes_to: (2,) [m] where it goes instead of along its path, giving way to all; None to follow its path.
+        stands: whether it stops where it is; its pauses are suspended meanwhile.
+        faces: (2,) [m] point that its body faces when it stands, and over the last steps to `goes_to`.
+        looks_at: (2,) [m] point that its head turns to; None for straight ahead.
         pace: share of the planned speed.
-        clear_m: [m] how far its middle keeps away from the robot's; None for what is usual.
-        heeds_robot: whether it makes way for the robot where it makes way at all.
+        clear_m: [m] distance that its centre keeps from the robot's; None for the default.
+        heeds_robot: whether it gives way to the robot, if it gives way at all.
         calls: whether it raises an arm and waves.
     """
 
@@ -99,18 +99,18 @@ AS_PLANNED: Final = Wish()
 
 _TWO = 2.0  # see `walk_on`
 _POSTURES = tuple(POSTURES)
-_STEP_S = 0.05  # of timetables
+_STEP_S = 0.05  # time step of timetables
 _LONGEST_S = 3600.0
 
 
 class Walker:
-    """A person as a point with a direction, on its way through a script.
+    """A person as an oriented point that follows a script.
 
-    Its state is one record, which may lie in an array of many people's.
+    Its state is one record, which may be part of an array for many people.
 
     Attributes:
-        script: what it is to do.
-        walks: (1,) records WALK of where it is on its way.
+        script: the script.
+        walks: (1,) records WALK, its state.
     """
 
     def __init__(
@@ -132,7 +132,7 @@ class Walker:
         self.rebind(walks)
 
     def rebind(self, walks: Records) -> None:
-        """Keep its state (1,) in another array from now on, which holds the same already."""
+        """Use another array (1,) for its state from now on; it must hold the same values already."""
         self.walks = walks
         self._walk = walks[0]
         self._position, self._velocity = walks["position"][0], walks["velocity"][0]
@@ -164,7 +164,7 @@ class Walker:
 
     @property
     def posture(self) -> Posture:
-        """The one to take up now."""
+        """The posture to take up now."""
         return _POSTURES[int(self._walk["posture"])]
 
     @property
@@ -174,12 +174,12 @@ class Walker:
 
     @property
     def has_moved(self) -> bool:
-        """Whether it has walked in the last step, there before and after it."""
+        """Whether it has walked in the last step, and was present before and after it."""
         return bool(self._walk["has_moved"])
 
     @property
     def now_s(self) -> float:
-        """[s] until when it has walked."""
+        """[s] time up to which it has walked."""
         return float(self._walk["now_s"])
 
     @property
@@ -189,13 +189,13 @@ class Walker:
 
     @property
     def home(self) -> Array | None:
-        """(2,) [m] the waypoint at which it is to be now; None on the way to the next one."""
+        """(2,) [m] the waypoint at which the script has it stay now; None on the way to the next one."""
         is_there = self._walk["pause_left"] > 0.0
         return np.array(self._path[self.reached].at_m, dtype=float) if is_there else None
 
     @property
     def progress(self) -> float:
-        """Waypoints reached, from 0 on, and the share of the way from the last one to the next."""
+        """Waypoints reached, from 0 on, plus the share of the path from the last one to the next."""
         reached = self.reached
         if reached == len(self._path) - 1:
             return float(reached)
@@ -204,7 +204,7 @@ class Walker:
         return reached + min(max(1.0 - left, 0.0), 1.0)
 
     def is_awaiting(self, robot: PlanarState | None) -> bool:
-        """Whether it waits for the robot, as its script says."""
+        """Return whether it waits for the robot, as its script says."""
         within_m = self._path[self.reached].until_robot_within_m
         if within_m is None or robot is None or self.is_walking or self._walk["wait_left"] <= 0.0:
             return False
@@ -215,12 +215,12 @@ class Walker:
         return bool(come_or_go(self.walks, 0, now_s))
 
     def enter(self, around: Surroundings) -> None:
-        """Face at once what the first waypoint says, if it is there."""
+        """Turn at once to the target of the first waypoint, if that is present."""
         self._find_people(around)
         enter(self.walks, 0, self._scripts, robot_motion(around.robot))
 
     def step(self, dt_s: float, around: Surroundings, wish: Wish = AS_PLANNED) -> None:
-        """Move on by a time step, by the script as far as a wish leaves it; long steps are divided."""
+        """Advance by a time step along the script, as modified by a wish; long steps are divided."""
         self._find_people(around)
         if wish is not self._wish:
             self._wish = wish
@@ -243,7 +243,7 @@ class Walker:
         walk["clear_m"] = -1.0 if wish.clear_m is None else wish.clear_m
 
     def _plan_leg(self) -> None:
-        """Plan the way anew on which it sets off from beside its waypoint."""
+        """Plan its path again after it sets off from a point near its waypoint."""
         x, y = self._position.tolist()
         pieces = plan_leg(self._path, self.script, (x, y), self.reached)
         self._walk["piece"], self._walk["end_piece"] = pieces.start, pieces.stop
@@ -265,7 +265,7 @@ class TimetableEntry(NamedTuple):
 def timetable(config: PersonConfig) -> list[TimetableEntry]:
     """List when a person enters, passes or reaches its waypoints, sets off again and leaves.
 
-    It is what happens when neither the robot nor other people are in the way.
+    The times hold when neither the robot nor other people are in the way.
     """
     walker = Walker(config.path, yields=False, radius_m=0.0)
     time_s = config.enter_s

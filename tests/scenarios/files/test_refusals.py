@@ -106,7 +106,7 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
     ),
     "distance that a reaction does not take": (
         lambda d: d["people"][0].update(reacts={"as": "surprised", "keep_m": 1.0}),
-        ("people[0].reacts: keep_m 1: a person who is surprised takes none",),
+        ("people[0].reacts: keep_m 1: not used by a person who is surprised",),
     ),
     "reaction that begins too late to keep its distance": (
         lambda d: d["people"][0].update(reacts={"as": "wary", "keep_m": 6.0}),
@@ -118,7 +118,7 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
     ),
     "leader who reacts": (
         lambda d: d["people"][0].update(leads={}, reacts={"as": "wary"}),
-        ("people[0].leads: a person who leads the robot looks out for it already",),
+        ("people[0].leads: a person who leads the robot cannot also react to it",),
     ),
     "wait for a robot that would be inside": (
         lambda d: d["people"][0]["path"][0].update(until_robot_within_m=0.1),

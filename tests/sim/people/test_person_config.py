@@ -36,7 +36,7 @@ HERE = (Waypoint(at_m=(0.0, 0.0)),)
         ({"enter_s": math.nan}, ("enter_s", "nan")),
         ({"enter_s": 5.0, "leave_s": 5.0}, ("leave_s: 5 must be after enter_s 5",)),
         ({"path": ()}, ("path",)),
-        ({"path": (*HERE, *HERE)}, ("path[1].at_m: (0.0, 0.0) is the point before",)),
+        ({"path": (*HERE, *HERE)}, ("path[1].at_m: (0.0, 0.0) repeats the previous point",)),
     ],
 )
 def test_a_person_that_cannot_be_is_refused_in_one_line(settings, named):

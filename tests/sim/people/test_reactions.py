@@ -183,7 +183,7 @@ def path_end() -> Waypoint:
     ("values", "said"),
     [
         ({"way": "shy"}, "'shy' must be one of ignores, makes_way"),
-        ({"way": "ignores", "from_m": 2.0}, "from_m 2: a person who ignores the robot takes none"),
+        ({"way": "ignores", "from_m": 2.0}, "from_m 2: not used by a person who ignores the robot"),
         ({"way": "wary", "from_m": 2.0, "keep_m": 3.0}, "keep_m 3 must be at most from_m, 2"),
         ({"way": "surprised", "from_m": 2.0, "lasts_s": 0.0}, "lasts_s: must be at least 0.2, got 0.0"),
     ],
