@@ -30,13 +30,13 @@ _TRUNK = ("chest", "abdomen", "pelvis")
 class Worn:
     """One garment on one part of a person.
 
-        Attributes:
-    part: name of the part without its side.
-            garment: the garment that covers it.
-            cloth_c, skin_c, air_c: [degC] mean temperature of its surface, of the skin beneath, and of the air.
-            half_depth_m: [m] of the part, from its axis to the front.
-            outward: 1 on the left side, -1 on the right, 0 in the middle.
-            under_c: [degC] surface temperature of the shirt under an open jacket.
+    Attributes:
+        part: name of the part without its side.
+        garment: the garment that covers it.
+        cloth_c, skin_c, air_c: [degC] mean temperature of its surface, of the skin beneath, and of the air.
+        half_depth_m: [m] of the part, from its axis to the front.
+        outward: 1 on the left side, -1 on the right, 0 in the middle.
+        under_c: [degC] surface temperature of the shirt under an open jacket.
     """
 
     part: str
@@ -129,11 +129,11 @@ def _surface(mesh: Mesh, worn: Worn) -> _Surface:
 def add_trimmings(paint: Paint, worn: Worn, traits: Traits, name: str) -> None:
     """Add details to clothes: an open front or buttons, a neckline, a belt, a telephone, straps, sweat.
 
-        Args:
-    paint: the paint of the cloth.
-            worn: the garment.
-            traits: the traits of the person.
-            name: name of the garment.
+    Args:
+        paint: the paint of the cloth.
+        worn: the garment.
+        traits: the traits of the person.
+        name: name of the garment.
     """
     at = _surface(paint.mesh, worn)
     if worn.part in ("chest", "abdomen"):

@@ -185,10 +185,10 @@ def dress(clothes: Clothes, rng: np.random.Generator) -> dict[str, Material]:
     """Return the material of every part of a person.
 
         People differ: each person's skin and each garment is up to half a kelvin warmer or cooler than the
-        catalogue says, and complexions differ.
+    catalogue says, and complexions differ.
 
-        Returns:
-    Material by part name.
+    Returns:
+        Material by part name.
     """
     skin_c = float(rng.uniform(-0.5, 0.5))
     complexion = tuple(float(c) for c in np.array(COLOURS["skin"]) * rng.uniform(0.35, 1.25))

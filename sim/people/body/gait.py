@@ -28,7 +28,7 @@ _FULL_SPEED_M_S = 1.1  # speed at which a leg as long as the clip's makes the cl
 def amplitude_of(speed_m_s: float, root_scale: float) -> float:
     """Return the stride length relative to the clip's at a walking speed.
 
-        `root_scale` is the root of the leg length relative to the clip's.
+    `root_scale` is the root of the leg length relative to the clip's.
 
     The amplitude grows with the root of speed, as cadence does.
     """
