@@ -1,1 +1,1 @@
-"""Where to look: what a person looks like, learned from one box, and where in an image that is."""
+"""Visual attention: learn a person's appearance from one box, and find the person in images."""

@@ -1,4 +1,4 @@
-"""Learning a person from its box, and looking for it in an image: the focus of attention."""
+"""Focus of attention: learn a person from a box, and locate the person in an image."""
 
 from __future__ import annotations
 
@@ -28,22 +28,22 @@ from peopleboy.tracker.track import Box
 Doubles = NDArray[np.float64]
 
 STEP_CELLS: Final = 2
-"""Cells from one place that is looked at to the next."""
+"""Step between tested positions, in cells."""
 
 _COLOUR_BIAS: Final = 1.0
-"""Logarithm of the ratio of colours that is one half when negative; chosen on seeds 100 to 102."""
+"""Scale of the logarithmic colour ratio: at its negative the score is one half; chosen on seeds 100 to 102."""
 
-_WIDTH: Final = 0.3  # of a box that is given, in its heights
-_BESIDE: Final = 0.25  # heights within which two heads are one
+_WIDTH: Final = 0.3  # of a given box, in its heights
+_BESIDE: Final = 0.25  # heights within which two heads count as one
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PersonModel:
-    """A person as it looked: its parts, and how tall it appeared.
+    """Appearance model of a person: the parts, and the apparent height.
 
     Attributes:
         height: [px] from head to feet.
-        parts: each with what is known of it.
+        parts: models of the parts.
     """
 
     height: float
@@ -52,12 +52,12 @@ class PersonModel:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PartScores:
-    """How much each place looks like one part; all (rows, columns), of the scale that the focus has.
+    """Similarity of each position to one part; all (rows, columns), at the scale of the focus.
 
     Attributes:
-        features: R, or the likeness of the maps.
-        patterns: LA; None if patterns are not looked at.
-        colour: mean logarithm of the ratio of colours; None if it is not looked at.
+        features: R, the similarity of the maps.
+        patterns: LA; None if patterns are not used.
+        colour: mean logarithm of the colour ratio; None if colours are not used.
     """
 
     features: Doubles | None
@@ -67,15 +67,15 @@ class PartScores:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Focus:
-    """Where a person is most likely.
+    """The most likely position of a person.
 
     Attributes:
         box: left, top, width, height [px] from head to feet.
-        score: 0..1, of the best place.
-        second: the same of the best one that is not beside it.
-        second_box: where that is.
-        scores: (rows, columns) of every place at which the head's middle can be, `STEP_CELLS` apart.
-        parts: what they are made of.
+        score: 0..1, of the best position.
+        second: score of the best position not next to it.
+        second_box: box at that position.
+        scores: (rows, columns) at every position of the head's middle, `STEP_CELLS` apart.
+        parts: contributions to the scores.
     """
 
     box: Box
@@ -98,13 +98,13 @@ def middle_of(box: Box) -> tuple[float, float]:
 
 
 def learn(sight: ImageSums, box: Box, config: AttentionConfig, near: Mask | None = None) -> PersonModel:
-    """Learn a person from its box.
+    """Learn a person from a box.
 
     Args:
         sight: the image.
         box: left, top, width, height [px] from head to feet.
-        config: what is looked at.
-        near: (H, W) pixels that are not behind the person; None if that is not known.
+        config: features to use.
+        near: (H, W) pixels not behind the person; None if unknown.
 
     Raises:
         BadInput: head or torso are not inside the image.
@@ -118,10 +118,10 @@ def learn(sight: ImageSums, box: Box, config: AttentionConfig, near: Mask | None
 
 
 def search(sight: ImageSums, model: PersonModel, config: AttentionConfig) -> Focus:
-    """Find where a person is most likely.
+    """Return the most likely position of a person.
 
-    The source multiplies the torso's score at the head's place by the head's at the torso's (equation 5.17);
-    here each is taken at its own place.
+    The source multiplies the torso's score at the head's position by the head's score at the torso's position
+    (equation 5.17); here each score is taken at its own position.
 
     Source: situation-awareness thesis, sections 5.4 and 5.5.
     """
@@ -137,7 +137,7 @@ def search(sight: ImageSums, model: PersonModel, config: AttentionConfig) -> Foc
 
 
 def relearn(model: PersonModel, sight: ImageSums, focus: Focus, config: AttentionConfig) -> PersonModel:
-    """Take in a little of what the person looks like now, if it is likely that it is this one.
+    """Update the model slightly with the current appearance, if the person is likely to be the right one.
 
     Source: situation-awareness thesis, section 5.4.
     """
@@ -203,7 +203,7 @@ def _attention(sight: ImageSums, known: PartModel, config: AttentionConfig) -> D
 
 
 def _together(parts: list[PartScores], model: PersonModel) -> Doubles:
-    """Multiply what all parts say by how likely their colours are the person's."""
+    """Multiply the scores of all parts, weighted by their colours."""
     kinds = [[kind for kind in (one.features, one.patterns) if kind is not None] for one in parts]
     total = np.prod([np.mean(kind, axis=0) for kind in kinds if kind], axis=0)
     colours = [one.colour for one in parts if one.colour is not None]
@@ -222,7 +222,7 @@ def _box_at(scores: Doubles, height: float) -> tuple[Box, tuple[int, int]]:
 
 
 def _blank(scores: Doubles, place: tuple[int, int], box: Box) -> None:
-    """Take out the places at which the heads of who stands at a place can be."""
+    """Mask out the positions of a head that belong to the person at a position."""
     reach = math.ceil(_BESIDE * box[3] / (STEP_CELLS * CELL_PX))
     row, column = place
     scores[max(row - reach, 0) : row + reach + 1, max(column - reach, 0) : column + reach + 1] = 0.0

@@ -1,4 +1,4 @@
-"""Scores of boxes of one size at many places, each from four sums."""
+"""Scores of boxes of one size at many positions, each from four sums of an integral image."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from peopleboy.tracker.attention.feature_maps import CELL_PX
 Doubles = NDArray[np.float64]
 
 MOST: float = 9.0
-"""Squared difference, in spreads, from which on a feature is no worse."""
+"""Squared difference, in standard deviations, at which the score saturates."""
 
 
 @njit(cache=True, nogil=True)
 def box_means(sums: Doubles, row: int, column: int, height: int, width: int) -> Doubles:
-    """Return the means (C,) over a box of what an integral image (rows + 1, columns + 1, C) was made of."""
+    """Return the means (C,) over a box from an integral image (rows + 1, columns + 1, C)."""
     low, right = row + height, column + width
     count = np.float64(height * width)
     total = sums[low, right] - sums[row, right] - sums[low, column] + sums[row, column]
@@ -26,7 +26,7 @@ def box_means(sums: Doubles, row: int, column: int, height: int, width: int) -> 
 
 @njit(cache=True, nogil=True)
 def spreads(sums: Doubles, height: int, width: int, step: int) -> Doubles:
-    """Return the standard deviations (C,) of the means of all boxes of one size, every so many cells."""
+    """Return the standard deviations (C,) of the means of all boxes of one size, on a grid of positions."""
     count = 0
     first, second = np.zeros(sums.shape[2]), np.zeros(sums.shape[2])
     for row in range(0, sums.shape[0] - height, step):
@@ -53,7 +53,7 @@ def likenesses(
     """Compare features (C,) of boxes of one size, at all rows (R,) and columns (L,), with learned ones.
 
     Returns:
-        (R, L) 1 for the same, near 0 for others; 0 for boxes that are not inside.
+        (R, L) 1 for equal features, near 0 for different ones; 0 for boxes that are not inside.
     """
     height, width = size
     found = np.zeros((len(rows), len(columns)))
@@ -81,7 +81,7 @@ def likenesses(
 def mean_scores(
     sums: Doubles, rows: NDArray[np.int64], columns: NDArray[np.int64], size: tuple[int, int]
 ) -> Doubles:
-    """Give the means (R, C) over boxes of an integral image (rows + 1, columns + 1); 0 for those outside."""
+    """Return the means (R, C) over boxes of an integral image (rows + 1, columns + 1); 0 for outside boxes."""
     height, width = size
     found = np.zeros((len(rows), len(columns)))
     for i in range(len(rows)):
@@ -105,7 +105,7 @@ def pattern_scores(
     learned: NDArray[np.float32],
     weight: NDArray[np.float32],
 ) -> Doubles:
-    """Return LA (R, C) of equation 5.13 for boxes; 0 for those that are not inside.
+    """Return LA (R, C) of equation 5.13 for boxes; 0 for boxes that are not inside.
 
     The source subtracts an image position; its sum goes over the bins.
     """

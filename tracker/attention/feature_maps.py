@@ -1,4 +1,4 @@
-"""The maps in which a person is described, and looked for."""
+"""Feature maps in which people are described and located."""
 
 from __future__ import annotations
 
@@ -36,19 +36,19 @@ BASIC_NAMES: Final = (
 _KERNEL_PX: Final = 11
 _SIGMA_PX: Final = 2.5
 _WAVE_PX: Final = 6.0
-_DARKEST: Final = 0.1  # intensity below which colours are not raised any more
+_DARKEST: Final = 0.1  # intensity below which colours are not amplified
 
 
 def basic_maps(image: NDArray[np.uint8], *, inhibits: bool) -> Floats:
     """Return the maps (H, W, 10), in the order of `BASIC_NAMES`, of an image (H, W, 3).
 
-    Colours are those of the image over its intensity, those of orientation magnitudes of Gabor filters.
+    Colour maps are divided by the intensity; orientation maps are magnitudes of Gabor filters.
 
     Args:
         image: RGB.
-        inhibits: whether neighbours inhibit each other.
+        inhibits: whether neighbouring maps inhibit each other.
 
-    Source: situation-awareness thesis, section 5.2, which names no filters.
+    Source: situation-awareness thesis, section 5.2, which does not specify the filters.
     """
     maps = np.empty((*image.shape[:2], 10), np.float32)
     _fill_colours(image, maps)
@@ -79,7 +79,7 @@ def _fill_colours(image: NDArray[np.uint8], maps: Floats) -> None:
 def _gabor_kernels() -> tuple[Floats, ...]:
     """Make filters of mean 0 and gain 1 for lines at 0, 45, 90 and 135 degrees from the row."""
     kernels = []
-    for turn in (90.0, 45.0, 0.0, 135.0):  # OpenCV counts that of the wave, and rows downwards
+    for turn in (90.0, 45.0, 0.0, 135.0):  # OpenCV uses the angle of the wave, and rows point downwards
         size = (_KERNEL_PX, _KERNEL_PX)
         kernel = cv2.getGaborKernel(size, _SIGMA_PX, np.deg2rad(turn), _WAVE_PX, 1.0, 0.0)
         kernel -= kernel.mean()
@@ -88,10 +88,10 @@ def _gabor_kernels() -> tuple[Floats, ...]:
 
 
 def _inhibited(maps: Floats) -> Floats:
-    """Raise each map by what its neighbours have less: C + n C - sum C_j, at least 0 (equation 5.1).
+    """Apply lateral inhibition between maps: C + n C - sum C_j, at least 0 (equation 5.1).
 
-    Neighbours of a colour are those beside it on the circle red, yellow, green, blue, of an orientation the
-    two next to it, of bright dark. The source does not say that nothing goes below 0; we do.
+    Neighbours of a colour are the adjacent ones on the circle red, yellow, green, blue; of an orientation the
+    two adjacent ones; of bright, dark. The lower limit of 0 is not in the source.
     """
     result = np.empty_like(maps)
     for part in (COLOURS, ORIENTATIONS):
@@ -103,7 +103,7 @@ def _inhibited(maps: Floats) -> Floats:
 
 
 CELL_PX: Final = 2
-"""Side of a cell of the maps; more than half of the time goes by otherwise, for nothing."""
+"""Size of a cell of the maps [px]; full resolution would more than double the time without a benefit."""
 
 PLAIN: Final = slice(0, 10)
 SURROUND: Final = slice(10, 20)
@@ -115,19 +115,19 @@ NAMES: Final = (
     "orientation",
     "intensity",
 )
-"""Of the 23 maps; the local binary patterns are the 24th, and no map that can be added to others."""
+"""Names of the 23 maps; the local binary patterns are the 24th, which cannot be added to others."""
 
 LEVELS: Final = 6
 _SURROUND_PX: Final = 7
 _PEAK_PX: Final = 7
-_PEAK: Final = 0.5  # share of a map's maximum from which on a peak counts
+_PEAK: Final = 0.5  # share of a map's maximum from which a peak counts
 _OPPONENTS: Final = ((0, 2), (3, 1), (8, 9))  # red and green, blue and yellow, bright and dark
 
 
 def feature_maps(image: NDArray[np.uint8], config: AttentionConfig) -> Floats:
     """Return the maps (H / 2, W / 2, 23) of an image (H, W, 3), in the order of `NAMES`.
 
-    Those with centre-surround are 0 where nobody asks for them.
+    Maps with centre-surround are 0 unless requested.
 
     Source: situation-awareness thesis, section 5.2.
     """
@@ -144,7 +144,7 @@ def feature_maps(image: NDArray[np.uint8], config: AttentionConfig) -> Floats:
 
 
 def in_use(config: AttentionConfig) -> NDArray[np.bool_]:
-    """Return which of the maps (23,) a configuration looks at."""
+    """Return which of the maps (23,) a configuration uses."""
     used = np.zeros(len(NAMES), np.bool_)
     used[PLAIN] = config.plain
     used[SURROUND] = used[SUMS] = config.surround
@@ -152,10 +152,10 @@ def in_use(config: AttentionConfig) -> NDArray[np.bool_]:
 
 
 def _centre_surround(basic: Floats) -> Floats:
-    """Add up, over the levels of a pyramid, by how much a map is above its surroundings.
+    """Sum, over the levels of a pyramid, the amount by which a map exceeds its surroundings.
 
-    The surroundings of red are those of green, and so on: the difference of the two is compared with its
-    mean, as only then nothing is left of an even area, as the text says. Orientations have no opposite.
+    The surround of red is that of green, and so on: the difference of the two is compared with its mean,
+    because only then uniform areas vanish, as the text says. Orientations have no opposite.
     """
     level = _opponents(basic)
     sides = []
@@ -169,13 +169,13 @@ def _centre_surround(basic: Floats) -> Floats:
 
 
 def _opponents(basic: Floats) -> Floats:
-    """Return the three differences of opposites, and the orientations (H, W, 7)."""
+    """Return the three opponent differences and the orientations (H, W, 7)."""
     pairs = [basic[:, :, one] - basic[:, :, other] for one, other in _OPPONENTS]
     return np.dstack([*pairs, basic[:, :, ORIENTATIONS]])
 
 
 def _both_ways(side: Floats) -> Floats:
-    """Part differences (H, W, 7) into what is above 0 and below it, in the order of the basic maps."""
+    """Split differences (H, W, 7) into positive and negative parts, in the order of the basic maps."""
     maps = np.empty((*side.shape[:2], len(BASIC_NAMES)), np.float32)
     for number, (one, other) in enumerate(_OPPONENTS):
         maps[:, :, one] = np.maximum(side[:, :, number], 0.0)
@@ -185,13 +185,13 @@ def _both_ways(side: Floats) -> Floats:
 
 
 def _resized(maps: Floats, size: tuple[int, int], way: int) -> Floats:
-    """Resize maps (H, W, C) of which OpenCV takes four at a time."""
+    """Resize maps (H, W, C), four channels at a time, the limit of OpenCV."""
     parts = [maps[:, :, k : k + 4] for k in range(0, maps.shape[2], 4)]
     return np.dstack([cv2.resize(part, size, interpolation=way) for part in parts])
 
 
 def _by_peaks(maps: Floats) -> Floats:
-    """Divide maps by the root of how many peaks they have (equation 5.3), of half their maximum or more."""
+    """Divide maps by the root of their number of peaks of at least half their maximum (equation 5.3)."""
     size = (maps.shape[1] // 2, maps.shape[0] // 2)
     kernel = np.ones((_PEAK_PX, _PEAK_PX), np.uint8)
     result = np.empty_like(maps)

@@ -1,4 +1,4 @@
-"""An image made ready to be looked at: sums over any box of its maps, its patterns and its colours."""
+"""Integral images of a picture's feature maps, patterns and colours."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.attention.attention_config import AttentionConfig
 from peopleboy.tracker.attention.feature_maps import CELL_PX, Floats, feature_maps
 
-# Local binary patterns: which of a pixel's neighbours are brighter than it is.
+# Local binary patterns: which neighbours of a pixel are brighter than the pixel.
 
 BINS: Final = 59
-"""58 uniform patterns, in which the ring changes at most twice, and one bin for all others."""
+"""58 uniform patterns, with at most two transitions around the ring, and one bin for all others."""
 
 
 def _uniform_bins() -> NDArray[np.uint8]:
@@ -33,9 +33,9 @@ _BIN_OF: Final = _uniform_bins()
 
 
 def patterns(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Return the bin of the pattern at each pixel (H, W) of an image (H, W, 3); of even areas at the border.
+    """Return the pattern's bin at each pixel (H, W) of an image (H, W, 3); the border counts as uniform.
 
-    Source: situation-awareness thesis, section 5.2, which says no more than "uniform".
+    Source: situation-awareness thesis, section 5.2, which only says "uniform".
     """
     grey = image.astype(np.int16).sum(axis=2)
     return np.asarray(_patterns(grey, _BIN_OF))
@@ -63,21 +63,21 @@ def _patterns(grey: NDArray[np.int16], bin_of: NDArray[np.uint8]) -> NDArray[np.
 
 
 COLOUR_BINS: Final = 512
-"""Eight steps of each of red, green and blue."""
+"""Eight levels each of red, green and blue."""
 
 _LEAST_PX: Final = 16
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ImageSums:
-    """An image in cells of two by two pixels.
+    """Features of an image in cells of two by two pixels.
 
     Attributes:
         image: (H, W, 3) RGB.
-        maps: (rows, columns, 23) of the features; None if they are not looked at.
-        map_sums: (rows + 1, columns + 1, 23) integral of that; None likewise.
-        pattern_sums: (rows + 1, columns + 1, 59) integral of how often each pattern occurs; None likewise.
-        colours: (H, W) the bin of each pixel's colour.
+        maps: (rows, columns, 23) feature maps; None if not used.
+        map_sums: (rows + 1, columns + 1, 23) their integral images; None if not used.
+        pattern_sums: (rows + 1, columns + 1, 59) integral images of the patterns; None if not used.
+        colours: (H, W) colour bin of each pixel.
     """
 
     image: NDArray[np.uint8]
@@ -88,10 +88,10 @@ class ImageSums:
 
     @classmethod
     def of(cls, image: NDArray[np.uint8], config: AttentionConfig) -> ImageSums:
-        """Prepare an image.
+        """Compute the features of an image.
 
         Raises:
-            BadInput: it is no (H, W, 3) uint8 image, or too small to hold anything.
+            BadInput: not an (H, W, 3) uint8 image, or too small.
         """
         check_image(image)
         maps = feature_maps(image, config) if config.maps and (config.plain or config.surround) else None
@@ -110,10 +110,10 @@ class ImageSums:
 
 
 def check_image(image: object) -> None:
-    """Refuse what is no colour image.
+    """Refuse invalid colour images.
 
     Raises:
-        BadInput: it is none.
+        BadInput: the image is invalid.
     """
     rule = f"attention: image must be (H, W, 3) uint8, at least {_LEAST_PX} px each way"
     if not isinstance(image, np.ndarray):
@@ -125,7 +125,7 @@ def check_image(image: object) -> None:
 
 @njit(cache=True, nogil=True)
 def colour_bins(image: NDArray[np.uint8]) -> NDArray[np.uint16]:
-    """Return the bin (H, W) of each colour of an image (H, W, 3)."""
+    """Return the colour bins (H, W) of an image (H, W, 3)."""
     bins = np.empty(image.shape[:2], np.uint16)
     for v in range(image.shape[0]):
         for u in range(image.shape[1]):

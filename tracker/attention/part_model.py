@@ -1,4 +1,4 @@
-"""What is learned of one part of a person, from one box in one image."""
+"""Appearance model of one part of a person, learned from one box in one image."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from peopleboy.tracker.attention.feature_maps import CELL_PX
 from peopleboy.tracker.attention.image_sums import COLOUR_BINS, ImageSums
 from peopleboy.tracker.track import Box
 
-# The two boxes that a person is known by: the head, and the torso at a fixed place below it.
+# The two parts of a person: the head, and the torso at a fixed position below it.
 
 LEAST_CELLS: Final = 2
-"""Side of a part below which nothing can be learned of it."""
+"""Least side of a part, in cells, for learning."""
 
 
 @dataclass(frozen=True, slots=True)
 class ModelPart:
-    """Where a part is in a box from head to feet; all in the box's heights, from the middle of its top.
+    """Position of a part in a box from head to feet, in the box's heights, from the middle of its top.
 
     Attributes:
-        top: its upper border.
-        width, height: its size.
+        top: upper border.
+        width, height: size.
     """
 
     top: float
@@ -41,7 +41,7 @@ TORSO: Final = ModelPart(top=0.18, width=0.185, height=0.30)
 
 @dataclass(frozen=True, slots=True)
 class Cells:
-    """A rectangle of cells, `row` and `column` being those of its upper left one."""
+    """A rectangle of cells; `row` and `column` are those of its upper left cell."""
 
     row: int
     column: int
@@ -49,7 +49,7 @@ class Cells:
     width: int
 
     def is_inside(self, rows: int, columns: int) -> bool:
-        """Return whether all of it is inside an image of so many cells."""
+        """Return whether all of it is inside an image of this many cells."""
         return (
             min(self.row, self.column) >= 0
             and self.row + self.height <= rows
@@ -61,9 +61,9 @@ def cells_of(part: ModelPart, box: Box, scale: float = 1.0) -> Cells:
     """Return the cells of a part of a person with this box [px] from head to feet.
 
     Args:
-        part: which one.
-        box: left, top, width, height; its width does not count.
-        scale: by how much the person is larger, about the middle of the upper border.
+        part: of the person.
+        box: left, top, width, height; the width is ignored.
+        scale: magnification about the middle of the upper border.
     """
     left, top, width, height = box
     tall = height * scale
@@ -80,7 +80,7 @@ def check_box(box: Box, shape: tuple[int, ...]) -> None:
     """Refuse a box whose head or torso is outside an image of this shape.
 
     Raises:
-        BadInput: they are not, or the box is none.
+        BadInput: head or torso are outside, or the box is invalid.
     """
     rows, columns = shape[0] // CELL_PX, shape[1] // CELL_PX
     is_box = len(box) == 4 and all(abs(number) < 1e6 for number in box) and box[2] > 0 and box[3] > 0
@@ -96,24 +96,24 @@ Singles = NDArray[np.float32]
 Mask = NDArray[np.bool_]
 
 _STEP_CELLS: Final = 2
-_RAREST: Final = 1e-3  # share of a pattern in the rest of the image that is believed
-_RARE_PX: Final = 2.0  # of each colour that are taken to be in the box and in the rest as in the whole image
-_MOST_RATIO: Final = 4.0  # of the logarithm of the ratio of colours
+_RAREST: Final = 1e-3  # least share of a pattern in the rest of the image, as a floor of the ratio
+_RARE_PX: Final = 2.0  # prior pixels of each colour in the box and in the rest, as in the whole image
+_MOST_RATIO: Final = 4.0  # limit of the logarithmic colour ratio
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PartModel:
-    """A part as it looked.
+    """Appearance model of a part.
 
     Attributes:
-        mean: (23,) of the maps in the box; none if maps are not looked at.
-        spread: (23,) of such means over all boxes of the image it was learned in.
-        excites: (23,) how much of each map the box has (equation 5.4).
-        inhibits: (23,) how much the rest has (equation 5.5).
-        patterns: (59,) shares of the patterns in the box.
-        pattern_weight: (59,) the same over those in the rest (equation 5.8).
-        colours: (512,) shares of the colours in the box.
-        colour_ratio: (512,) logarithm of the same over those in the rest.
+        mean: (23,) of the maps in the box; empty if maps are not used.
+        spread: (23,) standard deviation of such means over all boxes of the training image.
+        excites: (23,) amount of each map in the box (equation 5.4).
+        inhibits: (23,) amount in the rest (equation 5.5).
+        patterns: (59,) pattern histogram of the box.
+        pattern_weight: (59,) its ratio to that of the rest (equation 5.8).
+        colours: (512,) colour histogram of the box.
+        colour_ratio: (512,) logarithm of its ratio to that of the rest.
     """
 
     mean: Doubles
@@ -133,10 +133,9 @@ class PartModel:
 
         Args:
             sight: the image.
-            cells: the box, all of which is inside.
-            config: what is looked at.
-            near: (H, W) pixels that are not behind the person; those of the box that are no part of it.
-                None if that is not known.
+            cells: the box, entirely inside the image.
+            config: features to use.
+            near: (H, W) pixels not behind the person; the box's other pixels are background. None if unknown.
         """
         empty = np.zeros(0)
         mean = spread = excites = inhibits = empty
@@ -151,9 +150,9 @@ class PartModel:
         return cls(mean, spread, excites, inhibits, patterns, weight, colours, ratio)
 
     def updated(self, new: PartModel, rate: float) -> PartModel:
-        """Take in a share of what was learned anew.
+        """Return the model blended with a newer one.
 
-        The source's equations 5.15 and 5.16 print the rate, which is "very small", on what is old.
+        The source's equations 5.15 and 5.16 print the "very small" rate as the weight of the old model.
         """
         mixed = {
             name: (1.0 - rate) * getattr(self, name) + rate * getattr(new, name)
@@ -167,10 +166,10 @@ class PartModel:
 def _shares(
     sight: ImageSums, cells: Cells, config: AttentionConfig, near: Mask | None
 ) -> tuple[Doubles, Doubles]:
-    """Return how much of each map the box has, and the rest (equations 5.4 to 5.6).
+    """Return the amounts of each map in the box and in the rest (equations 5.4 to 5.6).
 
-    Sums over a box that is smaller than half of the image make nearly every feature speak against it; hence
-    the means.
+    Sums over a box smaller than half of the image make nearly every feature speak against it; hence the
+    means.
     """
     assert sight.maps is not None
     inside = np.zeros(sight.maps.shape[:2], np.bool_)
@@ -190,7 +189,7 @@ def _shares(
 
 
 def _patterns(sums: Singles, cells: Cells) -> tuple[Singles, Singles]:
-    """Return the shares of the patterns in a box, and their ratio to those in the rest (equation 5.8)."""
+    """Return the pattern histogram of a box, and its ratio to that of the rest (equation 5.8)."""
     low, right = cells.row + cells.height, cells.column + cells.width
     box = sums[low, right] - sums[cells.row, right] - sums[low, cells.column] + sums[cells.row, cells.column]
     rest = sums[-1, -1] - box
@@ -199,7 +198,7 @@ def _patterns(sums: Singles, cells: Cells) -> tuple[Singles, Singles]:
 
 
 def _colours(sight: ImageSums, cells: Cells, near: Mask | None) -> tuple[Doubles, Doubles]:
-    """Return the shares of the colours in a box, and the logarithm of their ratio to those in the rest."""
+    """Return the colour histogram of a box, and the logarithm of its ratio to that of the rest."""
     rows = slice(CELL_PX * cells.row, CELL_PX * (cells.row + cells.height))
     columns = slice(CELL_PX * cells.column, CELL_PX * (cells.column + cells.width))
     found = sight.colours[rows, columns]

@@ -1,1 +1,1 @@
-"""Tracking people all round the robot with a panoramic camera."""
+"""Trackers for 360-degree panoramic cameras."""

@@ -1,4 +1,4 @@
-"""What a pixel has looked like without people: a background that goes along with the robot."""
+"""Background model of the panorama: the appearance of each pixel without people, moving with the robot."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ Triple = tuple[float, float, float]
 
 CHANNELS: Final = 6
 VARIANCE, AGE, DOUBT = 3, 4, 5
-"""Planes of a memory after red, green and blue [grey levels]: their variance [grey levels squared], for how
-long it has been seen [s], and by how many columns it may lie wrong if it is no floor [px]."""
+"""Planes after red, green and blue [grey levels]: their variance [grey levels squared], the age [s], and the
+possible displacement in columns of surfaces other than the floor [px]."""
 
 FIRST_VARIANCE: Final = 16.0
 LEAST_VARIANCE: Final = 2.0
-_TAU_S: Final = 2.0  # a background that is seen adapts within this time,
+_TAU_S: Final = 2.0  # time constant of the background where it is visible,
 _VARIANCE_TAU_S: Final = 8.0
-_ABSORB_TAU_S: Final = 40.0  # and one that people seem to hide within this.
+_ABSORB_TAU_S: Final = 40.0  # and where people seem to occlude it.
 _OLDEST_S: Final = 60.0
 _UNLIKE_FROM, _UNLIKE_TO = 0.8, 2.1  # two standard deviations, and eight
 
 
 def first_memory(image: NDArray[np.uint8]) -> Linear:
-    """Begin with an RGB image (H, W, 3), which may show people: (6, H, W) memory of age 0."""
+    """Make the memory (6, H, W) from an RGB image (H, W, 3), which may show people; its age is 0."""
     memory = np.zeros((CHANNELS, *image.shape[:2]), np.float32)
     memory[:VARIANCE] = image.transpose(2, 0, 1)
     memory[VARIANCE] = FIRST_VARIANCE
@@ -41,9 +41,9 @@ def first_memory(image: NDArray[np.uint8]) -> Linear:
 
 
 def move_along(memory: Linear, odometry: Odometry, floor: FloorRows) -> Linear:
-    """Bring a memory (6, H, W) to where the robot is now, as if all it shows were floor.
+    """Warp a memory (6, H, W) by the robot's motion, as if all surfaces were floor.
 
-    What was not in the image before has age 0. Turning shifts columns, whatever they show.
+    Areas that were outside the image get age 0. A rotation shifts columns of all surfaces alike.
     """
     way, row = (odometry.advance_m, odometry.aside_m), (floor.horizon, floor.slope, floor.offset_m)
     return _moved(memory, way, odometry.turn_rad, floor.distance_m, row)
@@ -79,7 +79,7 @@ def _moved(memory: Linear, by_m: Pair, turn: float, distance: Linear, row_of: Tr
 def _look_up(
     columns: Linear, rows: Linear, distance: np.float32, along: Linear, across: Linear, row_of: Triple
 ) -> None:
-    """Return by how many columns (W,) more the floor of a row lay aside, and in which rows (W,)."""
+    """Return the column shifts (W,) of the floor in a row, and the source rows (W,)."""
     per_rad = np.float32(len(columns) / math.tau)
     a, b, c = np.float32(row_of[0]), np.float32(row_of[1]), np.float32(row_of[2])
     for u in range(len(columns)):
@@ -92,7 +92,7 @@ def _look_up(
 
 @njit(cache=True, fastmath=True, error_model="numpy")
 def _find(columns: Linear, rows: Linear, height: int, corners: NDArray[np.uint32], shares: Linear) -> None:
-    """Return which four pixels (4, W) of a plane places lie between, and how far right and low (2, W)."""
+    """Return the four neighbouring pixels (4, W) of positions in a plane, and the fractions (2, W)."""
     width = len(columns)
     wide, bottom = np.float32(width), np.float32(height - 1)
     for u in range(width):
@@ -110,7 +110,7 @@ def _find(columns: Linear, rows: Linear, height: int, corners: NDArray[np.uint32
 
 @njit(cache=True, fastmath=True, error_model="numpy")
 def _interpolate(memory: Linear, corners: NDArray[np.uint32], shares: Linear, moved: Linear, v: int) -> None:
-    """Read all planes between pixels, and put that into line v."""
+    """Interpolate all planes between pixels into line v."""
     top_left, top_right, low_left, low_right = corners[0], corners[1], corners[2], corners[3]
     right, low = shares[0], shares[1]
     flat, plane = memory.reshape(-1), np.uint64(memory.shape[1] * memory.shape[2])
@@ -126,18 +126,17 @@ def _interpolate(memory: Linear, corners: NDArray[np.uint32], shares: Linear, mo
 
 @njit(cache=True, fastmath=True, error_model="numpy")
 def compare(image: NDArray[np.uint8], memory: Linear) -> tuple[Linear, Linear]:
-    """Return for each pixel of an image (H, W, 3) what it looks like, and how its memory does.
+    """Return features of each pixel of an image (H, W, 3) and of its memory.
 
-    These are its colour, by how many standard deviations it differs from the memory (their logarithm), and
-    the memory's age and doubt. To a pixel's own variance is added what its background's slope makes of a
-    third of a pixel. Its doubt does not widen that: floor lies right, and the network decides
-    whether it is floor.
+    They are its colour, its difference from the memory in standard deviations (logarithm), and the memory's
+    age and doubt. The pixel's variance includes the effect of the background's gradient over a third of a
+    pixel. The doubt is not included: floor is aligned, and the network decides whether it is floor.
 
     Returns:
-        squares: (BLOCK * BLOCK * 6, H / BLOCK, W / BLOCK) these features by squares of pixels, a square's row
-            by row.
-        novelty: (H, W) how unlike its background each pixel is, 0..1. It is 0 within two standard deviations,
-            and 1 from eight on, or less where the background is young.
+        squares: (BLOCK * BLOCK * 6, H / BLOCK, W / BLOCK) features by squares of pixels, row by row within a
+            square.
+        novelty: (H, W) difference of each pixel from the background, 0..1. It is 0 within two standard
+            deviations, and 1 from eight on, or less where the background is young.
     """
     _, height, width = memory.shape
     squares = np.empty((BLOCK * BLOCK * CHANNELS, height // BLOCK, width // BLOCK), np.float32)
@@ -162,7 +161,7 @@ def compare(image: NDArray[np.uint8], memory: Linear) -> tuple[Linear, Linear]:
 
 @njit(cache=True, fastmath=True)
 def _split(line: NDArray[np.uint8], colours: Linear) -> None:
-    """Bring a line of pixels (W, 3) apart by colours (3, W)."""
+    """Separate a line of pixels (W, 3) by colours (3, W)."""
     red, green, blue = colours[0], colours[1], colours[2]
     pixels, one = line.reshape(-1), np.uint64(1)
     for u in range(np.uint64(len(line))):
@@ -172,7 +171,7 @@ def _split(line: NDArray[np.uint8], colours: Linear) -> None:
 
 @njit(cache=True, fastmath=False)
 def _close(line: Linear, ring: Linear) -> None:
-    """Copy a line (W,) and the pixel beyond each of its ends (W + 2,)."""
+    """Copy a line (W,) with one pixel beyond each end (W + 2,)."""
     width = len(line)
     ring[0], ring[width + 1] = line[width - 1], line[0]
     for u in range(width):
@@ -181,7 +180,7 @@ def _close(line: Linear, ring: Linear) -> None:
 
 @njit(cache=True, fastmath=True)
 def _cut(features: Linear, v: int, squares: Linear) -> None:
-    """Cut features (6, W) of line v to squares."""
+    """Write features (6, W) of line v into squares."""
     for channel in range(CHANNELS):
         feature = features[channel]
         first, row = v % BLOCK * BLOCK * CHANNELS + channel, v // BLOCK
@@ -197,7 +196,7 @@ def _cut(features: Linear, v: int, squares: Linear) -> None:
 def _differ(
     seen: Linear, ring: Linear, above: Linear, below: Linear, square: Linear, steep: Linear, feature: Linear
 ) -> None:
-    """Add up how a line's colour (W,) differs from what is known, a ring (W + 2), and how steep that is."""
+    """Sum the differences of a line's colour (W,) from the memory's (W + 2,), and its gradients."""
     left, middle, right = ring[:-2], ring[1:-1], ring[2:]
     for u in range(len(seen)):
         off = seen[u] - middle[u]
@@ -209,7 +208,7 @@ def _differ(
 
 @njit(cache=True, fastmath=True, error_model="numpy")
 def _judge(memory: Linear, v: int, square: Linear, steep: Linear, features: Linear, novelty: Linear) -> None:
-    """Judge the differences of line v by what is known of it: three features, and how new it is."""
+    """Convert the differences of line v to three features and the novelty, by the memory's variance."""
     variance, age, doubt = memory[VARIANCE, v], memory[AGE, v], memory[DOUBT, v]
     off, old, doubtful = features[0], features[1], features[2]
     one, low, wide = np.float32(1.0), np.float32(_UNLIKE_FROM), np.float32(_UNLIKE_TO - _UNLIKE_FROM)
@@ -222,10 +221,10 @@ def _judge(memory: Linear, v: int, square: Linear, steep: Linear, features: Line
 
 @njit(cache=True, fastmath=True)
 def learn(memory: Linear, image: NDArray[np.uint8], foreground: Linear, passed_s: float) -> None:
-    """Let a memory take in an image, the less the likelier a pixel is a person (H, W).
+    """Update the memory with an image, less where pixels are likely people (H, W).
 
-    Time is in seconds, so that the rate of images does not matter. What is new is taken over at once, and
-    a mean over all that was seen as long as it is younger than the time in which it adapts.
+    Rates are per second, so that the frame rate does not matter. New areas are copied at once, and young ones
+    hold the mean of all images so far.
     """
     _, height, width = memory.shape
     colours = np.empty((3, width), np.float32)
@@ -242,7 +241,7 @@ def learn(memory: Linear, image: NDArray[np.uint8], foreground: Linear, passed_s
 
 @njit(cache=True, fastmath=True, error_model="numpy")
 def _set_rates(foreground: Linear, age: Linear, passed_s: np.float32, clear: Linear, rate: Linear) -> None:
-    """Return how surely a line's pixels are no person, and what share of them is taken over."""
+    """Return the probabilities that a line's pixels are background, and their update rates."""
     one = np.float32(1.0)
     absorbed = np.float32(1.0 - math.exp(-passed_s / _ABSORB_TAU_S))
     least = np.float32(1.0 - math.exp(-passed_s / _TAU_S))
@@ -255,7 +254,7 @@ def _set_rates(foreground: Linear, age: Linear, passed_s: np.float32, clear: Lin
 
 @njit(cache=True, fastmath=True)
 def _approach(known: Linear, seen: Linear, rate: Linear, square: Linear) -> None:
-    """Bring what is known of a line's colour nearer to what is seen, and add up by how much it was off."""
+    """Update a line's colour, and sum the squared differences."""
     for u in range(len(known)):
         off = seen[u] - known[u]
         square[u] += off * off
@@ -266,7 +265,7 @@ def _approach(known: Linear, seen: Linear, rate: Linear, square: Linear) -> None
 def _grow_old(
     memory: Linear, v: int, square: Linear, clear: Linear, rate: Linear, passed_s: np.float32
 ) -> None:
-    """Bring variance, age and doubt of line v up to date."""
+    """Update variance, age and doubt of line v."""
     variance, age, doubt = memory[VARIANCE, v], memory[AGE, v], memory[DOUBT, v]
     one, steady = np.float32(1.0), np.float32(passed_s / _VARIANCE_TAU_S)
     least, oldest = np.float32(LEAST_VARIANCE), np.float32(_OLDEST_S)

@@ -1,4 +1,4 @@
-"""How the floor lies in the panorama: how far away the floor of a row is, and in which row a distance is."""
+"""Geometry of the floor in the panorama: distances of rows, and rows of distances."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _THREE_M: Final = np.array([1.0, 2.0, 5.0])
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FloorRows:
-    """The floor round the robot as the rows show it.
+    """Relation between image rows and distances on the floor.
 
-    Each column is a pinhole camera's, so that the row of what is d away is (a d + b) / (d + c).
+    Each column is a pinhole camera, so that the row of a floor point at distance d is (a d + b) / (d + c).
 
     Attributes:
-        distance_m: (H,) of the floor seen in the middle of each row [m], read-only; `FARTHEST_M` where there
-            is none.
-        horizon: a, the row of what is infinitely far away.
+        distance_m: (H,) floor distance at the middle of each row [m], read-only; `FARTHEST_M` above the
+            horizon.
+        horizon: a, the row of the horizon.
         slope: b [m].
         offset_m: c [m].
     """
@@ -38,7 +38,7 @@ class FloorRows:
 
 
 def floor_rows(calibration: Calibration, height: int) -> FloorRows:
-    """Return how the floor lies in the rows of a panorama with this calibration."""
+    """Return the floor geometry of a panorama with this calibration."""
     zero, one = np.zeros(3), np.ones(3)
     rows = calibration.project(np.stack([_THREE_M, zero, zero], axis=1))[:, 1]
     lines = np.stack([_THREE_M, one, -rows], axis=1)

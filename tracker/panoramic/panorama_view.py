@@ -1,4 +1,4 @@
-"""What distinguishes panoramic cameras: size of the image, height, and how low the rows look."""
+"""Properties that distinguish panoramic cameras: image size, height, and vertical angles of the rows."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _SAME_M, _SAME_DEG = 0.01, 0.1
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PanoramaView:
-    """A panoramic camera as a network knows it, which holds for no other mirror.
+    """A panoramic camera for which a network was trained; the network fits no other mirror.
 
     Attributes:
-        width_px, height_px: of the unrolled image.
-        centre_m: its optical centre above the floor [m].
-        depression_deg: how far below the horizon the top, the middle and the bottom row look [deg].
+        width_px, height_px: size of the unrolled image.
+        centre_m: height of the optical centre above the floor [m].
+        depression_deg: angles below the horizon of the top, the middle and the bottom row [deg].
     """
 
     width_px: int
@@ -31,11 +31,11 @@ class PanoramaView:
 
     @classmethod
     def of_plain(cls, plain: Mapping[str, Any]) -> PanoramaView:
-        """Make a view out of plain data, as `asdict` and JSON leave it."""
+        """Make a view from plain data, as written by `asdict` and JSON."""
         return cls(**{**plain, "depression_deg": tuple(plain["depression_deg"])})
 
     def refusal(self, other: PanoramaView) -> str:
-        """Say why what was learned with this camera does not hold for another; empty if it does."""
+        """Return why a network for this camera does not fit another one; empty if it fits."""
         if (self.width_px, self.height_px) != (other.width_px, other.height_px):
             return f"panorama is {other.size}, but the network was trained on {self.size}"
         appearance = np.subtract(self.depression_deg, other.depression_deg)
@@ -45,18 +45,18 @@ class PanoramaView:
 
     @property
     def size(self) -> str:
-        """Width and height in words."""
+        """Width and height as text."""
         return f"{self.width_px}x{self.height_px}"
 
     @property
     def mirror(self) -> str:
-        """What the mirror shows, in words."""
+        """Angles and height as text."""
         top, _, bottom = self.depression_deg
         return f"at {self.centre_m:.2f} m that looks {top:.1f} to {bottom:.1f} deg down"
 
 
 def view_of(calibration: Calibration, width_px: int, height_px: int) -> PanoramaView:
-    """Describe a camera by its calibration and the size of its image."""
+    """Return the view of a camera from its calibration and image size."""
     rows = np.array([0.0, (height_px - 1) / 2.0, height_px - 1.0])
     column = np.full(3, (width_px - 1) / 2.0)
     x, y, z = calibration.rays(np.stack([column, rows], axis=1)).T
@@ -72,12 +72,12 @@ def view_of(calibration: Calibration, width_px: int, height_px: int) -> Panorama
 def choose_view(
     trained: Sequence[PanoramaView], size: tuple[int, int], calibration: Calibration | None
 ) -> int:
-    """Return which of one or more views a camera has, by its images' (height, width) and its calibration.
+    """Return which of the views matches a camera, by image (height, width) and calibration.
 
-    Where that is unknown, the first one of that size will do.
+    Without a calibration the first view of that size is returned.
 
     Raises:
-        BadInput: none of them; no network was trained on this camera.
+        BadInput: none matches; no network was trained for this camera.
     """
     height, width = size
     whys = []

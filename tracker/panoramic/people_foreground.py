@@ -1,4 +1,4 @@
-"""Which pixels of the panorama are people, image after image."""
+"""Segmentation of people in panoramas, image after image."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from peopleboy.tracker.panoramic.panorama_view import PanoramaView, view_of
 Linear = NDArray[np.float32]
 
 _SHORTEST_S = 0.01
-_LEAST_WAY_M, _LEAST_TURN_RAD = 1e-3, 5e-4  # less is the noise of wheels that stand
+_LEAST_WAY_M, _LEAST_TURN_RAD = 1e-3, 5e-4  # smaller motions are noise of standing wheels
 
 MODEL: Final = "foreground"
 FILE: Final = "foreground.npz"
@@ -41,12 +41,12 @@ _SPECS: Final = {
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ForegroundModel:
-    """A network, and the camera whose images it was trained on.
+    """A network, and the camera of its training images.
 
     Attributes:
-        network: that separates people from background.
+        network: separates people from background.
         view: of the camera.
-        about: what it was trained on, for the reader of the file.
+        about: description of the training data, for readers of the file.
     """
 
     network: MaskNetwork
@@ -63,7 +63,7 @@ class ForegroundModel:
         """Read a model.
 
         Raises:
-            BadInput: the file cannot be read, or is no such model.
+            BadInput: the file cannot be read, or is not such a model.
         """
         archive = WeightsArchive.load(path, MODEL, _SPECS, PanoramaView.of_plain)
         network, view = MaskNetwork(**archive.arrays), archive.camera
@@ -75,20 +75,20 @@ class ForegroundModel:
 
 
 class Foreground:
-    """Separates people from background, on a robot that stands or drives.
+    """Separates people from background, on a standing or moving robot.
 
-    It works from the first image on, whoever is in it. A background that moves with the robot shows what
-    is new, and a network judges that by what it looks like; what it takes for people the background leaves
-    out.
+    It works from the first image on, even with people in it. A background model that moves with the robot
+    gives the novelty, and a network classifies pixels by it and by appearance. The background is not updated
+    with pixels classified as people.
 
     Attributes:
-        network: that judges.
-        squares: (INPUTS, H / BLOCK, W / BLOCK) what it knew of the last image.
-        novelty: (H, W) how unlike the background each pixel of that is, 0..1; less if that is young.
+        network: the classifier.
+        squares: (INPUTS, H / BLOCK, W / BLOCK) features of the last image.
+        novelty: (H, W) difference from the background, 0..1; lower where the background is young.
     """
 
     def __init__(self, model: ForegroundModel | None = None) -> None:
-        """Begin, with the network that comes with the tracker if no other is given."""
+        """Make one with the shipped network, unless another one is given."""
         model = shipped_foreground() if model is None else model
         self.network = model.network
         self.squares: Linear = np.zeros((0, 0, 0), np.float32)
@@ -97,25 +97,25 @@ class Foreground:
         self._calibration: Calibration | None = None
         self._rows: FloorRows | None = None
         self._memory: Linear | None = None
-        self._moved = Pose2()  # since the memory was brought along
+        self._moved = Pose2()  # since the memory was last warped
         self._time_s = 0.0
 
     def update(
         self, image: NDArray[np.uint8], time_s: float, odometry: Odometry | None, calibration: Calibration
     ) -> Linear:
-        """Take in an image, and tell people from background.
+        """Process an image and return the segmentation.
 
         Args:
             image: (H, W, 3) uint8 RGB panorama.
             time_s: when it was taken [s].
-            odometry: how the robot moved since the last image; None if unknown, which makes all begin anew.
+            odometry: motion of the robot since the last image; None if unknown, which resets the background.
             calibration: of the panoramic camera.
 
         Returns:
-            (H, W) for each pixel the probability that it is a person.
+            (H, W) probability of each pixel to be on a person.
 
         Raises:
-            BadInput: the network was taught with another mirror, or on images of another size.
+            BadInput: the network was trained with another mirror, or on images of another size.
         """
         floor = self._floor(calibration, image)
         memory = self._brought_along(image, odometry, floor)
@@ -127,14 +127,14 @@ class Foreground:
 
     @property
     def background(self) -> NDArray[np.uint8]:
-        """What it takes for the scene without people, (H, W, 3) RGB; all black before the first image."""
+        """Background model, (H, W, 3) RGB; black before the first image."""
         shape = (self._view.height_px, self._view.width_px, 3)
         if self._memory is None:
             return np.zeros(shape, np.uint8)
         return np.clip(np.rint(self._memory[:3].transpose(1, 2, 0)), 0, 255).astype(np.uint8)
 
     def _brought_along(self, image: NDArray[np.uint8], odometry: Odometry | None, floor: FloorRows) -> Linear:
-        """Bring the background to where the robot is now, as soon as it makes a difference."""
+        """Warp the background to the robot's pose, if it moved noticeably."""
         if self._memory is None or odometry is None:
             self._moved = Pose2()
             return first_memory(image)
@@ -145,7 +145,7 @@ class Foreground:
         return move_along(self._memory, Odometry.from_motion(moved), floor)
 
     def _floor(self, calibration: Calibration, image: NDArray[np.uint8]) -> FloorRows:
-        """Return how the floor lies; a camera that the network does not know is refused."""
+        """Return the floor geometry; a camera that the network was not trained on is refused."""
         (height, width), known = image.shape[:2], self._view
         is_same = calibration is self._calibration and (width, height) == (known.width_px, known.height_px)
         if self._rows is None or not is_same:
@@ -158,5 +158,5 @@ class Foreground:
 
 @cache
 def shipped_foreground() -> ForegroundModel:
-    """Read the model that comes with the tracker, once."""
+    """Read the shipped model, once."""
     return ForegroundModel.load(SHIPPED / FILE)

@@ -165,7 +165,7 @@ def test_a_box_in_the_colour_image_follows_rays_and_place():
 
 
 def test_without_colours_it_is_refused_in_one_line():
-    with refused("attention needs a camera of colours", "the robot has thermal"):
+    with refused("attention needs a colour camera", "the robot has thermal"):
         AttentiveTracker(Script(), ByColour()).update(Frame(images={THERMAL: scene()[..., 0]}, time_s=0.0))
 
 

@@ -148,7 +148,7 @@ def test_what_is_no_colour_image_is_refused(image):
 def test_settings_that_make_no_sense_are_refused():
     with refused("share must be one of sums, means, got 'part'"):
         AttentionConfig(share="part")
-    with refused("there must be maps, or colour"):
+    with refused("maps or colour must be used"):
         AttentionConfig(maps=False, colour=False)
     with refused("scales must be positive"):
         AttentionConfig(scales=(0.0,))

@@ -1,1 +1,1 @@
-"""People who are known again by their appearance, however long they were away."""
+"""Re-identification of people by appearance, however long they were absent."""

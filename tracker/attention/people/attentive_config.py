@@ -1,4 +1,4 @@
-"""When a person is taken for a person who was lost."""
+"""Settings of the re-identification of lost people."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from peopleboy.bad_input import BadInput
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AttentiveConfig:
-    """How appearance is learned, and how similar it must be to be a person's.
+    """How appearance is learned, and the similarity required for re-identification.
 
     Attributes:
-        accept: mean score from which on a person new may be a person who was lost ...
-        slack: ... if it is not so much below the one that this person usually had.
-        reject: mean score below which a person is not who the tracker below takes him for.
+        accept: least mean score for a new person to be a lost one ...
+        slack: ... unless it is lower than the lost person's usual score by more than this.
+        reject: mean score below which the tracker's identity is rejected.
         images: that scores are averaged over ...
-        least_images: ... and how many there must be at least.
-        learned_images: in which a person must have been seen to be known again.
-        first_images: that count alike; later ones count less.
-        rate: share of a new image that is learned then.
-        doubt: score below which nothing is learned.
-        doubtful_images: in which a person must have looked otherwise than that to be a stranger.
-        gap_s: [s] out of sight from which on appearance is compared anew ...
-        proof_s: [s] ... and from which on the number of the tracker below is no proof any more.
-        remembered_s: [s] for which people are remembered.
+        least_images: ... and their least number.
+        learned_images: least number of learned images for re-identification.
+        first_images: that are weighted equally; later ones have less weight.
+        rate: update rate of later images.
+        doubt: score below which the appearance is not updated.
+        doubtful_images: number of images below that score after which a person is a stranger.
+        gap_s: [s] out of sight after which the appearance is compared again ...
+        proof_s: [s] ... and after which the tracker's id is not trusted.
+        remembered_s: [s] after which a lost person is forgotten.
 
     Raises:
-        BadInput: a number out of its range.
+        BadInput: a value out of range.
     """
 
     accept: float = 0.62
@@ -46,7 +46,7 @@ class AttentiveConfig:
     remembered_s: float = 600.0
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be done."""
+        """Check the values."""
         for name in ("accept", "slack", "reject", "rate", "doubt"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise BadInput(f"AttentiveConfig: {name} must be in 0..1, got {getattr(self, name)}")
@@ -56,5 +56,5 @@ class AttentiveConfig:
 
 
 AS_FOUND: Final = AttentiveConfig(accept=0.24, slack=1.0, reject=0.0, doubt=0.0)
-"""For the focus of attention as printed: it can be elsewhere while a person is there, so that nobody is
-doubted for that; and where no feature speaks for the box, patterns alone make a score of a quarter."""
+"""For the focus of attention as printed: it may miss a person who is there, so a low score rejects nobody;
+and if no feature speaks for the box, patterns alone give a score of a quarter."""

@@ -1,4 +1,4 @@
-"""What the tracker knows of the attended person, for plots and recordings."""
+"""State of the attentive tracker, for plots and recordings."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ TRACKING_ATTENTION: Final = AttentionConfig(scales=(0.64, 0.8, 1.0, 1.25, 1.56))
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Attended:
-    """A person who was learned, and the newest image.
+    """A learned person, and the newest image.
 
     Attributes:
-        number: of the person.
-        camera: in whose images it is looked for.
-        look: as it looked when it was learned.
+        number: id of the person.
+        camera: whose images are searched.
+        look: the learned appearance model.
         image: (H, W, 3) RGB.
     """
 
@@ -43,21 +43,22 @@ class Attended:
         return cls(number, view.camera, model, view.image)
 
     def focus(self) -> Focus:
-        """Look for the person in the newest image, wherever tracks are; this takes some ten milliseconds."""
+        """Search the newest image, independently of tracks; this takes about ten milliseconds."""
         return search(ImageSums.of(self.image, TRACKING_ATTENTION), self.model, TRACKING_ATTENTION)
 
 
-# What the attentive tracker believes beyond its tracks.
+# Explanation of the attentive tracker.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AttentiveExplanation:
-    """What the tracker below believes, and how similar people are to their identities.
+    """Explanation of the wrapped tracker, and similarity of people to their identities.
 
     Attributes:
-        below: of its own kind, by the track ids.
-        likeness: 0..1, mean score of late of those who are seen well enough, by number.
-        attended: who was learned first, in the newest image of a colour camera; None before, or without one.
+        below: explanation of the wrapped tracker, by track id.
+        likeness: 0..1, recent mean score of sufficiently visible people, by id.
+        attended: the first learned person in the newest colour image; None before, or without a colour
+            camera.
     """
 
     below: object
@@ -66,13 +67,13 @@ class AttentiveExplanation:
 
     @property
     def parts(self) -> tuple[object, ...]:
-        """The explanation of the tracker below."""
+        """The wrapped tracker's explanation."""
         return (self.below,)
 
 
 @singledispatch
 def renumbered(explanation: object, number: Mapping[int, int]) -> object:  # noqa: ARG001
-    """Return an explanation by the ids of the tracks; a kind without ids stays as it is."""
+    """Return an explanation with replaced track ids; one without ids is returned unchanged."""
     return explanation
 
 

@@ -1,4 +1,4 @@
-"""A tracker whose people keep their numbers however long they were away, and no stranger gets one."""
+"""A tracker wrapper that re-identifies people by appearance, however long they were absent."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ from peopleboy.tracker.attention.people.recogniser import Appearance, Recogniser
 from peopleboy.tracker.frame import COLOUR, Frame, check_frame
 from peopleboy.tracker.track import Status, Track
 
-# A person who is known by its appearance, and a track that a person may wear.
+# Gallery entries, and the identities of the wrapped tracker's tracks.
 
-_OF_LATE: Final = 0.05  # share of the newest image in the usual score
+_OF_LATE: Final = 0.05  # weight of the newest image in the usual score
 
 
 @dataclass(slots=True)
 class GalleryEntry(Generic[Appearance]):
-    """A person as it looked.
+    """Gallery entry of a person.
 
     Attributes:
-        number: of the person's tracks.
-        appearance: by camera.
-        images: in which it was learned, by camera.
-        usual: score that it has of late while it is there.
-        seen_s: [s] when it was seen last.
+        number: id of the person.
+        appearance: model by camera.
+        images: number of learned images by camera.
+        usual: running mean of the score while visible.
+        seen_s: [s] time of the last observation.
     """
 
     number: int
@@ -45,11 +45,11 @@ class GalleryEntry(Generic[Appearance]):
     seen_s: float = -np.inf
 
     def is_known(self, config: AttentiveConfig) -> bool:
-        """Return whether enough was seen of the person to know it again."""
+        """Return whether enough images were learned for re-identification."""
         return max(self.images.values(), default=0) >= config.learned_images
 
     def score(self, seen: Mapping[str, Seen], recogniser: Recogniser[Appearance, Seen]) -> float | None:
-        """Score a person who is seen, by camera; None where none saw both."""
+        """Return the score of an observed person; None if no camera has seen both."""
         scores = [
             recogniser.score(self.models[camera], one)
             for camera, one in seen.items()
@@ -58,11 +58,11 @@ class GalleryEntry(Generic[Appearance]):
         return float(np.mean(scores)) if scores else None
 
     def needed(self, config: AttentiveConfig) -> float:
-        """Return the score from which a new person is this one: higher, the less the appearance varies."""
+        """Return the acceptance threshold: higher for people whose appearance varies less."""
         return max(config.accept, self.usual - config.slack)
 
     def note(self, score: float) -> None:
-        """Take in the score of an image in which the person is there."""
+        """Update the usual score with an image of the person."""
         self.usual += _OF_LATE * (score - self.usual) if self.usual else score
 
     def learn(
@@ -71,7 +71,7 @@ class GalleryEntry(Generic[Appearance]):
         recogniser: Recogniser[Appearance, Seen],
         config: AttentiveConfig,
     ) -> None:
-        """Take in what is seen of the person: of the first images all alike, of later ones little."""
+        """Update the appearance: the first images have equal weights, later ones less."""
         for camera, one in seen.items():
             count = self.images[camera] = self.images.get(camera, 0) + 1
             rate = 1.0 / count if count <= config.first_images else config.rate
@@ -80,14 +80,14 @@ class GalleryEntry(Generic[Appearance]):
 
 @dataclass(slots=True)
 class Wearer:
-    """A track of the tracker below, and who that is.
+    """Identity of one track of the wrapped tracker.
 
     Attributes:
-        number: of the person; None for one who is known to be elsewhere.
-        since_s: [s] since when it has been this track without a longer break.
-        seen_s: [s] when it was seen last.
-        is_new: whether it may still turn out to be a person who was lost.
-        scores: of late, by the number of those that it may be; its own among them.
+        number: id of the person; None for a track that left its person.
+        since_s: [s] start of the track, or of its last part after a long gap.
+        seen_s: [s] time of the last observation.
+        is_new: whether it may still be a lost person.
+        scores: recent scores by candidate id, including its own.
     """
 
     number: int | None
@@ -97,7 +97,7 @@ class Wearer:
     scores: dict[int, deque[float]] = field(default_factory=dict)
 
     def note(self, number: int, score: float, most: int) -> None:
-        """Remember a score."""
+        """Add a score."""
         self.scores.setdefault(number, deque(maxlen=most)).append(score)
 
     def mean(self, number: int, least: int) -> float | None:
@@ -107,33 +107,32 @@ class Wearer:
 
 
 class Below(Protocol):
-    """The tracker that finds people."""
+    """The wrapped tracker."""
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """Names of the cameras whose images it wants."""
+        """Names of the required cameras."""
         ...
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Take in the next frame and tell who is seen."""
+        """Process the next frame and return the tracks."""
         ...
 
 
 class AttentiveTracker(Generic[Appearance, Seen]):
-    """Renames the tracks of another tracker by what people look like.
+    """Replaces the ids of another tracker by re-identified ones.
 
-    It learns everybody who is seen, from the boxes of their tracks. After a loss only new tracks are scored,
-    each by itself: from a threshold on one has the number of who was lost; below it, it stays a stranger.
-    Who comes out from behind others keeps the number that the tracker below gives, if it does not look like
-    another person.
+    It learns the appearance of everybody from the boxes of their tracks. After a loss only new tracks are
+    scored, each independently: above a threshold a track gets the lost person's id, and below it a new one. A
+    person who reappears from behind others keeps the wrapped tracker's id, unless the appearance differs.
 
     Args:
-        below: finds people.
-        recogniser: identifies them by their appearance.
-        config: how sure it must be.
+        below: the wrapped tracker.
+        recogniser: compares appearances.
+        config: thresholds.
 
-    Source: situation-awareness thesis, chapter 5 and its outlook, which proposes it: the first box is the
-    tracker's, and people are known again after a long absence.
+    Source: situation-awareness thesis, chapter 5 and its outlook, which proposes to take the first box from
+    the tracker, and to re-identify people after a long absence.
     """
 
     knows_again = True
@@ -155,25 +154,25 @@ class AttentiveTracker(Generic[Appearance, Seen]):
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """Those of the tracker below, and the colour camera if none of them shows colours."""
+        """The wrapped tracker's cameras, and the colour camera if none of them has colours."""
         cameras = self._below.cameras
         return cameras if any(name in LOOKED_AT for name in cameras) else (*cameras, COLOUR)
 
     def check_cameras(self, calibrations: Mapping[str, Calibration]) -> None:
-        """Refuse cameras that the tracker below cannot see by.
+        """Refuse cameras that the wrapped tracker cannot use.
 
         Raises:
-            BadInput: there is one.
+            BadInput: a camera is unsuitable.
         """
         check = getattr(self._below, "check_cameras", None)
         if check is not None:
             check(calibrations)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Take in the next frame and tell who is seen, each by its own number.
+        """Process the next frame and return the tracks with re-identified ids.
 
         Raises:
-            BadInput: no camera shows colours, and as the tracker below says.
+            BadInput: no camera has colours, or raised by the wrapped tracker.
         """
         check_frame(frame)
         check_colours(frame)
@@ -190,7 +189,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
 
     @property
     def explanation(self) -> AttentiveExplanation:
-        """What the tracker below believes, by the track ids, and how sure these are."""
+        """The wrapped tracker's explanation by id, and the similarities."""
         likeness = {}
         for wearer in self._wearers.values():
             mean = None if wearer.number is None else wearer.mean(wearer.number, least=1)
@@ -200,7 +199,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
         return AttentiveExplanation(below, likeness, self._attended)
 
     def _meet(self, track: Track, time_s: float) -> None:
-        """Find who a track was, should it be there without a longer break."""
+        """Return a track's identity, unless there was a long gap."""
         is_visible = track.status is not Status.TOTALLY_OCCLUDED
         wearer = self._wearers.get(track.id)
         if wearer is None:
@@ -214,7 +213,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
             wearer.seen_s = self._people[wearer.number].seen_s = time_s
 
     def _compare(self, track: Track, frame: Frame) -> None:
-        """Let a track that is seen whole be a person who was lost, or nobody any more; learn who it is."""
+        """Re-identify, reject or learn the person of a fully visible track."""
         wearer = self._wearers[track.id]
         if track.status is not Status.TRACKED or wearer.number is None:
             return
@@ -238,13 +237,13 @@ class AttentiveTracker(Generic[Appearance, Seen]):
             self._attended = Attended.learned(own.number, views[next(iter(seen))])
 
     def _attend(self, frame: Frame) -> None:
-        """Prepare a new image in which to search for the attended person."""
+        """Prepare the newest image for the search for the attended person."""
         attended = self._attended
         if attended is not None and attended.camera in frame.images:
             self._attended = replace(attended, image=frame.rgb(attended.camera))
 
     def _recognise(self, wearer: Wearer, seen: Mapping[str, Seen]) -> None:
-        """Give a new person the id of the lost person that it resembles most, if it resembles one."""
+        """Give a new person the id of the most similar lost person, if similar enough."""
         config, found = self._config, {}
         for number, person in self._people.items():
             if number != wearer.number and person.seen_s < wearer.since_s and person.is_known(config):
@@ -256,7 +255,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
             self._take(wearer, max(found, key=lambda number: found[number]))
 
     def _take(self, wearer: Wearer, number: int) -> None:
-        """Return a known person's number to a track; who is only thought to be there has none any more."""
+        """Give a track a known person's id; a coasting track with that id loses it."""
         for other in self._wearers.values():
             if other.number == number:
                 other.number = None
@@ -265,12 +264,12 @@ class AttentiveTracker(Generic[Appearance, Seen]):
         wearer.number, wearer.is_new = number, False
 
     def _is_doubtful(self, wearer: Wearer) -> bool:
-        """Return whether a track has looked otherwise than its person for a while: it is on another one."""
+        """Return whether a track's appearance has differed for a while, so that it follows another person."""
         mean = wearer.mean(wearer.number or 0, self._config.doubtful_images)
         return mean is not None and mean < self._config.reject
 
     def _rename(self, wearer: Wearer, number: int, time_s: float) -> None:
-        """Let a track be a stranger from now on."""
+        """Make a track a stranger."""
         wearer.number, wearer.is_new, wearer.since_s = number, True, time_s
         wearer.scores.clear()
 
@@ -286,7 +285,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
         return self._newest
 
     def _forget(self, time_s: float) -> None:
-        """Forget who has been away for too long, and tracks that cannot come back."""
+        """Forget people after a long absence, and tracks that cannot return."""
         oldest_s = time_s - self._config.remembered_s
         self._wearers = {below: one for below, one in self._wearers.items() if one.seen_s >= oldest_s}
         worn = {wearer.number for wearer in self._wearers.values()}
@@ -297,7 +296,7 @@ class AttentiveTracker(Generic[Appearance, Seen]):
         }
 
     def _renamed(self, tracks: Sequence[Track]) -> tuple[Track, ...]:
-        """Return tracks, and those who hide them, their numbers; who may be born next has the next one."""
+        """Replace the ids of tracks and of their occluders; a track without one gets the next id."""
         number = {track.id: self._number(track) for track in tracks}
         self._reported = {below: own for below, own in number.items() if own is not None}
         named = (

@@ -1,4 +1,4 @@
-"""Where colour cameras show a person who is tracked in another one."""
+"""Views of a tracked person in the colour cameras."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from peopleboy.tracker.frame import COLOUR, DEPTH, DEPTH_COLOUR, PANORAMA, THERM
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
 LOOKED_AT: Final = (COLOUR, DEPTH_COLOUR, PANORAMA)
-"""Cameras that show colours, by their names."""
+"""Names of the cameras with colours."""
 
 _SAME_LENS: Final = {DEPTH_COLOUR: DEPTH}
 _TALL_M: Final = 1.72
-_WIDTH: Final = 0.3  # of a box whose width nobody knows, in its heights
+_WIDTH: Final = 0.3  # of a box of unknown width, in its heights
 _NEAREST_M: Final = 0.3
 
 
@@ -40,10 +40,10 @@ class PersonView:
 
 
 def views_of(track: Track, frame: Frame) -> Iterator[PersonView]:
-    """Return a tracked person in each colour image that there is.
+    """Return a tracked person's view in each available colour image.
 
     Raises:
-        BadInput: an image is none.
+        BadInput: an image is invalid.
     """
     for camera in LOOKED_AT:
         if camera in frame.images:
@@ -53,26 +53,24 @@ def views_of(track: Track, frame: Frame) -> Iterator[PersonView]:
 
 
 def check_colours(frame: Frame) -> None:
-    """Refuse frames of a robot without colours.
+    """Refuse frames of a robot without a colour camera.
 
     Raises:
-        BadInput: no camera is there, now or at other instants, that shows any.
+        BadInput: no camera, now or at other instants, has colours.
     """
     if not any(camera in frame.images or camera in frame.calibrations for camera in LOOKED_AT):
         known = ", ".join(frame.images) or "none"
-        raise BadInput(
-            f"attention needs a camera of colours, {' or '.join(LOOKED_AT)}; the robot has {known}"
-        )
+        raise BadInput(f"attention needs a colour camera, {' or '.join(LOOKED_AT)}; the robot has {known}")
 
 
 def box_in(camera: str, track: Track, frame: Frame) -> Box | None:
-    """Find the box of a track in a colour camera's image: its own, that of its rays, or of who stands there.
+    """Return a track's box in a colour image: its own, or projected from its direction or position.
 
-    Who has a box in the thermal image and no place stands where a person of usual height would.
-    Without calibrations colours are taken to show what the thermal image shows.
+    A track with a thermal box but no position is placed where a person of usual height would stand. Without
+    calibrations the colour image is assumed to be aligned with the thermal image.
 
     Returns:
-        left, top, width, height [px], which may lie outside; None where it is unknown.
+        left, top, width, height [px]; it may lie outside; None if unknown.
     """
     for name in (camera, _SAME_LENS.get(camera, camera)):
         if name in track.boxes:
@@ -101,14 +99,14 @@ def _same_view(camera: str, track: Track, frame: Frame) -> Box | None:
 
 
 def _place_by_height(track: Track, thermal: Calibration | None) -> FloorPlace | None:
-    """Return where a person stands that a tracker has only as a box in the thermal image."""
+    """Return the position of a person for whom a tracker has only a thermal box."""
     if thermal is None or THERMAL not in track.boxes:
         return None
     return places_on_floor([track.boxes[THERMAL]], [Status.TRACKED], thermal)[0]
 
 
 def _ends(box: Box, ahead_m: float, thermal: Calibration) -> NDArray[np.float64] | None:
-    """Return the points (2, 3) [m] of head and feet, so far ahead of the robot, that a box ends at."""
+    """Return the points (2, 3) [m] of head and feet at a given distance ahead of the robot, from a box."""
     left, top, width, height = box
     rays = thermal.rays(np.array([[left + width / 2.0, top], [left + width / 2.0, top + height]]))
     away_m = ahead_m - thermal.position_m[0]

@@ -1,4 +1,4 @@
-"""How appearance is learned and compared: by colours, or by where chapter 5 would look."""
+"""Appearance models for re-identification: by colours, or by the attention of chapter 5."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from peopleboy.tracker.attention.image_sums import ImageSums
 from peopleboy.tracker.attention.part_model import HEAD, TORSO, Cells, cells_of, check_box
 from peopleboy.tracker.attention.people.person_views import PersonView
 
-# What a person's head and torso look like whatever the light: their colours over their common brightness.
+# Illumination-invariant appearance of head and torso: colours divided by their common brightness.
 
 Doubles = NDArray[np.float64]
 
-_STEPS: Final = 8  # of each of red, green, blue
-_BRIGHTNESS: Final = 90.0  # [grey] to which the mean of both parts is brought
+_STEPS: Final = 8  # bins each of red, green and blue
+_BRIGHTNESS: Final = 90.0  # [grey] to which the mean of both parts is normalised
 _WEIGHTS: Final = (0.3, 0.7)  # of head and torso
 _DARKEST: Final = 8.0  # [grey] mean below which colours are noise
 _RANGE: Final = 256.0
@@ -33,15 +33,15 @@ class ColourLook:
     """Colours of head and torso.
 
     Attributes:
-        shares: (2, 512) of each part's pixels at each colour; a pixel counts for the eight that are nearest,
-            the more, the nearer, lest a little more light changes everything.
+        shares: (2, 512) colour histograms of the parts; a pixel is interpolated between its eight nearest
+            bins, so that a small change of light has a small effect.
     """
 
     shares: Doubles
 
     @classmethod
     def of(cls, view: PersonView) -> Self | None:
-        """Look at a person; None where head or torso are not all in the image, or it is too dark."""
+        """Describe a person; None if head or torso are not entirely in the image, or it is too dark."""
         rows, columns = (side // CELL_PX for side in view.image.shape[:2])
         parts = [cells_of(part, view.box) for part in (HEAD, TORSO)]
         if not all(cells.is_inside(rows, columns) for cells in parts):
@@ -53,14 +53,14 @@ class ColourLook:
         return cls(np.array([_histogram(part, _BRIGHTNESS / light) for part in pixels]))
 
     def likeness(self, other: ColourLook) -> float:
-        """Return how much of their colours two have in common: 1 for the same, 0 for nothing.
+        """Return the similarity of colours: 1 for equal, 0 for disjoint ones.
 
-        Source: Bhattacharyya's coefficient, as in the situation-awareness thesis, equation 4.25.
+        Source: Bhattacharyya coefficient, as in the situation-awareness thesis, equation 4.25.
         """
         return float(np.sqrt(self.shares * other.shares).sum(axis=1) @ _WEIGHTS)
 
     def updated(self, new: ColourLook, rate: float) -> ColourLook:
-        """Take in a share of how the person looks now (situation-awareness thesis, equation 5.15)."""
+        """Update with the current appearance (situation-awareness thesis, equation 5.15)."""
         return ColourLook((1.0 - rate) * self.shares + rate * new.shares)
 
 
@@ -72,7 +72,7 @@ def _pixels(image: NDArray[np.uint8], cells: Cells) -> NDArray[np.uint8]:
 
 @njit(cache=True, nogil=True)
 def _histogram(pixels: NDArray[np.uint8], scale: float) -> Doubles:
-    """Return the shares (512,) of the colours of pixels (N, 3), made brighter by a factor."""
+    """Return the histogram (512,) of the colours of pixels (N, 3), multiplied by a factor."""
     shares = np.zeros(_STEPS**3)
     low, over = np.zeros(3, np.int64), np.zeros(3)
     for i in range(pixels.shape[0]):
@@ -100,41 +100,41 @@ class Recogniser(Protocol[Appearance, Seen]):
     """Identifies people by their appearance."""
 
     def see(self, view: PersonView) -> Seen | None:
-        """Look at a person in one image; None where there is not enough of the person in it."""
+        """Describe a person in one image; None if too little of the person is visible."""
         ...
 
     def learned(self, known: Appearance | None, seen: Seen, rate: float) -> Appearance:
-        """Learn a person, or take in a share of how a known one looks now."""
+        """Learn a person, or update a known model."""
         ...
 
     def score(self, known: Appearance, seen: Seen) -> float:
-        """Return how likely a person is a known person, 0..1, whoever else is there."""
+        """Return how likely a person is a known one, 0..1, independently of others."""
         ...
 
 
 class ByColour:
-    """Identifies people by the colours of head and torso, with the light divided out."""
+    """Recognises people by illumination-invariant colours of head and torso."""
 
     def see(self, view: PersonView) -> ColourLook | None:
-        """Look at a person."""
+        """Describe a person."""
         return ColourLook.of(view)
 
     def learned(self, known: ColourLook | None, seen: ColourLook, rate: float) -> ColourLook:
-        """Learn a person."""
+        """Learn or update a person."""
         return seen if known is None else known.updated(seen, rate)
 
     def score(self, known: ColourLook, seen: ColourLook) -> float:
-        """Return how much of their colours two have in common."""
+        """Return the similarity of colours."""
         return known.likeness(seen)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Spotted:
-    """A person in an image that is made ready.
+    """A person in an image with computed features.
 
     Attributes:
-        sight: the image.
-        view: where the person is in it.
+        sight: features of the image.
+        view: the person in it.
     """
 
     sight: ImageSums
@@ -142,10 +142,10 @@ class Spotted:
 
 
 class ByFocus:
-    """Identifies people by the focus of attention: who is there has the score of the place, others have none.
+    """Recognises people by the focus of attention: its score for the person in focus, 0 for others.
 
     Args:
-        config: how attention is directed.
+        config: settings of attention.
     """
 
     def __init__(self, config: AttentionConfig) -> None:
@@ -153,7 +153,7 @@ class ByFocus:
         self._newest: ImageSums | None = None
 
     def see(self, view: PersonView) -> Spotted | None:
-        """Look at a person; an image is made ready once for all who are in it."""
+        """Describe a person; the features of an image are computed once for all people in it."""
         try:
             check_box(view.box, view.image.shape)
         except BadInput:
@@ -163,7 +163,7 @@ class ByFocus:
         return Spotted(self._newest, view)
 
     def learned(self, known: PersonModel | None, seen: Spotted, rate: float) -> PersonModel:  # noqa: ARG002
-        """Learn a person from the first image; later ones count as little as the source has it."""
+        """Learn a person from the first image; later ones update it at the source's low rate."""
         if known is None:
             return learn(seen.sight, seen.view.box, self._config)
         return relearn(known, seen.sight, search(seen.sight, known, self._config), self._config)

@@ -1,1 +1,1 @@
-"""One person, as the OMNIVIS 2003 paper tracks one."""
+"""The single-person tracker of the OMNIVIS 2003 paper."""

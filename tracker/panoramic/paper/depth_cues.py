@@ -1,4 +1,4 @@
-"""Where a silhouette lies in the panorama, and the three features that tell how far away the person is."""
+"""Silhouettes in the panorama, and the three features that indicate a person's distance."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 from peopleboy.tracker.track import Box
 
-# The empty scene as the panoramic camera sees it, and what differs from it.
+# Background subtraction with an image of the empty scene.
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 EMPTY_IMAGES = 5
-"""How many images of the empty scene make the background (section 4.2)."""
+"""Number of empty images for the background (section 4.2)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Subtraction:
-    """How differences from the background become a silhouette.
+    """Settings of the background subtraction.
 
-    The paper says only that its threshold is "learned during background acquisition". Here it is learned from
-    what each empty image differs from the mean of the others, since an image to come is in no mean either.
+    The paper only says that its threshold is "learned during background acquisition". Here it is learned from
+    the difference of each empty image from the mean of the others, as a future image is in no mean either.
 
     Attributes:
-        is_colour: whether red, green and blue are compared one by one, or their grey.
-        deviations: the threshold, in standard deviations of those differences; None for the greatest of them.
+        is_colour: whether red, green and blue are compared separately, or their grey.
+        deviations: threshold in standard deviations of those differences; None for their maximum.
         median_px: width of the median filter over the silhouette; 1 for none.
     """
 
@@ -43,20 +43,20 @@ class Subtraction:
 
 
 LITERAL = Subtraction(is_colour=False, deviations=4.0, median_px=1)
-"""What the paper's words say and no more. One pixel of noise in a lower row is then a foot."""
+"""The paper's text, without additions. One noisy pixel in a lower row then counts as a foot."""
 
 CLEAN = Subtraction(is_colour=True, deviations=None, median_px=3)
-"""Sees grey shoes on a grey floor, and lets no lone pixel through."""
+"""Detects grey shoes on a grey floor, and suppresses single pixels."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Background:
-    """The empty scene.
+    """Background of the empty scene.
 
     Attributes:
-        mean: (H, W, C) mean of the empty images, C being 1 or 3 as `subtraction` says.
-        threshold: (C,) what a pixel must differ by, in grey levels.
-        subtraction: how it was learned and is taken away.
+        mean: (H, W, C) mean of the empty images; C is 1 or 3, depending on `subtraction`.
+        threshold: (C,) least difference of foreground pixels, in grey levels.
+        subtraction: settings.
     """
 
     mean: Floats
@@ -64,7 +64,7 @@ class Background:
     subtraction: Subtraction
 
     def silhouette(self, image: NDArray[np.uint8]) -> Mask:
-        """Return which pixels (H, W) of an RGB image (H, W, 3) differ from the background.
+        """Return which pixels (H, W) of an RGB image (H, W, 3) are foreground.
 
         Raises:
             BadInput: an image of another size.
@@ -77,7 +77,7 @@ class Background:
 
 
 def learn_background(empty: Sequence[NDArray[np.uint8]], subtraction: Subtraction = CLEAN) -> Background:
-    """Learn the empty scene from two or more RGB images (H, W, 3) without anybody.
+    """Learn the background from two or more RGB images (H, W, 3) of the empty scene.
 
     Source: OMNIVIS 2003, section 4.2.
     """
@@ -98,7 +98,7 @@ def _planes(image: NDArray[np.uint8], subtraction: Subtraction) -> NDArray[np.ui
 
 @njit(cache=True)
 def _differs(planes: NDArray[np.uint8], mean: Floats, threshold: Floats) -> NDArray[np.uint8]:
-    """Give 1 where (H, W) a plane of an image (H, W, C) differs from the mean by more than its threshold."""
+    """Return a mask (H, W): 1 where a plane of an image (H, W, C) differs by more than its threshold."""
     height, width, count = planes.shape
     differs = np.zeros((height, width), np.uint8)
     for v in range(height):
@@ -109,7 +109,7 @@ def _differs(planes: NDArray[np.uint8], mean: Floats, threshold: Floats) -> NDAr
 
 
 def _smooth(mask: NDArray[np.uint8], median_px: int) -> Mask:
-    """Take the median over squares that go on across the seam."""
+    """Apply a median filter that wraps around the seam."""
     if median_px > 1:
         half = median_px // 2
         ring = np.hstack([mask[:, -half:], mask, mask[:, :half]])
@@ -121,10 +121,10 @@ class DepthCues(NamedTuple):
     """The inputs of the network (section 4.3).
 
     Attributes:
-        width_px: between the limits of the histogram of columns; the gap between two legs counts.
-        gap_px: rows between the person's lowest one and the lower edge of the image; 0 once the feet are out
-            of the picture.
-        area_px: pixels that differ from the background.
+        width_px: between the limits of the column histogram; it includes the gap between two legs.
+        gap_px: rows between the person's lowest row and the lower edge of the image; 0 if the feet are
+            outside the image.
+        area_px: number of foreground pixels.
     """
 
     width_px: float
@@ -134,14 +134,14 @@ class DepthCues(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MeasuredFigure:
-    """One person's silhouette, measured.
+    """Measurements of one person's silhouette.
 
     Attributes:
         columns: (W,) pixels in each column.
         rows: (H,) pixels in each row.
-        first_column: where the shortest arc that holds all of them begins; it may go on across the seam.
-        mean_column: of the histogram of columns, along that arc, in -0.5..W - 0.5.
-        cues: how wide, how low, how many.
+        first_column: start of the shortest arc that holds all pixels; it may cross the seam.
+        mean_column: of the column histogram along that arc, in -0.5..W - 0.5.
+        cues: width, gap and area.
     """
 
     columns: NDArray[np.int64]
@@ -152,27 +152,27 @@ class MeasuredFigure:
 
     @property
     def bearing_rad(self) -> float:
-        """Where the person is, from the robot's nose, left positive [rad]."""
+        """Bearing of the person from the robot's heading, left positive [rad]."""
         return bearing(self.mean_column, len(self.columns))
 
     @property
     def box(self) -> Box:
-        """The silhouette's box [px]; one that crosses the seam reaches beyond the right edge."""
+        """The silhouette's box [px]; across the seam it reaches beyond the right edge."""
         filled = np.flatnonzero(self.rows)
         height = float(filled[-1] - filled[0] + 1)
         return self.first_column - 0.5, float(filled[0]) - 0.5, self.cues.width_px, height
 
 
 def bearing(column: float, width_px: int) -> float:
-    """Tell where a column looks, from the robot's nose, left positive, -pi..pi [rad]; column 0 is behind."""
+    """Return the bearing of a column, left positive, -pi..pi [rad]; column 0 is behind the robot."""
     return math.pi - math.tau * (column + 0.5) / width_px
 
 
 def measure(silhouette: Mask, least_px: int = 1) -> MeasuredFigure | None:
-    """Measure the silhouette (H, W) of one person; None if it has fewer pixels than that.
+    """Measure the silhouette (H, W) of one person; None if it has too few pixels.
 
-    Source: OMNIVIS 2003, sections 4.2 and 4.3. The mean of the columns is the paper's, but begins to count
-    where the widest gap between filled columns ends, so that the seam may go through the person.
+    Source: OMNIVIS 2003, sections 4.2 and 4.3. The paper's mean of columns is counted from the end of the
+    widest empty gap, so that the person may be on the seam.
     """
     columns, rows = silhouette.sum(axis=0), silhouette.sum(axis=1)
     area, width = int(columns.sum()), len(columns)
@@ -191,12 +191,12 @@ def measure(silhouette: Mask, least_px: int = 1) -> MeasuredFigure | None:
 
 
 def _wrapped(column: float, width: int) -> float:
-    """Bring a column into -0.5..W - 0.5, which is where pixels are."""
+    """Wrap a column into -0.5..W - 0.5."""
     return column - width if column >= width - 0.5 else column
 
 
 def covering_arc(columns: NDArray[np.int64]) -> tuple[int, int]:
-    """Return first column and number of columns of the shortest arc that holds every filled one of (W,)."""
+    """Return start and length of the shortest arc that holds every filled column of (W,)."""
     filled = np.flatnonzero(columns)
     steps = np.diff(filled, append=filled[0] + len(columns))
     widest = int(np.argmax(steps))

@@ -1,4 +1,4 @@
-"""The distance network of the 2003 paper: three cues in, four hidden units, one distance out."""
+"""The distance network of the 2003 paper: three inputs, four hidden units, one output."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 
 MODEL: Final = "distance"
 CUES: Final = 3
-# Outputs that stand for the nearest and the farthest distance: a sigmoid never reaches 0 or 1.
+# Outputs for the nearest and the farthest distance: a sigmoid never reaches 0 or 1.
 LOW, HIGH = 0.1, 0.9
 
 _SPECS: Final = {
@@ -39,8 +39,8 @@ class DistanceNetwork:
     Attributes:
         hidden: (units, 4) weights of the three scaled cues, and the bias.
         output: (units + 1,) weights of the hidden units, and the bias.
-        cue_ranges: (3, 2) least and greatest of each cue [px] among the examples: 0 and 1 to the network.
-        distance_range_m: nearest and farthest of the examples [m]: 0.1 and 0.9 to the network.
+        cue_ranges: (3, 2) least and greatest training value of each cue [px], scaled to 0 and 1.
+        distance_range_m: nearest and farthest training distance [m], scaled to 0.1 and 0.9.
     """
 
     hidden: Floats
@@ -49,7 +49,7 @@ class DistanceNetwork:
     distance_range_m: tuple[float, float]
 
     def predict(self, cues: Floats) -> Floats:
-        """Return the distances (N,) [m] of people with these cues (N, 3) [px]."""
+        """Return the distances (N,) [m] for cues (N, 3) [px]."""
         units = sigmoid(with_bias(scaled(cues, self.cue_ranges)) @ self.hidden.T)
         nearest, farthest = self.distance_range_m
         share = (sigmoid(with_bias(units) @ self.output) - LOW) / (HIGH - LOW)
@@ -58,13 +58,13 @@ class DistanceNetwork:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class DistanceModel:
-    """A network with what its training said about the camera and the filter.
+    """A network with the camera and filter values of its training.
 
     Attributes:
-        network: from cues to distance.
-        view: of the camera whose images it was trained on.
-        noise: Q and R as they were among the samples, without a velocity.
-        about: what it was trained on, for the reader of the file.
+        network: maps cues to a distance.
+        view: camera of its training images.
+        noise: Q and R estimated from the training samples, without a velocity.
+        about: description of the training data, for readers of the file.
     """
 
     network: DistanceNetwork
@@ -87,10 +87,10 @@ class DistanceModel:
 
     @classmethod
     def load(cls, path: Path) -> DistanceModel:
-        """Read and check a model.
+        """Read and validate a model.
 
         Raises:
-            BadInput: a file that is missing or is no such model.
+            BadInput: the file is missing or is not such a model.
         """
         archive = WeightsArchive.load(path, MODEL, _SPECS, PanoramaView.of_plain)
         arrays = archive.arrays
@@ -113,15 +113,15 @@ class DistanceModel:
 
 
 def file_name(scenario: str) -> str:
-    """Return the name of the file of a model that was trained on a scenario."""
+    """Return the file name of a model trained on a scenario."""
     return f"distance-{scenario}.npz"
 
 
 def shipped_models(folder: Path = SHIPPED) -> dict[Path, DistanceModel]:
-    """Read the models that come with the tracker, one a mirror.
+    """Read the shipped models, one per mirror.
 
     Raises:
-        BadInput: none has been trained yet.
+        BadInput: there is none.
     """
     found = {path: DistanceModel.load(path) for path in sorted(folder.glob(file_name("*")))}
     if not found:
@@ -133,7 +133,7 @@ def shipped_models(folder: Path = SHIPPED) -> dict[Path, DistanceModel]:
 
 
 def scaled(cues: Floats, ranges: Floats) -> Floats:
-    """Scale cues (N, 3) so that their ranges (3, 2) become 0 to 1."""
+    """Scale cues (N, 3) from their ranges (3, 2) to 0..1."""
     return np.asarray((cues - ranges[:, 0]) / (ranges[:, 1] - ranges[:, 0]), np.float64)
 
 

@@ -1,4 +1,4 @@
-"""One person tracked all round a standing robot, as the OMNIVIS 2003 paper does."""
+"""The tracker of one person around a standing robot of the OMNIVIS 2003 paper."""
 
 from __future__ import annotations
 
@@ -33,19 +33,19 @@ from peopleboy.tracker.panoramic.paper.position_filter import (
 )
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
-# What the panoramic tracker believes beyond its track.
+# Explanation of the panoramic tracker.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PanoramicExplanation:
-    """The inner life of the panoramic tracker at its newest image, for those who draw it or ask why.
+    """State of the panoramic tracker at its newest image, for plots and analysis.
 
     Attributes:
-        background: what it takes for the empty scene.
-        silhouette: (H, W) what differs from that.
-        figure: histograms, angle and cues of the person; None while nobody is seen.
-        distance_m: what the network makes of the cues [m]; None while nobody is seen.
-        estimate: what the filter makes of it, in room coordinates; None while nobody is tracked.
+        background: background of the empty scene.
+        silhouette: (H, W) foreground mask.
+        figure: histograms, bearing and cues of the person; None if nobody is detected.
+        distance_m: output of the network [m]; None if nobody is detected.
+        estimate: of the filter, in room coordinates; None if nobody is tracked.
     """
 
     background: Background
@@ -60,12 +60,12 @@ class PanoramicConfig:
     """Settings of the panoramic tracker.
 
     Attributes:
-        subtraction: how the background is taken away.
-        noise: Q and R of the filter; None for those that come with the network.
-        uses_velocity: whether the filter predicts by the last estimated step ("the estimated velocity of the
-            person is used to predict their next position"), or by none.
-        least_px: silhouettes of fewer pixels are nobody.
-        forget_s: who is not seen for longer is gone [s].
+        subtraction: settings of the background subtraction.
+        noise: Q and R of the filter; None for those of the network.
+        uses_velocity: whether the filter predicts with the last estimated step ("the estimated velocity of
+            the person is used to predict their next position"), or with none.
+        least_px: silhouettes with fewer pixels are ignored.
+        forget_s: time without a detection after which the track is deleted [s].
     """
 
     subtraction: Subtraction = CLEAN
@@ -77,13 +77,13 @@ class PanoramicConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _TrackedPerson:
-    """Who is tracked.
+    """State of the track.
 
     Attributes:
-        id, born_s: number, and when the track began [s].
-        seen_s: time of the newest image with the person in it [s].
-        box: there [px].
-        estimate: of the filter then.
+        id, born_s: id, and start of the track [s].
+        seen_s: time of the last image with a detection [s].
+        box: in that image [px].
+        estimate: of the filter at that time.
     """
 
     id: int
@@ -93,24 +93,24 @@ class _TrackedPerson:
     estimate: Estimate
 
     def age_steps(self, time_s: float) -> float:
-        """Return how many steps of the filter have gone since the person was last seen."""
+        """Return the number of filter steps since the last detection."""
         return (time_s - self.seen_s) / STEP_S
 
 
 class PanoramicPaperTracker:
     """Tracks one person by a silhouette in the panorama, a network for the distance, and a Kalman filter.
 
-    The robot stands, and the first five images must show nobody: they become the background. Who is in them
-    becomes part of it, and later leaves a hole, which is taken for a person from then on. Two people at a
-    time are taken for one.
+    The robot must stand, and the first five images must be empty: they become the background. A person in
+    them becomes part of it, and leaving causes a permanent false detection. Two people at a time are detected
+    as one.
 
-    Between two images, and for a while when nobody is seen, the filter only predicts, and the track has no
-    box. A person who was gone has a new id; one who takes another's place between two images has not. Room
-    coordinates are those of the robot's frame at the start. There are no networks of single persons (section
-    6.1), as nothing here identifies the person.
+    Without a new image or a detection, the filter only predicts, and the track has no box. A person who was
+    away too long gets a new id; one who replaces another between two images does not. Room coordinates are
+    those of the robot frame at the start. There are no networks for individual people (section 6.1), as
+    people are not identified.
 
     Args:
-        models: one or more appearance models, each for one mirror; that of the camera is taken.
+        models: one or more distance models, each for one mirror; the one for the camera is used.
         config: settings.
 
     Source: OMNIVIS 2003, sections 4 and 5.
@@ -133,10 +133,10 @@ class PanoramicPaperTracker:
         return (PANORAMA,)
 
     def check_cameras(self, calibrations: Mapping[str, Calibration]) -> None:
-        """Refuse another camera than the networks were trained on, before there are images.
+        """Refuse a camera that the networks were not trained on, before the first frame.
 
         Raises:
-            BadInput: it is another, or none that sees all round.
+            BadInput: another camera, or one that is not panoramic.
         """
         camera = calibrations.get(PANORAMA)
         if isinstance(camera, PanoramaCalibration):
@@ -145,10 +145,10 @@ class PanoramicPaperTracker:
             raise BadInput(f"camera {PANORAMA!r}: the tracker wants one that sees all round")
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Take in the next frame and tell where the person is, if a person is there.
+        """Process the next frame and return the track, if there is one.
 
         Raises:
-            BadInput: an image that is none, or of another camera than the networks were trained on.
+            BadInput: the image is invalid, or of a camera that the networks were not trained on.
         """
         check_frame(frame)
         if frame.odometry is not None:
@@ -163,7 +163,7 @@ class PanoramicPaperTracker:
         return (self._track(self._person, frame.time_s),)
 
     def _choose(self, size: tuple[int, int], calibration: Calibration | None) -> None:
-        """Take the network for a camera with images of this size (height, width)."""
+        """Select the network for a camera with images of this size (height, width)."""
         self._model = self._models[choose_view([model.view for model in self._models], size, calibration)]
 
     @property
@@ -172,7 +172,7 @@ class PanoramicPaperTracker:
         return PositionFilter(noise, self.config.uses_velocity)
 
     def _look(self, image: NDArray[np.uint8], time_s: float) -> None:
-        """See who is in a new image; the first ones become the background."""
+        """Process a new image; the first ones become the background."""
         if self._background is None:
             self._empty.append(image)
             if len(self._empty) == EMPTY_IMAGES:
@@ -191,7 +191,7 @@ class PanoramicPaperTracker:
         )
 
     def _meet(self, figure: MeasuredFigure, time_s: float) -> float:
-        """Let the filter know where the person is seen, and tell how far away [m]."""
+        """Update the filter with a detection, and return the distance [m]."""
         distance_m = float(self._model.network.predict(np.array([figure.cues]))[0])
         place = self._pose.transform_polar(distance_m, figure.bearing_rad)
         before = self._person
@@ -221,5 +221,5 @@ class PanoramicPaperTracker:
 
     @property
     def _is_seen(self) -> bool:
-        """Whether the person is in the newest image."""
+        """Whether the person is detected in the newest image."""
         return self.explanation is not None and self.explanation.figure is not None

@@ -13,7 +13,7 @@ from peopleboy.geometry.small_matrices import inverse
 Floats = NDArray[np.float64]
 
 STEP_S = 1.0 / 3.0
-"""Time between two images of the paper [s], to which Q belongs."""
+"""Time step of the paper's images [s], to which Q refers."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -21,8 +21,8 @@ class MotionNoise:
     """Covariances of the filter.
 
     Attributes:
-        step_m2: Q, (2, 2) of what is not known of a step of `STEP_S` [m2].
-        measurement_m2: R, (2, 2) of the error of a measured position [m2].
+        step_m2: Q, (2, 2) process noise of a step of `STEP_S` [m2].
+        measurement_m2: R, (2, 2) measurement noise of a position [m2].
     """
 
     step_m2: Floats
@@ -38,12 +38,12 @@ PRINTED = MotionNoise(
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Estimate:
-    """What is believed of a person at one instant.
+    """State estimate of a person at one instant.
 
     Attributes:
         position_m: (2,) in room coordinates [m].
-        covariance_m2: P, (2, 2) of its error [m2].
-        velocity_m: (2,) u, how far the person goes in a step of `STEP_S` [m].
+        covariance_m2: P, (2, 2) [m2].
+        velocity_m: (2,) u, displacement in a step of `STEP_S` [m].
     """
 
     position_m: Floats
@@ -53,24 +53,24 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True)
 class PositionFilter:
-    """The filter's settings.
+    """Settings of the filter.
 
-    The paper calls u both "the nominal velocity" and the estimated one, and does not say where it is from.
+    The paper calls u both "the nominal velocity" and the estimated one, and does not define its source.
 
     Attributes:
         noise: Q and R.
-        uses_velocity: whether u is the last estimated step; without, it is 0.
+        uses_velocity: whether u is the last estimated step; otherwise it is 0.
     """
 
     noise: MotionNoise
     uses_velocity: bool
 
     def start(self, measured_m: Floats) -> Estimate:
-        """Begin with the first measured position (2,) [m]."""
+        """Initiate with the first measured position (2,) [m]."""
         return Estimate(position_m=measured_m, covariance_m2=self.noise.measurement_m2)
 
     def predict(self, before: Estimate, steps: float = 1.0) -> Estimate:
-        """Return what to expect so many steps of `STEP_S` later."""
+        """Predict over a number of steps of `STEP_S`."""
         return Estimate(
             position_m=before.position_m + steps * before.velocity_m,  # Eq. 5
             covariance_m2=before.covariance_m2 + steps * self.noise.step_m2,  # Eq. 6
@@ -78,7 +78,7 @@ class PositionFilter:
         )
 
     def update(self, before: Estimate, measured_m: Floats, steps: float = 1.0) -> Estimate:
-        """Take in the position (2,) [m] that is measured so many steps after the last one."""
+        """Update with a position (2,) [m] measured a number of steps after the last one."""
         expected = self.predict(before, steps)
         gain = expected.covariance_m2 @ inverse(expected.covariance_m2 + self.noise.measurement_m2)  # Eq. 9
         position = expected.position_m + gain @ (measured_m - expected.position_m)  # Eq. 7
@@ -92,8 +92,8 @@ class PositionFilter:
 def estimate_noise(walks: Iterable[tuple[Floats, Floats]], *, uses_velocity: bool) -> MotionNoise:
     """Estimate Q and R from walks of three or more steps of `STEP_S`, each true and measured (N, 2) [m].
 
-    With a velocity, Q is of what a true step differs from the last one as it was measured: a filter knows
-    that one only by estimate, and runs away if it takes it for true.
+    With a velocity, Q is the spread of true steps around the last measured step: a filter only has an
+    estimate of that step, and diverges if it takes it for exact.
     """
     unknown, errors = [], []
     for true, measured in walks:

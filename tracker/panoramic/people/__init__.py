@@ -1,1 +1,1 @@
-"""Several people at a time, from a standing or a moving robot."""
+"""The panoramic tracker of several people, for a standing or moving robot."""

@@ -1,4 +1,4 @@
-"""What a person looks like, from the shoes up: mean colours of bands of height, the light divided out."""
+"""Appearance of a person: illumination-invariant mean colours of height bands."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ BANDS: Final = len(BANDS_M) - 1
 _HALF_WIDTH_M: Final = 0.3
 _LEAST_PX: Final = 6
 _LEARNING: Final = 0.06
-_SPREAD: Final = 0.055  # by which one person's colours differ from image to image
+_SPREAD: Final = 0.055  # standard deviation of one person's colours between images
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,19 +28,19 @@ class BandColours:
     """Mean colours of a person.
 
     Attributes:
-        colours: (BANDS, 3) red, green, blue as shares of the image's own mean; NaN for a band not seen yet.
+        colours: (BANDS, 3) red, green, blue divided by the image's mean; NaN for a band not seen yet.
     """
 
     colours: Map
 
     def joined(self, newest: BandColours) -> BandColours:
-        """Learn from one more image."""
+        """Update with one more image."""
         grown = self.colours + _LEARNING * (newest.colours - self.colours)
         known = np.where(np.isnan(self.colours), newest.colours, self.colours)
         return BandColours(np.where(np.isnan(grown), known, grown).astype(np.float32))
 
     def unlikeness(self, other: BandColours) -> float:
-        """Compare two people: mean squared difference in spreads, 0 for the same; NaN if nothing compares."""
+        """Return the mean squared difference of two people, in standard deviations; NaN without a common band."""
         return float(_unlikeness(self.colours, other.colours))
 
 
@@ -67,9 +67,9 @@ def look_at(
     distance_m: float,
     calibration: PanoramaCalibration,
 ) -> BandColours:
-    """Describe who stands at a bearing and a distance in an RGB panorama (H, W, 3).
+    """Describe the person at a bearing and a distance in an RGB panorama (H, W, 3).
 
-    Only pixels count that are more likely a person than not (foreground, (H, W)), and that nobody nearer
+    Only pixels count that are more likely foreground than not (foreground, (H, W)), and that no nearer person
     covers (H, W).
     """
     rows = _rows(distance_m, calibration)

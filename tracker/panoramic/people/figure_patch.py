@@ -1,4 +1,4 @@
-"""What the panorama shows where a person would stand: a small map in metres, the same at every distance."""
+"""Patches of the panorama at a person's position: small maps in metres, independent of the distance."""
 
 from __future__ import annotations
 
@@ -17,24 +17,23 @@ Map = NDArray[np.float32]
 
 HALF_WIDTH_M: Final = 0.45
 TOP_M: Final = 1.3
-BOTTOM_M: Final = -0.35  # of the upright plane through the person, below which lies the floor before it
+BOTTOM_M: Final = -0.35  # lower end of the upright plane through the person, where the floor in front appears
 ACROSS: Final = 15
 UP: Final = 22
 
 PEOPLE, NEW, KNOWN = 0, 1, 2
 LAYERS: Final = 3
-"""Shares of a cell's pixels: on people, unlike the background, and not covered by a person nearer."""
+"""Layers of a cell, as shares of its pixels: foreground, novel, and not covered by a nearer person."""
 
 PATCH: Final = LAYERS * ACROSS * UP
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FigureMap:
-    """What one panorama shows of people, ready to be asked at any place.
+    """Integral images of one panorama, from which patches at any position are computed.
 
     Attributes:
-        sums: (H + 1, W + 1, LAYERS) over the pixels above and left of each corner; of a pixel that is covered
-            nothing counts.
+        sums: (H + 1, W + 1, LAYERS) over the pixels above and left of each corner, without covered pixels.
         calibration: of the camera.
     """
 
@@ -43,11 +42,11 @@ class FigureMap:
 
     @classmethod
     def build(cls, people: Map, new: Map, covered: Map, calibration: PanoramaCalibration) -> FigureMap:
-        """Add up maps (H, W): how surely a pixel is on a person, unlike the background, and covered."""
+        """Integrate maps (H, W): foreground probability, novelty, and covered pixels."""
         return cls(_summed(people, new, covered), calibration)
 
     def patches(self, bearing_rad: Floats, distance_m: Floats) -> Map:
-        """Show (N, PATCH) what is seen at places on the floor, by their bearings and distances (N,)."""
+        """Return patches (N, PATCH) at positions on the floor, by their bearings and distances (N,)."""
         camera = self.calibration
         return _patches(
             self.sums,
@@ -80,7 +79,7 @@ def _summed(people: Map, new: Map, covered: Map) -> Map:
 
 @njit(cache=True, nogil=True, fastmath={"contract"})
 def _add_down(people: Map, new: Map, covered: Map, above: Map, columns: Map) -> None:
-    """Add a row's pixels (W,) to what each column summed up to above (LAYERS, W)."""
+    """Add a row's pixels (W,) to the column sums (LAYERS, W)."""
     of_people, of_new, of_known = columns[PEOPLE], columns[NEW], columns[KNOWN]
     people_above, new_above, known_above = above[PEOPLE], above[NEW], above[KNOWN]
     for u in range(len(people)):
@@ -92,7 +91,7 @@ def _add_down(people: Map, new: Map, covered: Map, above: Map, columns: Map) -> 
 
 @njit(cache=True, nogil=True)
 def _add_along(columns: Map, more: Map, line: Map, below: Map) -> None:
-    """Add up the columns of two rows from the left on, as each step waits for the one before in its row."""
+    """Accumulate two rows from the left, as each step within a row waits for the previous one."""
     a0, b0, c0 = np.float32(0.0), np.float32(0.0), np.float32(0.0)
     a1, b1, c1 = np.float32(0.0), np.float32(0.0), np.float32(0.0)
     for u in range(columns.shape[1]):
@@ -139,14 +138,14 @@ def _patches(
 
 @njit(cache=True, nogil=True)
 def between(sums: Map, layer: int, left: float, right: float, top: float, bottom: float) -> float:
-    """Add up a layer between corners, which may be inside pixels, and beyond the seam."""
+    """Sum a layer between corners, which may be inside pixels and beyond the seam."""
     lower = _layer_at(sums, layer, right, bottom) - _layer_at(sums, layer, left, bottom)
     return float(lower - _layer_at(sums, layer, right, top) + _layer_at(sums, layer, left, top))
 
 
 @njit(cache=True, nogil=True)
 def _at(sums: Map, x: float, y: float, reported: Floats) -> None:
-    """Interpolate sums between corners; above and below the image nothing is added."""
+    """Interpolate sums between corners, constant above and below the image."""
     width = sums.shape[1] - 1
     turns = math.floor(x / width)
     x -= turns * width

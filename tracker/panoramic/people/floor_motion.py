@@ -1,4 +1,4 @@
-"""How people move on the floor: a Kalman filter over place and velocity."""
+"""Motion of people on the floor: a Kalman filter of position and velocity."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ FASTEST_M_S: Final = 2.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FloorMotion:
-    """What is believed of a person's motion at one instant.
+    """State estimate of a person's motion at one instant.
 
     Attributes:
         state: (4,) x, y [m], and their velocities [m/s] in room coordinates.
-        covariance: (4, 4) of its error.
+        covariance: (4, 4) of the state.
     """
 
     state: Floats
@@ -34,26 +34,26 @@ class FloorMotion:
 
     @property
     def place_m2(self) -> Floats:
-        """(2, 2) covariance of the place [m2]."""
+        """(2, 2) covariance of the position [m2]."""
         return self.covariance[:2, :2]
 
     @classmethod
     def begin(cls, place_m: Floats, error_m2: Floats) -> FloorMotion:
-        """Start at a measured place (2,) with an error (2, 2), as a person who may walk anywhere."""
+        """Initiate at a measured position (2,) with a covariance (2, 2) and an unknown walking velocity."""
         covariance = np.zeros((4, 4))
         covariance[:2, :2] = error_m2
         covariance[2, 2] = covariance[3, 3] = FIRST_SPEED_SD_M_S**2
         return cls(np.concatenate([place_m, np.zeros(2)]), covariance)
 
     def later(self, dt_s: float, restlessness: float) -> FloorMotion:
-        """Predict: velocities wander as white accelerations of this density [m2/s3] make them.
+        """Predict with white acceleration of this spectral density [m2/s3].
 
         Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 6.2.2.
         """
         return FloorMotion(*_later(self.state, self.covariance, dt_s, restlessness))
 
     def corrected(self, place_m: Floats, error_m2: Floats) -> FloorMotion:
-        """Take in a measured place (2,) [m] with an error of this covariance (2, 2) [m2]."""
+        """Update with a measured position (2,) [m] with this covariance (2, 2) [m2]."""
         (a, b), (c, d) = (self.place_m2 + error_m2).tolist()
         gain = self.covariance[:, :2] @ (np.array([[d, -b], [-c, a]]) / (a * d - b * c))
         state = self.state + gain @ (place_m - self.place_m)
@@ -64,7 +64,7 @@ class FloorMotion:
         return FloorMotion(state, (covariance + covariance.T) / 2.0)
 
     def slowed(self, dt_s: float, tau_s: float) -> FloorMotion:
-        """Let the velocity fade, as nobody unseen walks straight on for long."""
+        """Decay the velocity, as unseen people rarely walk straight for long."""
         state = self.state.copy()
         state[2:] *= np.exp(-dt_s / tau_s)
         return FloorMotion(state, self.covariance)

@@ -1,4 +1,4 @@
-"""One panorama, as the tracker of people looks at it from the nearest person to the farthest."""
+"""One panorama, processed from the nearest person to the farthest."""
 
 from __future__ import annotations
 
@@ -24,26 +24,26 @@ from peopleboy.tracker.panoramic.people.figure_patch import (
 from peopleboy.tracker.track import Box
 
 _OUTLINE_M: Final = ((0.42, -0.2), (0.4, 0.3), (0.28, 0.7), (0.28, 2.0))
-"""Half widths of what a person can cover, by height [m]: legs reach out, the rest does not."""
+"""Half widths of the area that a person can cover, by height [m]: legs spread, the rest does not."""
 
 _TRUNK: Final = 2
-"""From this one of them up a person is in one piece, and a gap is the end of it."""
+"""Index from which the body is in one piece, so that a gap is its end."""
 
 BODY_M: Final = (0.5, 1.72)
-"""Width and height of the upright rectangle that a person's box stands for [m]."""
+"""Width and height of the upright rectangle that defines a person's box [m]."""
 
 
 @dataclass(slots=True, eq=False)
 class PanoramaScene:
-    """An image, and who has been found in it so far.
+    """An image, and the people found in it so far.
 
     Attributes:
         image: (H, W, 3) uint8 RGB.
-        foreground: (H, W) how surely each pixel is on a person.
-        new: (H, W) how unlike the background it is, 0..1.
-        covered: (H, W) 1 where a person who has been found is, 0 elsewhere.
+        foreground: (H, W) foreground probability of each pixel.
+        new: (H, W) difference from the background, 0..1.
+        covered: (H, W) 1 where a found person is, 0 elsewhere.
         calibration: of the camera.
-        figures: both, ready to be asked; renewed by `cover`.
+        figures: integral images of these maps; renewed by `cover`.
     """
 
     image: NDArray[np.uint8]
@@ -57,20 +57,20 @@ class PanoramaScene:
     def of(
         cls, image: NDArray[np.uint8], foreground: Map, new: Map, calibration: PanoramaCalibration
     ) -> PanoramaScene:
-        """Begin with nobody found."""
+        """Make one without people."""
         covered = np.zeros_like(foreground)
         figures = FigureMap.build(foreground, new, covered, calibration)
         return cls(image, foreground, new, covered, calibration, figures)
 
     def cover(self, bearing_rad: float, distance_m: float) -> None:
-        """Take the pixels of a person who has been found out of what is left for those behind."""
+        """Mark a found person's pixels as covered, for those behind."""
         rows, halves = _outline(distance_m, self.calibration)
         middle = (0.5 - bearing_rad / math.tau) * self.calibration.width - 0.5
         _cover(self.covered, self.foreground, middle, rows, halves)
         self.figures = FigureMap.build(self.foreground, self.new, self.covered, self.calibration)
 
     def hidden_share(self, bearing_rad: float, distance_m: float) -> float:
-        """Return which share of a body at a place, as far as it is in the image, is covered by others."""
+        """Return the share of a body's visible area that is covered by others."""
         left, top, width, height = self.box(bearing_rad, distance_m)
         top, bottom = max(top + 0.5, 0.0), min(top + height + 0.5, float(self.calibration.height))
         if bottom - top < 1.0:
@@ -80,16 +80,16 @@ class PanoramaScene:
         return 1.0 - known / (0.5 * width * (bottom - top))
 
     def clothing(self, bearing_rad: float, distance_m: float) -> BandColours:
-        """Return what who stands there looks like, as far as nobody nearer covers it."""
+        """Return the appearance of the person at a position, from uncovered pixels."""
         return look_at(self.image, self.foreground, self.covered, bearing_rad, distance_m, self.calibration)
 
     def box(self, bearing_rad: float, distance_m: float) -> Box:
-        """Return the box [px] of a person upright, which may reach beyond the image and over the seam."""
+        """Return the box [px] of an upright person, which may reach beyond the image and over the seam."""
         return person_box(bearing_rad, distance_m, self.calibration)
 
 
 def person_box(bearing_rad: float, distance_m: float, calibration: PanoramaCalibration) -> Box:
-    """Return the box [px] of a person upright; one across the seam reaches beyond the right border."""
+    """Return the box [px] of an upright person; across the seam it reaches beyond the right border."""
     width_m, height_m = BODY_M
     top, bottom = calibration.row(distance_m, height_m), calibration.row(distance_m, 0.0)
     width = 2.0 * math.atan2(width_m / 2.0, distance_m) / math.tau * calibration.width
@@ -126,7 +126,7 @@ def _cover(covered: Map, foreground: Map, middle: float, rows: Floats, halves: F
                         break
 
 
-# Where in the panorama untracked people may be.
+# Candidate positions of untracked people.
 
 NEAREST_M: Final = 1.1
 FARTHEST_M: Final = 7.5
@@ -135,8 +135,8 @@ _BEARINGS: Final = np.linspace(-math.pi, math.pi, 160, endpoint=False)
 _LEAST: Final = 0.25
 _APART_RAD: Final = math.radians(8.0)
 
-# Limits of a standing body, of the floor before its feet, and of what is beside it [m]: to the left, to the
-# right, from, up to.
+# Limits of a standing body, of the floor before its feet, and of the area next to it [m]: to the left, to
+# the right, from, up to.
 _PARTS_M: Final = np.array(
     [(0.15, -0.15, 0.05, 1.2), (0.25, -0.25, -0.35, -0.1), (0.5, 0.3, 0.05, 1.2), (-0.3, -0.5, 0.05, 1.2)]
 )
@@ -145,7 +145,7 @@ _LITTLE: Final = 0.1
 
 
 def promising_places(figures: FigureMap, most: int) -> Floats:
-    """Find up to so many bearings [rad] and distances [m], (N, 2), at which a body stands alone."""
+    """Return up to a number of bearings [rad] and distances [m], (N, 2), of isolated bodies."""
     bearings, distances, parts = _grid(figures.calibration)
     worth = _worth(figures.sums, parts)
     found: list[int] = []
@@ -181,21 +181,21 @@ def _row(distance_m: Floats, height_m: float, calibration: PanoramaCalibration) 
 
 @njit(cache=True, nogil=True)
 def _worth(sums: Map, parts: Floats) -> Floats:
-    """Rate places: a body counts for, what lies before its feet and beside it against; 0 if there is none."""
+    """Score positions: foreground in the body counts for, and in front of the feet or next to it against."""
     worth = np.empty(len(parts))
     shares = np.empty(4)
     for n in range(len(parts)):
         shares[:] = 0.0
         worth[n] = 0.0
         for part in range(4):
-            if part == 1 and shares[0] < _LEAST:  # all else only counts against
+            if part == 1 and shares[0] < _LEAST:  # the other parts only count against
                 break
             left, right, top, bottom = parts[n, part]
             if bottom - top < 0.5:  # outside the image
                 continue
             area = (right - left) * (bottom - top)
             seen = between(sums, PEOPLE, left, right, top, bottom) / area
-            if part == 0 and seen < _LEAST * _LITTLE:  # too few to be a person, whatever is known
+            if part == 0 and seen < _LEAST * _LITTLE:  # too few pixels for a person
                 continue
             known = between(sums, KNOWN, left, right, top, bottom) / area
             if part > 0 or known > _LEAST_KNOWN:

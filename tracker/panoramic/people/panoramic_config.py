@@ -7,18 +7,18 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SightingConfig:
-    """When a person is taken to be seen.
+    """Detection of a person.
 
     Attributes:
-        least_evidence: log odds from which a patch shows the person.
-        error_share: weight of the error that the model reports: it was trained with more examples
-            than those by which its errors were learned.
-        gate: squared Mahalanobis distance from which a sighting is of another person.
-        wide_m: standard deviation of a predicted place from which its neighbourhood is looked at, too [m].
-        reach_m: how far to either side that is [m].
-        partly_share: share of the body behind others from which a person is hidden in part.
-        hidden_share: likewise from which who is not seen is hidden.
-        blind_share: likewise from which nothing is to be seen.
+        least_evidence: log-odds from which a patch shows a person.
+        error_share: factor on the model's reported error: the model was trained with more examples than those
+            from which its errors were learned.
+        gate: squared Mahalanobis distance beyond which a detection belongs to another person.
+        wide_m: standard deviation of a prediction from which its neighbourhood is searched, too [m].
+        reach_m: half-width of that neighbourhood [m].
+        partly_share: covered share of the body from which a person is partly occluded.
+        hidden_share: covered share from which an undetected person is occluded.
+        blind_share: covered share from which a person cannot be detected.
     """
 
     least_evidence: float = -1.0
@@ -33,24 +33,24 @@ class SightingConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LifespanConfig:
-    """When tracks begin and end.
+    """Initiation, confirmation and deletion of tracks.
 
     Attributes:
-        birth_sightings, birth_s: in so many images a person must be seen to be believed, or in two so long
-            [s] apart.
-        birth_trust: log odds from which a person new is believed.
-        return_trust: log odds from which a person is believed who looks like one who went.
-        death_trust: log odds below which nobody is there.
-        most_trust: log odds of a single image count as no more than this.
-        miss: log odds of an image in which who should be there is not seen.
-        trust_s: images count for about so long [s].
-        newcomers: how many places are looked at in an image for people who are not known.
-        farthest_m: farther away nobody is found [m].
-        newcomer_s: who is not believed yet and not seen for longer is forgotten [s].
-        unseen_s: who is not seen for longer, and hidden by nobody, is gone [s].
-        hidden_s: who is hidden for longer is gone [s].
-        apart_m: nobody is found nearer to another person than this [m].
-        double_m: two who are nearer to each other than this are one [m].
+        birth_sightings, birth_s: number of images with a detection needed for confirmation, or two images
+            this far apart [s].
+        birth_trust: log-odds for the confirmation of a new person.
+        return_trust: log-odds for the confirmation of a person who resembles a lost one.
+        death_trust: log-odds below which a track is deleted.
+        most_trust: limit of the log-odds of a single image.
+        miss: log-odds of an image without an expected detection.
+        trust_s: time constant of the log-odds [s].
+        newcomers: number of positions searched per image for new people.
+        farthest_m: greatest distance of detections [m].
+        newcomer_s: time without a detection after which a tentative track is deleted [s].
+        unseen_s: the same for an unoccluded confirmed track [s].
+        hidden_s: the same for an occluded track [s].
+        apart_m: least distance of a new person from others [m].
+        double_m: distance below which two tracks are one person [m].
     """
 
     birth_sightings: int = 3
@@ -72,14 +72,14 @@ class LifespanConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IdentityConfig:
-    """When a detection is a person who was lost before.
+    """Re-identification of lost people.
 
     Attributes:
-        alike: unlikeness of looks up to which who comes is one who went.
-        strange: unlikeness from which a person looks like another person.
-        strange_s: for how long a person must, to be another person [s].
-        reach_m, fastest_m_s: how far from where it was lost a person may be found, at once [m] and with time.
-        forget_s: who has been gone for longer is not recognised [s].
+        alike: greatest difference of appearance for re-identification.
+        strange: difference from which a person looks like another one.
+        strange_s: time after which such a person is another one [s].
+        reach_m, fastest_m_s: greatest distance from the last position, at once [m] and growing with time.
+        forget_s: time after which a lost person is forgotten [s].
     """
 
     alike: float = 2.5
@@ -95,11 +95,11 @@ class PeopleConfig:
     """All settings.
 
     Attributes:
-        sighting, life, identity: as they say.
-        restlessness: density of the white accelerations with which people move [m2/s3].
-        fading_s: within this time, who is not seen is taken to stop [s].
-        lasting_share: how much of an image's error, as a standard deviation, a person's further images have,
-            too: gait and build make it.
+        sighting, life, identity: settings of detection, of the track's life, and of re-identification.
+        restlessness: spectral density of the white acceleration of people [m2/s3].
+        fading_s: time constant with which the velocity of an unseen person decays [s].
+        lasting_share: share of an image's standard deviation that is common to a person's further images,
+            from gait and build.
     """
 
     sighting: SightingConfig = field(default_factory=SightingConfig)

@@ -1,4 +1,4 @@
-"""Looking for one person in a panorama: near where it is expected, or where nobody is known."""
+"""Detection of one person in a panorama: near a prediction, or anywhere."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ _AROUND = np.array([(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)], np.float64)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Sighting:
-    """A person seen.
+    """A detected person.
 
     Attributes:
-        evidence: log odds that it is a person.
+        evidence: log-odds that it is a person.
         bearing_rad, distance_m: from the robot.
-        place_m: (2,) in room coordinates.
-        error_m2: (2, 2) covariance of its error.
+        place_m: (2,) position in room coordinates.
+        error_m2: (2, 2) covariance of the position.
     """
 
     evidence: float
@@ -40,10 +40,10 @@ class Sighting:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Onlooker:
-    """Who looks, and from where.
+    """Detector with the robot's pose.
 
     Attributes:
-        model: reads patches.
+        model: evaluates patches.
         pose: of the robot.
         config: settings.
     """
@@ -53,7 +53,7 @@ class Onlooker:
     config: SightingConfig
 
     def expected(self, motion: FloorMotion, scene: PanoramaScene) -> Sighting | None:
-        """Look where a person is expected; None if nobody is there."""
+        """Detect a person near a prediction; None if there is none."""
         places = motion.place_m[None]
         spread = math.sqrt(float(np.trace(motion.place_m2)) / 2.0)
         if spread > self.config.wide_m:
@@ -66,7 +66,7 @@ class Onlooker:
         return seen if is_near else None
 
     def at(self, scene: PanoramaScene, polar: Floats) -> Sighting | None:
-        """Look at places (N, 2), bearing and distance, and closer at the best; None if nobody is there."""
+        """Search positions (N, 2), bearing and distance, and refine the best; None if there is no person."""
         first = self._best(scene, polar)
         if first is None:
             return None
@@ -74,7 +74,7 @@ class Onlooker:
         return None if seen is None or seen.evidence < self.config.least_evidence else seen
 
     def polar(self, place_m: Floats) -> tuple[float, float]:
-        """Return bearing [rad] and distance [m] of a place (2,) of the room."""
+        """Return bearing [rad] and distance [m] of a position (2,) in the room."""
         x, y = self.pose.points_to_local(place_m).tolist()
         return math.atan2(y, x), max(math.hypot(x, y), NEAREST_M)
 
@@ -103,17 +103,17 @@ def _axes(angle: float) -> Floats:
     return np.array([[cosine, -sine], [sine, cosine]])
 
 
-# What the panoramic tracker believes beyond its tracks.
+# Explanation of the panoramic tracker.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PeopleExplanation:
-    """What the tracker sees in its newest image.
+    """State of the tracker at its newest image.
 
     Attributes:
-        background: (H, W, 3) uint8 RGB, what it takes for the scene without people.
-        foreground: (H, W) how surely each pixel is on a person.
-        covered: (H, W) 1 where it is on a person who is tracked.
+        background: (H, W, 3) uint8 RGB, the background model.
+        foreground: (H, W) foreground probability.
+        covered: (H, W) 1 on tracked people.
     """
 
     background: NDArray[np.uint8]

@@ -1,4 +1,4 @@
-"""Several people tracked all round a robot that stands or drives."""
+"""The tracker of several people around a standing or moving robot."""
 
 from __future__ import annotations
 
@@ -25,13 +25,12 @@ LONGEST_STEP_S = 2.0
 
 
 class PanoramicTracker:
-    """Tracks people on the floor by what a learned model sees in the panorama.
+    """Tracks people on the floor by a learned model of the panorama.
 
-    People are looked for from the nearest to the farthest, and whoever is found is taken out of the picture
-    for those behind.
+    People are detected from the nearest to the farthest, and each one's pixels are masked for those behind.
 
     Args:
-        model: reads what the panorama of the camera that it holds for shows at a place.
+        model: detects people at positions in the panorama of the camera it was trained for.
         config: settings.
     """
 
@@ -54,24 +53,24 @@ class PanoramicTracker:
 
     @property
     def explanation(self) -> PeopleExplanation | None:
-        """What it took for people in the newest image; None before the first."""
+        """The state at the newest image; None before the first."""
         if self._scene is None:
             return None
         return PeopleExplanation(self._foreground.background, self._scene.foreground, self._scene.covered)
 
     def check_cameras(self, calibrations: Mapping[str, Calibration]) -> None:
-        """Refuse another camera than the model was trained on, before there are images.
+        """Refuse a camera that the model was not trained on, before the first frame.
 
         Raises:
-            BadInput: it is another, or none that sees all round.
+            BadInput: another camera, or one that is not panoramic.
         """
         self._checked(calibrations)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Take in the next frame and tell who is where.
+        """Process the next frame and return the reported tracks.
 
         Raises:
-            BadInput: an image that is none, or of another camera than the model was trained on.
+            BadInput: the image is invalid, or of a camera that the model was not trained on.
         """
         check_frame(frame)
         if frame.odometry is not None:
@@ -81,7 +80,7 @@ class PanoramicTracker:
         return tuple(self._track(person, frame) for person in self._persons if person.id)
 
     def _look(self, frame: Frame) -> None:
-        """Take in a new panorama."""
+        """Process a new panorama."""
         image, calibration = frame.rgb(PANORAMA), self._checked(frame.calibrations)
         moved = (
             None if self._seen_from is None else Odometry.from_motion(self._pose.relative_to(self._seen_from))
@@ -96,7 +95,7 @@ class PanoramicTracker:
         self._persons = self._named(self._kept(known, life), life)
 
     def _checked(self, calibrations: Mapping[str, Calibration]) -> PanoramaCalibration:
-        """Return the camera's calibration, if it is one that the model was trained on."""
+        """Return the camera's calibration, if the model was trained on it."""
         camera = calibrations.get(PANORAMA)
         if camera is self._camera and self._camera is not None:
             return self._camera
@@ -108,7 +107,7 @@ class PanoramicTracker:
         return camera
 
     def _followed(self, scene: PanoramaScene, looker: Onlooker, life: Life) -> list[PanoramicPerson]:
-        """Look for everybody who is known, the nearest first."""
+        """Detect all tracked people, the nearest first."""
         config, restlessness = self.config.sighting, self.config.restlessness
         expected = (replace(one, motion=one.motion.later(life.dt_s, restlessness)) for one in self._persons)
         found: list[PanoramicPerson] = []
@@ -127,7 +126,7 @@ class PanoramicTracker:
     def _with_newcomers(
         self, known: Sequence[PanoramicPerson], scene: PanoramaScene, looker: Onlooker, life: Life
     ) -> list[PanoramicPerson]:
-        """Look where nobody is known; who is found is a person who was out of sight, or new."""
+        """Search for untracked people, who are new or were lost."""
         config, everybody = self.config.life, list(known)
         for polar in promising_places(scene.figures, config.newcomers):
             seen = looker.at(scene, polar[None])
@@ -148,7 +147,7 @@ class PanoramicTracker:
         return everybody
 
     def _kept(self, persons: Sequence[PanoramicPerson], life: Life) -> list[PanoramicPerson]:
-        """Let go of those who are gone, and of doubles: of two at one place, who was seen last stays."""
+        """Delete lost tracks and duplicates: of two at one position, the last detected one is kept."""
         kept: list[PanoramicPerson] = []
         gone: list[PanoramicPerson] = []
         for person in sorted(persons, key=lambda one: (-one.seen_s, one.id == 0, one.id)):
@@ -158,7 +157,7 @@ class PanoramicTracker:
         return kept
 
     def _named(self, persons: Sequence[PanoramicPerson], life: Life) -> tuple[PanoramicPerson, ...]:
-        """Give numbers to those who are believed in: of who is hidden and may have come out, or new ones."""
+        """Number confirmed people: with the id of an occluded one who may have reappeared, or a new id."""
         known = list(self._register.resolve_swaps(persons, life.time_s))
         for one in [one for one in known if one.id == 0 and self._is_believed(one, life)]:
             known.remove(one)
@@ -172,7 +171,7 @@ class PanoramicTracker:
         return tuple(sorted(known, key=lambda one: (one.id == 0, one.id)))
 
     def _is_believed(self, person: PanoramicPerson, life: Life) -> bool:
-        """Return whether a person has been seen for long and surely enough; less will do for who returns."""
+        """Return whether a person has enough evidence; less is needed for one who returns."""
         config = self.config.life
         if not life.is_settled(person) or person.trust < config.return_trust:
             return False
@@ -201,7 +200,7 @@ class PanoramicTracker:
 
 
 def _hider(bearing: float, nearer: Sequence[PanoramicPerson], looker: Onlooker) -> int | None:
-    """Name who of those that are nearer stands most in the line of sight."""
+    """Return the id of the nearer person who covers the line of sight most."""
     seen = [one for one in nearer if one.is_seen and one.id]
     off = {
         one.id: abs(math.remainder(looker.polar(one.motion.place_m)[0] - bearing, math.tau)) for one in seen
@@ -210,7 +209,7 @@ def _hider(bearing: float, nearer: Sequence[PanoramicPerson], looker: Onlooker) 
 
 
 def _taken(seen: Sighting, scene: PanoramaScene) -> BandColours:
-    """Return what a person looks like, and take that one out of the picture."""
+    """Return a person's appearance, and mask the person's pixels."""
     clothing = scene.clothing(seen.bearing_rad, seen.distance_m)
     scene.cover(seen.bearing_rad, seen.distance_m)
     return clothing

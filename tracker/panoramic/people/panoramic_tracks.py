@@ -1,4 +1,4 @@
-"""One tracked person."""
+"""State of the tracks of the panoramic tracker."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from peopleboy.tracker.track import Status
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PanoramicPerson:
-    """What is believed of one person.
+    """State of one track.
 
     Attributes:
         id: of the track; 0 before it has one.
-        motion: place and velocity in room coordinates.
-        lasting_m2: (2, 2) covariance of the place that further images do not lessen, in room coordinates.
-        born_s, seen_s: when it was seen first, and last [s].
-        sightings: in how many images.
-        trust: log odds that a person is there, over the newest images.
-        status: how well it is seen; a newcomer is tentative until it is believed.
-        appearance: its colours, over time.
-        newest: its colours in the last image in which it was seen whole.
-        strange_s: for how long it has looked like another person [s].
-        occluder: id of who hides it.
+        motion: position and velocity in room coordinates.
+        lasting_m2: (2, 2) covariance of the position that further images do not reduce, in room coordinates.
+        born_s, seen_s: times of the first and the last detection [s].
+        sightings: number of images with a detection.
+        trust: log-odds that a person is there, over the newest images.
+        status: visibility; a new track is tentative until it is confirmed.
+        appearance: colours over time.
+        newest: colours in the last image in which the person was fully visible.
+        strange_s: how long it has looked like another person [s].
+        occluder: id of the occluding track.
     """
 
     id: int
@@ -48,33 +48,33 @@ class PanoramicPerson:
 
     @property
     def confidence(self) -> float:
-        """0..1, how surely a person is there."""
+        """0..1, probability that a person is there."""
         return 1.0 / (1.0 + math.exp(-self.trust))
 
     @property
     def is_seen(self) -> bool:
-        """Whether it was seen in the newest image."""
+        """Whether it was detected in the newest image."""
         return self.status is not Status.TOTALLY_OCCLUDED
 
     def known_as(self, known: PanoramicPerson) -> PanoramicPerson:
-        """Take a person new for one who is known: the number, the age and the appearance is that one's."""
+        """Continue a known person's track: take over its id, age and appearance."""
         born_s = min(known.born_s, self.born_s)
         return replace(self, id=known.id, born_s=born_s, strange_s=0.0, clothing=known.clothing)
 
 
-# How a person is believed in: seen, unseen, new, gone.
+# Existence of a person: detected, missed, new, deleted.
 
 _ROUNDING_S = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
 class Life:
-    """What an image changes in what is believed of a person.
+    """Updates of tracks with one image.
 
     Attributes:
         config: settings.
         time_s: of the image [s].
-        dt_s: since the one before [s].
+        dt_s: time since the previous image [s].
     """
 
     config: PeopleConfig
@@ -82,7 +82,7 @@ class Life:
     dt_s: float
 
     def initiate(self, seen: Sighting, clothing: BandColours) -> PanoramicPerson:
-        """Begin with a person who is seen for the first time."""
+        """Initiate a track with a first detection."""
         return PanoramicPerson(
             id=0,
             motion=FloorMotion.begin(seen.place_m, seen.error_m2),
@@ -99,7 +99,7 @@ class Life:
     def seen(
         self, person: PanoramicPerson, seen: Sighting, clothing: BandColours, occluder: int | None
     ) -> PanoramicPerson:
-        """Take in that a person is seen, whole or with a person in front."""
+        """Update a track with a detection, fully visible or partly occluded."""
         is_whole, passed_s = occluder is None, self.time_s - person.seen_s
         is_strange = is_whole and person.clothing.unlikeness(clothing) > self.config.identity.strange
         return replace(
@@ -117,7 +117,7 @@ class Life:
         )
 
     def unseen(self, person: PanoramicPerson, occluder: int | None) -> PanoramicPerson:
-        """Take in that a person is not seen; who is hidden is trusted as before."""
+        """Update a track without a detection; the log-odds of an occluded one do not change."""
         miss = self._trust(person.trust, self.config.life.miss, self.dt_s)
         return replace(
             person,
@@ -129,42 +129,42 @@ class Life:
         )
 
     def is_gone(self, person: PanoramicPerson) -> bool:
-        """Return whether a person has been out of sight for too long, or was nobody."""
+        """Return whether a track is to be deleted: unseen for too long, or a false positive."""
         unseen_s = self.time_s - person.seen_s
         return unseen_s > self._patience_s(person) or person.trust < self.config.life.death_trust
 
     def is_settled(self, person: PanoramicPerson) -> bool:
-        """Return whether a person is seen, and has been for long enough to be believed."""
+        """Return whether a track is visible, and long enough for confirmation."""
         life = self.config.life
         has_stayed = person.sightings > 1 and self.time_s - person.born_s >= life.birth_s - _ROUNDING_S
         return person.is_seen and (has_stayed or person.sightings >= life.birth_sightings)
 
     def could_be(self, person: PanoramicPerson, place_m: Floats, clothing: BandColours) -> bool:
-        """Return whether a person out of sight may be the one seen here, by distance and appearance."""
+        """Return whether a lost person may be the detected one, by distance and appearance."""
         identity = self.config.identity
         reach = identity.reach_m + identity.fastest_m_s * (self.time_s - person.seen_s)
         way = math.dist(person.motion.place_m, place_m)
         return not person.is_seen and way < reach and person.clothing.unlikeness(clothing) < identity.alike
 
     def _patience_s(self, person: PanoramicPerson) -> float:
-        """Return for how long a person may stay unseen."""
+        """Return how long a track may stay undetected."""
         life = self.config.life
         if person.id == 0:
             return life.newcomer_s
         return life.unseen_s if person.occluder is None else life.hidden_s
 
     def _trust(self, trust: float, evidence: float, dt_s: float) -> float:
-        """Let the log odds of a new image join those before."""
+        """Add the log-odds of a new image."""
         life = self.config.life
         newest = min(evidence, life.most_trust)
         return trust + (1.0 - math.exp(-dt_s / life.trust_s)) * (newest - trust)
 
 
-# Who is who: newcomers who were here before, and people who have been taken for each other.
+# Re-identification of people who were here before, and repair of identity swaps.
 
 
 class Register:
-    """Hands out numbers, and remembers the appearance of those who are gone.
+    """Assigns ids, and remembers the appearance of lost people.
 
     Args:
         config: settings.
@@ -176,12 +176,12 @@ class Register:
         self._newest = 0
 
     def leave(self, persons: Sequence[PanoramicPerson], time_s: float) -> None:
-        """Remember people who are gone, and forget who has been for too long."""
+        """Store deleted tracks, and forget the oldest."""
         known = (*self._gone, *(person for person in persons if person.id))
         self._gone = tuple(one for one in known if time_s - one.seen_s < self._config.forget_s)
 
     def named(self, person: PanoramicPerson, time_s: float) -> PanoramicPerson:
-        """Return a person a number: the one that it had before, or a new one."""
+        """Return a track with an id: that of the same lost person, or a new one."""
         known = self.recognised(person, time_s)
         if known is None:
             self._newest += 1
@@ -190,12 +190,12 @@ class Register:
         return person.known_as(known)
 
     def resolve_swaps(self, persons: Sequence[PanoramicPerson], time_s: float) -> tuple[PanoramicPerson, ...]:
-        """Return people who have looked like another person for long the number of that one, or a new one."""
+        """Give tracks that have looked like another person for long that person's id, or a new one."""
         strangers = [one for one in persons if one.id and one.strange_s >= self._config.strange_s]
         if not strangers:
             return tuple(persons)
-        # Their memory stays with the number, whose owner has walked on ever since they look strange.
-        # What they look like now is all that is known of themselves.
+        # The old appearance stays with the id, whose owner has walked on since the appearance changed.
+        # The current appearance is all that is known of the track itself.
         self.leave([replace(one, seen_s=time_s - one.strange_s) for one in strangers], time_s)
         right = {
             one.id: self.named(replace(one, clothing=one.newest, born_s=time_s), time_s) for one in strangers
@@ -203,7 +203,7 @@ class Register:
         return tuple(right[one.id] if one in strangers else one for one in persons)
 
     def recognised(self, person: PanoramicPerson, time_s: float) -> PanoramicPerson | None:
-        """Find who of those who are gone this may be, by appearance and by the way; None for nobody."""
+        """Return the lost person that a track matches by appearance and distance, or None."""
         best, least = None, self._config.alike
         for one in self._gone:
             way = float(np.linalg.norm(one.motion.place_m - person.motion.place_m))

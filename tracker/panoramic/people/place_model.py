@@ -1,4 +1,4 @@
-"""What was learned of people in patches: whether a person is there, where exactly, and how sure that is."""
+"""Learned model of patches: presence of a person, exact position, and its uncertainty."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ _OUTPUTS: Final = {"presence": (1, 2), "place": (2, 3), "doubt": (2, 2)}
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlaceEstimates:
-    """What is seen at N places.
+    """Outputs for N positions.
 
     Attributes:
-        evidence: (N,) log odds that a person is within reach of the place.
-        offset_m: (N, 2) where that person is from there: farther away, and to the left [m].
-        deviation_m: (N, 2) standard deviations of these [m].
+        evidence: (N,) log-odds that a person is within reach of the position.
+        offset_m: (N, 2) offset of that person: farther away, and to the left [m].
+        deviation_m: (N, 2) standard deviations of the offset [m].
     """
 
     evidence: Map
@@ -41,14 +41,14 @@ class PlaceEstimates:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlaceModel:
-    """Networks that read patches.
+    """Networks that evaluate patches.
 
     Attributes:
-        presence: to the log odds that a person is there.
-        place: to the offset of the person [m].
-        doubt: to the logarithms of the offset's standard deviations [m].
-        view: of the camera that they hold for.
-        about: what they were trained on, for the reader of the file.
+        presence: log-odds that a person is there.
+        place: offset of the person [m].
+        doubt: logarithms of the offset's standard deviations [m].
+        view: camera of their training images.
+        about: description of the training data, for readers of the file.
     """
 
     presence: DenseNetwork
@@ -58,7 +58,7 @@ class PlaceModel:
     about: Mapping[str, str] = field(default_factory=dict)
 
     def look(self, patches: Map, distance_m: NDArray[np.float64]) -> PlaceEstimates:
-        """Return what patches (N, PATCH) at distances (N,) show."""
+        """Return the outputs for patches (N, PATCH) at distances (N,)."""
         inputs = with_distance(patches, distance_m)
         return PlaceEstimates(
             evidence=self.presence.predict(inputs)[:, 0],
@@ -78,10 +78,10 @@ class PlaceModel:
 
     @classmethod
     def load(cls, path: Path = SHIPPED / FILE) -> PlaceModel:
-        """Read and check a model.
+        """Read and validate a model.
 
         Raises:
-            BadInput: a file that is missing or is no such model.
+            BadInput: the file is missing or is not such a model.
         """
         specs = {name: _specs(name, *sizes) for name, sizes in _OUTPUTS.items()}
         together = {key: spec for each in specs.values() for key, spec in each.items()}
@@ -95,7 +95,7 @@ class PlaceModel:
 
 
 def _specs(name: str, outputs: int, layers: int) -> dict[str, ArraySpec]:
-    """Return what the arrays of a network must be, weights and bias of layer after layer."""
+    """Return the expected shapes of a network's arrays, weights and bias of layer after layer."""
     widths: list[int | str] = [INPUTS, *(f"{name} {number}" for number in range(1, layers)), outputs]
     return {
         f"{name}.{k}.{part}": ArraySpec((widths[k], widths[k + 1])[begin:])
