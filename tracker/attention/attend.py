@@ -31,7 +31,7 @@ STEP_CELLS: Final = 2
 """Step between tested positions, in cells."""
 
 _COLOUR_BIAS: Final = 1.0
-"""Scale of the logarithmic colour ratio: at its negative the score is one half; chosen on seeds 100 to 102."""
+"""Scale of the logarithmic colour ratio: one half at its negative; chosen on seeds 100 to 102."""
 
 _WIDTH: Final = 0.3  # of a given box, in its heights
 _BESIDE: Final = 0.25  # heights within which two heads count as one

@@ -40,7 +40,7 @@ class BandColours:
         return BandColours(np.where(np.isnan(grown), known, grown).astype(np.float32))
 
     def unlikeness(self, other: BandColours) -> float:
-        """Return the mean squared difference of two people, in standard deviations; NaN without a common band."""
+        """Return the mean squared difference of two people in standard deviations; NaN if none is common."""
         return float(_unlikeness(self.colours, other.colours))
 
 
