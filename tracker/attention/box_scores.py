@@ -81,7 +81,7 @@ def likenesses(
 def mean_scores(
     sums: Doubles, rows: NDArray[np.int64], columns: NDArray[np.int64], size: tuple[int, int]
 ) -> Doubles:
-    """Return the means (R, C) over boxes of an integral image (rows + 1, columns + 1), 0 for outside boxes."""
+    """Return box means (R, C) from an integral image (rows + 1, columns + 1); 0 for boxes outside."""
     height, width = size
     found = np.zeros((len(rows), len(columns)))
     for i in range(len(rows)):
