@@ -44,7 +44,7 @@ class BehaviourSettings:
     corridor: FollowCorridorConfig | None = None
 
 
-@BEHAVIOURS.register("stand", summary="leaves it where it is")
+@BEHAVIOURS.register("stand", summary="keeps the robot where it is")
 def _stand(settings: BehaviourSettings) -> Behaviour:  # noqa: ARG001
     from peopleboy.behaviours.scripted import Stand
 
@@ -53,7 +53,8 @@ def _stand(settings: BehaviourSettings) -> Behaviour:  # noqa: ARG001
 
 @BEHAVIOURS.register(
     "follow_person",
-    summary="finds a person and follows, up to where that person looks as tall as `keep_height` says",
+    summary="finds a person and follows, up to the distance at which the person is `keep_height` tall in the "
+    "image",
 )
 def _follow_person(settings: BehaviourSettings) -> Behaviour:
     from peopleboy.behaviours.following.follow_person import FollowPerson
@@ -82,7 +83,7 @@ def _patrol(settings: BehaviourSettings) -> Behaviour:
     return Patrol(FollowCorridor(settings.corridor), settings.follow)
 
 
-@BEHAVIOURS.register(SCRIPTED, summary="drives as `commands` says")
+@BEHAVIOURS.register(SCRIPTED, summary="drives according to `commands`")
 def _scripted(settings: BehaviourSettings) -> Behaviour:
     from peopleboy.behaviours.scripted import Scripted
 

@@ -140,8 +140,8 @@ def _detection(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
 @TRACKERS.register(
     CONTOUR_TRACKER,
     scope="thesis, chapters 4 to 7, and beyond",
-    summary="Particles, contour, colour and thermal appearance. People who overlap are sorted by depth, "
-    "those in front are explained away, occluded people coast. Uses odometry.",
+    summary="A particle filter for each person, with contour, colour and thermal appearance. Overlapping "
+    "people are sorted by depth, the ones in front are explained away, occluded people coast. Uses odometry.",
 )
 def _contour(rng: np.random.Generator) -> Tracker:
     return _contour_tracker(CONTOUR_TRACKER, rng)
@@ -150,7 +150,7 @@ def _contour(rng: np.random.Generator) -> Tracker:
 @TRACKERS.register(
     "learned",
     scope="the same, trained",
-    summary="The same, but the classifier of `peopleboy train occlusion` decides which person is in front.",
+    summary="`contour`, but the classifier of `peopleboy train occlusion` decides which person is in front.",
 )
 def _learned(rng: np.random.Generator) -> Tracker:
     return _contour_tracker("learned", rng)
@@ -159,8 +159,8 @@ def _learned(rng: np.random.Generator) -> Tracker:
 @TRACKERS.register(
     "thesis",
     scope="thesis, chapters 4 to 7",
-    summary="As it is written: independent filters, colour moments, occlusion handling by a boosted "
-    "classifier of who is in front.",
+    summary="A literal reimplementation: independent filters, colour moments, and a boosted classifier that "
+    "decides which of two overlapping people is in front.",
 )
 def _thesis(rng: np.random.Generator) -> Tracker:
     return _contour_tracker("thesis", rng)
@@ -169,7 +169,7 @@ def _thesis(rng: np.random.Generator) -> Tracker:
 @TRACKERS.register(
     "thermal",
     scope="thesis, chapters 4 and 5",
-    summary="Thermal image alone.",
+    summary="`thesis` with the thermal image only.",
 )
 def _thermal(rng: np.random.Generator) -> Tracker:
     return _contour_tracker("thermal", rng)
@@ -178,7 +178,7 @@ def _thermal(rng: np.random.Generator) -> Tracker:
 @TRACKERS.register(
     "colour",
     scope="thesis, chapters 4 to 6",
-    summary="With colour, without occlusion handling.",
+    summary="`thesis` with colour, without occlusion handling.",
 )
 def _colour(rng: np.random.Generator) -> Tracker:
     return _contour_tracker("colour", rng)
@@ -187,7 +187,7 @@ def _colour(rng: np.random.Generator) -> Tracker:
 @TRACKERS.register(
     "paper",
     scope="the 2005 paper",
-    summary="Its measurement model, its 30 % best samples, three frames to detect.",
+    summary="The paper's measurement model, its 30 % best samples, three frames to confirm a person.",
 )
 def _paper(rng: np.random.Generator) -> Tracker:
     return _contour_tracker("paper", rng)
@@ -196,9 +196,8 @@ def _paper(rng: np.random.Generator) -> Tracker:
 @TRACKERS.register(
     "panoramic-paper",
     scope="the 2003 paper",
-    summary="One person all round a standing robot, by the panoramic camera alone: background "
-    "subtraction, a network for the distance, which `peopleboy train distance` trains, a Kalman "
-    "filter on the floor.",
+    summary="One person around a standing robot, with the panoramic camera only: background subtraction, a "
+    "network for the distance (`peopleboy train distance` trains it), a Kalman filter on the floor.",
 )
 def _panoramic_paper(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
     from peopleboy.tracker.panoramic.paper.distance_network import shipped_models
@@ -210,9 +209,8 @@ def _panoramic_paper(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
 @TRACKERS.register(
     "panoramic",
     scope="the 2003 paper, and beyond",
-    summary="Several people all round a robot that stands or drives, by the panoramic camera alone: a "
-    "learned foreground, a learned reading of where people stand and how sure that is, colours by "
-    "height.",
+    summary="Several people around a standing or moving robot, with the panoramic camera only: learned "
+    "foreground segmentation, learned floor positions with covariance, colour descriptors by height.",
 )
 def _panoramic(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
     return _panoramic_tracker()
@@ -221,8 +219,8 @@ def _panoramic(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
 @TRACKERS.register(
     "handover",
     scope="thesis, section 8.2",
-    summary="`contour` for what is warm ahead and `panoramic` for all round it, which point people out to "
-    "each other: a person keeps one number from the thermal image through the panorama and back.",
+    summary="`contour` in the thermal image and `panoramic` in 360 degrees, with handover between them: a "
+    "person keeps one id from the thermal image through the panorama and back.",
 )
 def _handover(rng: np.random.Generator) -> Tracker:
     from peopleboy.tracker.fusion.handover_tracker import HandoverTracker
@@ -233,8 +231,8 @@ def _handover(rng: np.random.Generator) -> Tracker:
 @TRACKERS.register(
     "rgbd",
     scope="the situation-awareness thesis, chapter 4, and beyond",
-    summary="People on the floor by a depth camera with colour, standing or driving: what has the size of "
-    "a human and looks like one, and a particle filter for each of them.",
+    summary="People on the floor with an RGB-D camera, on a standing or moving robot: candidates of human "
+    "size, a learned classifier, and a particle filter for each person.",
 )
 def _rgbd(rng: np.random.Generator) -> Tracker:
     from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
@@ -245,7 +243,7 @@ def _rgbd(rng: np.random.Generator) -> Tracker:
 @TRACKERS.register(
     "rgbd-printed",
     scope="the situation-awareness thesis, chapter 4",
-    summary="The same as it is printed, where it is.",
+    summary="`rgbd` with the values that the thesis prints, where it prints any.",
 )
 def _rgbd_printed(rng: np.random.Generator) -> Tracker:
     from peopleboy.tracker.rgbd.rgbd_config import PRINTED
@@ -256,9 +254,8 @@ def _rgbd_printed(rng: np.random.Generator) -> Tracker:
 @TRACKERS.register(
     "fused",
     scope="both theses, and beyond",
-    summary="`contour` and `rgbd` at once, and `panoramic` where that camera is mounted: thermal says "
-    "warm, depth says where, colour says who. It goes on with the cameras that are left, and in "
-    "the dark.",
+    summary="Fusion of `contour` and `rgbd`, and of `panoramic` if that camera is mounted. Thermal images "
+    "detect people, depth locates them, colour identifies them. Works in the dark and with fewer cameras.",
 )
 def _fused(rng: np.random.Generator) -> Tracker:
     return _fused_tracker(rng)
@@ -267,9 +264,9 @@ def _fused(rng: np.random.Generator) -> Tracker:
 @TRACKERS.register(
     "attentive",
     scope="the situation-awareness thesis, chapter 5, and beyond",
-    summary="`contour`, which learns what everybody looks like, and gives who comes back the old number, "
-    "however long the person was away; whoever is not known stays a stranger. A robot that "
-    "follows searches on until it sees its person again.",
+    summary="`contour` with re-identification: it learns each person's appearance and restores the id of a "
+    "person who comes back after any time; unknown people get new ids. A following robot keeps searching "
+    "until it sees its person again.",
 )
 def _attentive(rng: np.random.Generator) -> Tracker:
     from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
@@ -281,7 +278,7 @@ def _attentive(rng: np.random.Generator) -> Tracker:
 @TRACKERS.register(
     "attentive-printed",
     scope="the situation-awareness thesis, chapter 5",
-    summary="The same, but people are known by the attention of that chapter as it is printed.",
+    summary="Like `attentive`, with re-identification by the attention model as printed in that chapter.",
 )
 def _attentive_printed(rng: np.random.Generator) -> Tracker:
     from peopleboy.tracker.attention.attention_config import PRINTED
@@ -295,7 +292,7 @@ def _attentive_printed(rng: np.random.Generator) -> Tracker:
 @TRACKERS.register(
     "attentive-fused",
     scope="all of these",
-    summary="`fused`, whose people are known again like those of `attentive`, by every camera of colours.",
+    summary="`fused` with the re-identification of `attentive`, from all colour cameras.",
 )
 def _attentive_fused(rng: np.random.Generator) -> Tracker:
     from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker

@@ -10,14 +10,16 @@ from pathlib import Path
 from benchmarks.results import read_tables
 from docs.generate import choices
 from docs.generate.commands import commands
-from docs.generate.metrics import comfort, corridor, following, metrics
 from docs.generate.random_worlds import bearings, distribution
+from docs.generate.reference.environments import environment_ids, environment_spaces, environment_tracks
+from docs.generate.reference.library import gallery, library_table
+from docs.generate.reference.metrics import comfort, corridor, following, metrics
+from docs.generate.reference.settings import settings
+from docs.generate.reference.trackers import trackers
 from docs.generate.results import results
 from docs.generate.scenario_keys import scenario_keys
-from docs.generate.settings import settings
 from docs.generate.sources.source_pages import PAGE, overview, whole_page
 from docs.generate.sources.source_run import FOLDER, SourceRun
-from docs.generate.trackers import trackers
 
 DOCS = Path(__file__).parents[1]
 PARTS: Mapping[str, Callable[[], str]] = {
@@ -29,6 +31,11 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "random worlds": distribution,
     "bearings": bearings,
     "commands": commands,
+    "library": library_table,
+    "gallery": gallery,
+    "environment ids": environment_ids,
+    "environment spaces": environment_spaces,
+    "environment tracks": environment_tracks,
     "trackers": trackers,
     "settings": settings,
     "metrics thesis": partial(metrics, "thesis"),

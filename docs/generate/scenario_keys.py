@@ -62,5 +62,5 @@ def _section(name: str, model: dict[str, Any]) -> str:
     rows = [
         (f"`{key.name}`", key.unit, key.values, key.default, key.meaning) for key in keys_of({name: model})
     ]
-    head = ("key", "unit", "values", "left out", "meaning")
+    head = ("key", "unit", "values", "default", "meaning")
     return f"## {heading}\n\n{sentence(model['description'])}\n\n{table(head, rows)}"

@@ -205,8 +205,8 @@ def sweep(
     """Run and score many seeds of a scenario, or random worlds.
 
     No recordings are written. A killed sweep resumes when you give the command again. In random worlds many
-    people are occluded; their scores are printed for all people, and for people of whom more than 30 % is
-    visible.
+    people are occluded; their scores are printed for all people, and for people with a visible fraction
+    above 30 %.
     """
     from peopleboy.scenarios.running.many_runs import sweep as run_seeds
     from peopleboy.scenarios.running.many_runs import sweep_worlds

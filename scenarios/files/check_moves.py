@@ -70,7 +70,7 @@ class MovedThings:
     def check(
         self, people: Sequence[tuple[Key, PersonSpec]], robot: tuple[float, float], robot_m: float
     ) -> None:
-        """Refuse what sweeps through the robot where it starts, or through things, and hands that cannot be.
+        """Refuse what sweeps through the robot start position, or through things, and hands that cannot be.
 
         Args:
             people: everybody, groups included, each with its key in the file.

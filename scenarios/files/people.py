@@ -32,7 +32,7 @@ _BOTTOM_COLOURS: Final = ("black", "khaki", "blue", "white", "red", "green", "li
 Path = tuple[Waypoint, ...]
 GivenClothes = Annotated[
     dict[str, Any],
-    Given(Clothes, "What a person wears; what is left out is drawn from the seed.", shows_defaults=False),
+    Given(Clothes, "Clothes of a person; omitted keys are sampled from the seed.", shows_defaults=False),
 ]
 
 
@@ -41,21 +41,21 @@ class _Variations(WalkConfig):
     """A path that the seed varies."""
 
     jitter_m: Annotated[
-        float, Field(ge=0.0, le=2.0, description="radius within which the seed moves each point")
+        float, Field(ge=0.0, le=2.0, description="radius within which the seed moves each waypoint")
     ] = 0.0
     speed_jitter: Annotated[
         float,
-        Field(ge=0.0, le=0.5, description="share by which the seed changes all speeds, up or down"),
+        Field(ge=0.0, le=0.5, description="largest relative change of all speeds by the seed"),
     ] = 0.0
     enter_jitter_s: Annotated[
-        float, Field(ge=0.0, le=60.0, description="the seed delays the entry by up to this long")
+        float, Field(ge=0.0, le=60.0, description="largest delay of the entry by the seed")
     ] = 0.0
 
 
 @with_config(STRICT)
 @dataclass(frozen=True, kw_only=True)
 class PersonSpec(ActorConfig, _Variations):
-    """A walking person; what is left out of its appearance is drawn from the seed."""
+    """A walking person; omitted details of the appearance are sampled from the seed."""
 
     height_m: Annotated[float | None, meaning_of(PersonConfig, "height_m")] = None
     sex: Annotated[Sex | None, meaning_of(PersonConfig, "sex")] = None
@@ -73,7 +73,7 @@ class GroupSpec(_Variations):
             strict=False,
             min_length=2,
             max_length=500,
-            description="the points that they walk to; the path between them says which side is right",
+            description="waypoints, in order; the direction of the path defines the right side",
         ),
     ]
     names: Annotated[
@@ -82,7 +82,7 @@ class GroupSpec(_Variations):
             strict=False,
             min_length=2,
             max_length=6,
-            description="one for each person, from the right side to the left",
+            description="one name per person, from right to left",
         ),
     ]
     spacing_m: Annotated[float, Field(ge=0.5, le=3.0, description="distance between neighbours")] = 0.75

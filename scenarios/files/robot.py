@@ -31,13 +31,13 @@ CameraName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")]
 class CommandSpec:
     """From a time on, a scripted robot drives at this velocity, or as near to it as its drive comes.
 
-    The drive does at most 0.8 m/s and 150 deg/s, and comes to them at 0.6 m/s2 and 200 deg/s2. The guard,
+    The drive does at most 0.8 m/s and 150 deg/s, and accelerates by 0.6 m/s2 and 200 deg/s2. The guard,
     which keeps 0.45 m to what the sonars see, stops it before walls and people as it does any robot.
     """
 
-    from_s: Annotated[Seconds, Field(description="when the robot begins to drive so")]
+    from_s: Annotated[Seconds, Field(description="time from which the command holds")]
     linear_m_s: Annotated[
-        float, Field(ge=-2.0, le=2.0, description="forward speed; negative drives back")
+        float, Field(ge=-2.0, le=2.0, description="forward speed; negative is backwards")
     ] = 0.0
     angular_deg_s: Annotated[
         float, Field(ge=-360.0, le=360.0, description="turn rate; positive turns left")
@@ -52,7 +52,7 @@ else:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotSpec:
-    """The robot: where it starts and what it does."""
+    """The robot: start position and what it does."""
 
     at_m: Annotated[Point, meaning_of(RobotConfig, "at_m")]
     heading_deg: Annotated[float, meaning_of(RobotConfig, "heading_rad")] = 0.0
@@ -65,7 +65,7 @@ class RobotSpec:
     ] = "stand"
     commands: Annotated[
         tuple[CommandSpec, ...],
-        Field(strict=False, description="of a scripted robot, in the order of time"),
+        Field(strict=False, description="commands of a scripted robot, in order of time"),
     ] = ()
     keep_height: Annotated[
         float | None,
@@ -78,16 +78,14 @@ class RobotSpec:
     ] = None
     walls_by: Annotated[
         Literal["sonar", "image"] | None,
-        Field(
-            description="of a robot in corridors: the sensor by which it finds the walls; left out, the sonar"
-        ),
+        Field(description="for a robot in corridors: sensor for the walls; default `sonar`"),
     ] = None
     tracker: Annotated[
         str | None,
         Field(
             pattern="^[a-z][a-z0-9_-]*$",
             description="name of the tracker by which the robot sees people, which `--tracker` overrules; "
-            "left out, `detection`",
+            "if omitted, `detection`",
         ),
     ] = None
     cameras: Annotated[

@@ -25,15 +25,15 @@ Failure = Literal["camera_frozen", "camera_black", "tracker_raises", "sonar_maxi
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LightSpec:
-    """From a time on, the room's light has a level."""
+    """Level of the room's light from a time on."""
 
-    at_s: Annotated[Seconds, Field(description="when the light changes")]
+    at_s: Annotated[Seconds, Field(description="time of the change")]
     level: Annotated[float, Field(ge=0.0, le=2.0, description="0 is dark, 1 is full light")]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FaultSpec:
-    """Something that breaks for a while."""
+    """A temporary failure."""
 
     kind: Annotated[
         Failure,
@@ -45,12 +45,12 @@ class FaultSpec:
         ),
     ]
     from_s: Annotated[Seconds, Field(description="when it begins")]
-    lasts_s: Annotated[Seconds | None, Field(description="left out, it lasts to the end")] = None
+    lasts_s: Annotated[Seconds | None, Field(description="if omitted, it lasts to the end")] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrawnSpec:
-    """In a run's folder: what everything was drawn from."""
+    """In a run folder: where sampled values come from."""
 
     seed: Annotated[int, Field(ge=0, description="of the run")]
     versions: Annotated[dict[str, str], Field(description="of the packages on which the bytes depend")] = (
@@ -76,20 +76,18 @@ class ScenarioSpec:
         Field(
             min_length=1,
             max_length=1000,
-            description="what happens, in a sentence or two; `peopleboy list` prints it",
+            description="what happens, in one or two sentences; `peopleboy list` prints it",
         ),
     ]
     like: Annotated[
         Word | None,
-        Field(
-            description="a scenario of the library, whose keys stand in for those that this file leaves out"
-        ),
+        Field(description="a scenario of the library, whose keys replace those that this file omits"),
     ] = None
-    duration_s: Annotated[float, Field(gt=0.0, le=36000.0, description="how long a run lasts")]
+    duration_s: Annotated[float, Field(gt=0.0, le=36000.0, description="duration of a run")]
     place: Annotated[PlaceConfig, Field(description="the room or corridor")]
     things: Annotated[
         tuple[ThingConfig, ...],
-        Field(strict=False, max_length=300, description="what stands or hangs there, warm or cold"),
+        Field(strict=False, max_length=300, description="objects in the place"),
     ] = ()
     people: Annotated[
         tuple[PersonSpec, ...],
@@ -101,7 +99,7 @@ class ScenarioSpec:
     ] = ()
     clothes_differ: Annotated[
         bool,
-        Field(description="whether the seed draws clearly different colours where the file leaves them out"),
+        Field(description="whether omitted colours of clothes are sampled to differ clearly"),
     ] = False
     detail: Annotated[
         Detail,
@@ -114,7 +112,7 @@ class ScenarioSpec:
         PhysicsName,
         Field(
             description="what moves the robot: `bullet` has the dynamics of PyBullet, which must be "
-            "installed; `kinematic` lets it roll without slip, needs no PyBullet and is quicker; left out, "
+            "installed; `kinematic` lets it roll without slip, needs no PyBullet and is quicker; if omitted, "
             "it is `bullet`, or `kinematic` where PyBullet is not installed",
             json_schema_extra={"default": "bullet"},
         ),
@@ -123,15 +121,15 @@ class ScenarioSpec:
         tuple[LightSpec, ...],
         Field(
             strict=False,
-            description="steps of the room's light, in the order of time; left out, it is full light",
+            description="steps of the room's light, in the order of time; if omitted, it is full light",
         ),
     ] = ()
-    robot: Annotated[RobotSpec, Field(description="where it starts and what it does")]
+    robot: Annotated[RobotSpec, Field(description="start position and what it does")]
     faults: Annotated[
         tuple[FaultSpec, ...],
-        Field(strict=False, max_length=50, description="what breaks, to try a controller"),
+        Field(strict=False, max_length=50, description="sensor and tracker failures, to test a controller"),
     ] = ()
-    drawn: Annotated[DrawnSpec | None, Field(description="only in the file that a run leaves behind")] = None
+    drawn: Annotated[DrawnSpec | None, Field(description="written by a run; do not set it")] = None
 
 
 def to_data(spec: ScenarioSpec) -> dict[str, Any]:

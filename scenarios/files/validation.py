@@ -109,9 +109,9 @@ def _camera_model(name: str, kind: CameraKind) -> type[BaseModel]:
         replace(one, default=one.to_key(getattr(camera, one.field))) for one in settings_of(type(camera))
     ]
     settings = (*geometry, *own)
-    extra: dict[str, Any] = {"kind": (Literal[name], Field(description=f"what it sees: {kind.what}"))}
+    extra: dict[str, Any] = {"kind": (Literal[name], Field(description=f"kind of camera: {kind.what}"))}
     if kind.presets:
-        meaning = f"what stands in for the keys that are left out: {kind.presets_are}"
+        meaning = f"preset for omitted keys: {kind.presets_are}"
         extra["preset"] = (Literal[*kind.presets] | None, Field(default=None, description=meaning))
     return _keys_model(f"{name.capitalize()}Camera", about, settings, shows_defaults=True, extra=extra)
 

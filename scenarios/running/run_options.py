@@ -31,7 +31,7 @@ class RunOptions:
     boxes: Annotated[
         BoxKind,
         Field(
-            description="What the tracker's boxes enclose, and the true boxes they are scored against: the "
+            description="What the tracker's boxes enclose, and the ground-truth boxes to score them by: the "
             "torso, or the whole person, as most detectors do."
         ),
     ] = BoxKind.TORSO

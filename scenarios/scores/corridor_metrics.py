@@ -45,11 +45,11 @@ class CorridorScore(ScoreRecord):
     """
 
     lateral_rms_m: float = metric("lateral error RMS", "m", "distance to the centre line, root mean square")
-    lateral_max_m: float = metric("lateral error max", "m", "the largest")
+    lateral_max_m: float = metric("lateral error max", "m", "largest distance to the centre line")
     heading_error_rad: float = metric("heading error", "deg", "mean angle to the centre line")
-    contacts: int = metric("contacts", "", "contacts begun in the run")
-    mean_speed_m_s: float = metric("mean speed", "m/s", "way driven by time")
-    way_m: float = metric("way", "m", "driven in the run")
+    contacts: int = metric("contacts", "", "contacts that began in the run")
+    mean_speed_m_s: float = metric("mean speed", "m/s", "distance driven divided by time")
+    way_m: float = metric("way", "m", "distance driven in the run")
     legs: int = metric("legs", "", "straight pieces of corridor that the robot was on")
 
 

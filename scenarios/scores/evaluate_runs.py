@@ -256,7 +256,7 @@ class ScoreOptions:
         Field(
             ge=0.0,
             lt=1.0,
-            description="Score people of whom more than this fraction is visible; 0.3 ignores slivers at the "
+            description="Score people with more than this visible fraction; 0.3 ignores slivers at the "
             "image border.",
         ),
     ] = MIN_VISIBLE

@@ -64,23 +64,23 @@ class FollowingScore(ScoreRecord):
 
     found: bool = metric("found", "", "1 if the person was ever tracked")
     time_to_find_s: float = metric("time to find", "s", "from the start to the first track")
-    followed: float = metric("followed", "%", "time tracked since found")
-    in_band: float = metric("in band", "%", "time at a good distance since found")
-    facing: float = metric("facing", "%", "time turned to the person since found")
-    in_band_and_facing: float = metric("in band and facing", "%", "both at once")
-    mean_distance_error_m: float = metric("distance error", "m", "mean of the absolute error since found")
-    rms_distance_error_m: float = metric("distance error RMS", "m", "root mean square since found")
+    followed: float = metric("followed", "%", "share of the time since found in which the person is tracked")
+    in_band: float = metric("in band", "%", "share of the time since found at a good distance")
+    facing: float = metric("facing", "%", "share of the time since found in which the robot faces the person")
+    in_band_and_facing: float = metric("in band and facing", "%", "share of the time since found with both")
+    mean_distance_error_m: float = metric("distance error", "m", "mean absolute distance error since found")
+    rms_distance_error_m: float = metric("distance error RMS", "m", "root mean square of that error")
     min_distance_m: float = metric(
         "nearest", "m", "smallest distance to the person to follow, centre to centre"
     )
-    collisions: int = metric("collisions", "", "contacts begun in the run")
-    times_lost: int = metric("times lost", "", "periods without track since found")
-    longest_lost_s: float = metric("longest lost", "s", "longest period without track since found")
+    collisions: int = metric("collisions", "", "contacts that began in the run")
+    times_lost: int = metric("times lost", "", "periods without a track since found")
+    longest_lost_s: float = metric("longest lost", "s", "longest period without a track since found")
     followed_to_end: bool = metric("to the end", "", "1 if the right person was followed at the end")
-    path_efficiency: float = metric("path efficiency", "%", "straight way to the band / way driven")
-    mean_heading_error_rad: float = metric("heading error", "deg", "mean absolute since found")
-    wrong_person_s: float = metric("wrong person", "s", "time spent going after somebody else")
-    identity_changes: int = metric("identity changes", "", "new numbers of the person's track")
+    path_efficiency: float = metric("path efficiency", "%", "straight distance to the band / distance driven")
+    mean_heading_error_rad: float = metric("heading error", "deg", "mean absolute heading error since found")
+    wrong_person_s: float = metric("wrong person", "s", "time spent following another person")
+    identity_changes: int = metric("identity changes", "", "changes of the id of the person's track")
 
 
 def score_following(run: DriveRecord, task: FollowingTask | None = None) -> FollowingScore:

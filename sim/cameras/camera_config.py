@@ -24,7 +24,9 @@ FARTHEST_M: Final = 65.0  # that 16 bits of millimetres hold
 
 DepthSensorName = Literal["kinect", "tof"]
 GainName = Literal["fixed", "percentile", "plateau"]
-Exposure = Annotated[float, Field(ge=0.0, le=1.0, description="time over which rotation blurs the image")]
+Exposure = Annotated[
+    float, Field(ge=0.0, le=1.0, description="exposure time, over which rotation blurs the image")
+]
 
 
 def _colour_camera() -> Pinhole:
@@ -53,7 +55,7 @@ class CameraConfig:
         Field(
             ge=1,
             le=15,
-            description="images a second: 1, 3, 5 or 15; left out, 15, as `thermal` and `colour` always have",
+            description="frame rate: 1, 3, 5 or 15; default 15, which `thermal` and `colour` always have",
         ),
     ] = None
     exposure_s: Exposure = 0.0
@@ -74,7 +76,7 @@ class CameraConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThermalConfig(CameraConfig):
-    """A camera that sees heat; by the name `thermal` it is the one that the tracker looks through.
+    """A thermal camera; the one named `thermal` is the tracker's input.
 
     Raises:
         BadInput: no such gain, an empty span, or a shutter that never opens.
@@ -93,10 +95,12 @@ class ThermalConfig(CameraConfig):
         ),
     ] = "fixed"
     # The span of a fixed gain: T ch. 3.
-    lowest_c: Annotated[float, Field(ge=-40.0, le=160.0, description="of gain `fixed`: what is black")] = 24.0
-    highest_c: Annotated[float, Field(ge=-40.0, le=160.0, description="of gain `fixed`: what is white")] = (
-        36.0
-    )
+    lowest_c: Annotated[
+        float, Field(ge=-40.0, le=160.0, description="for gain `fixed`: temperature of black")
+    ] = 24.0
+    highest_c: Annotated[
+        float, Field(ge=-40.0, le=160.0, description="for gain `fixed`: temperature of white")
+    ] = 36.0
     gain_follows_s: Annotated[
         float,
         Field(
@@ -115,7 +119,7 @@ class ThermalConfig(CameraConfig):
         ),
     ] = 0.3
     least_span_k: Annotated[
-        float, Field(ge=0.5, le=200.0, description="what an automatic gain spreads over all greys at least")
+        float, Field(ge=0.5, le=200.0, description="smallest span of an automatic gain")
     ] = 5.0
     plateau_percent: Annotated[
         float,
@@ -127,30 +131,26 @@ class ThermalConfig(CameraConfig):
         ),
     ] = 0.5
     linear_share: Annotated[
-        Share, Field(description="of gain `plateau`: share of the greys that are linear over its span")
+        Share, Field(description="for gain `plateau`: share of the grey values that are linear over the span")
     ] = 0.3
-    blur_px: Annotated[
-        float, Field(ge=0.0, le=20.0, description="blur of the optics, a standard deviation")
-    ] = 0.7
-    netd_k: Annotated[
-        float, Field(ge=0.0, le=5.0, description="noise that is new in every image, a standard deviation")
-    ] = 0.08
+    blur_px: Annotated[float, Field(ge=0.0, le=20.0, description="optical blur, standard deviation")] = 0.7
+    netd_k: Annotated[float, Field(ge=0.0, le=5.0, description="temporal noise, standard deviation")] = 0.08
     fixed_pattern_k: Annotated[
-        float, Field(ge=0.0, le=5.0, description="offsets between pixels that stay, a standard deviation")
+        float, Field(ge=0.0, le=5.0, description="fixed-pattern noise, standard deviation")
     ] = 0.03
-    dead_pixels: Annotated[
-        Share, Field(description="share of the pixels that read one value all the time")
-    ] = 0.0001
+    dead_pixels: Annotated[Share, Field(description="share of dead pixels, which have a constant value")] = (
+        0.0001
+    )
     column_noise_k: Annotated[
         float,
         Field(
             ge=0.0,
             le=5.0,
-            description="offsets between columns that stay until the next calibration, a standard deviation",
+            description="column noise, constant until the next calibration, standard deviation",
         ),
     ] = 0.0
     vignetting_k: Annotated[
-        float, Field(ge=0.0, le=10.0, description="how much warmer corners seem than the middle")
+        float, Field(ge=0.0, le=10.0, description="how much warmer the corners appear than the centre")
     ] = 0.0
     offset_drift_k_per_min: Annotated[
         float,
@@ -170,7 +170,7 @@ class ThermalConfig(CameraConfig):
         ),
     ] = 0.0
     shutter_lasts_s: Annotated[
-        float, Field(ge=0.0, le=5.0, description="for how long the image stands still then")
+        float, Field(ge=0.0, le=5.0, description="duration of the frozen image during a calibration")
     ] = 0.4
     sharpening: Annotated[
         float,
@@ -180,9 +180,9 @@ class ThermalConfig(CameraConfig):
             description="how much of what blur would take away is added in 8 bits; halos come with it",
         ),
     ] = 0.0
-    sharpening_px: Annotated[
-        float, Field(gt=0.0, le=20.0, description="of that blur, a standard deviation")
-    ] = 1.5
+    sharpening_px: Annotated[float, Field(gt=0.0, le=20.0, description="standard deviation of that blur")] = (
+        1.5
+    )
     coring_k: Annotated[
         float,
         Field(
@@ -197,7 +197,7 @@ class ThermalConfig(CameraConfig):
         Field(
             ge=1,
             le=100,
-            description="of the compression that the 8-bit image went through; left out, none",
+            description="JPEG quality of the 8-bit image; no compression by default",
         ),
     ] = None
 
@@ -258,14 +258,14 @@ class LightConfig(CameraConfig):
         Field(
             gt=0.0,
             le=10.0,
-            description="share of full scale that a white surface facing the light has in full light",
+            description="fraction of full scale of a white surface facing the light in full light",
         ),
     ] = 0.95
     read_noise: Annotated[
-        Share, Field(description="noise of a black pixel, a standard deviation, share of full scale")
+        Share, Field(description="standard deviation of the noise of a black pixel, fraction of full scale")
     ] = 0.004
     shot_noise: Annotated[
-        Share, Field(description="noise of a white pixel, a standard deviation, share of full scale")
+        Share, Field(description="standard deviation of the noise of a white pixel, fraction of full scale")
     ] = 0.012
 
     def noisier(self, factor: float) -> Self:
@@ -275,7 +275,7 @@ class LightConfig(CameraConfig):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ColourConfig(LightConfig):
-    """A camera that sees colours; by the name `colour` it is the one that the tracker looks through."""
+    """A colour camera; the one named `colour` is the tracker's input."""
 
     kind: ClassVar[str] = "colour"
 
@@ -284,7 +284,7 @@ class ColourConfig(LightConfig):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PanoramaConfig(LightConfig):
-    """A colour camera that sees all round, by a mirror over the robot's axis; its image is unrolled."""
+    """A colour camera with a 360-degree view by a mirror above the robot's axis; its image is unrolled."""
 
     kind: ClassVar[str] = "panorama"
 
@@ -300,7 +300,7 @@ class PanoramaConfig(LightConfig):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DepthConfig(LightConfig):
-    """A camera that measures depth, and sees colours by the same lens.
+    """A depth camera with colour through the same lens.
 
     Raises:
         BadInput: no such sensor, one that knows no amplitude, a negative scale, or no depths that it can
@@ -323,25 +323,17 @@ class DepthConfig(LightConfig):
         Field(
             ge=0.0,
             le=100.0,
-            description="of the noise of its depth; 0 gives exact depth, without holes but beyond its range",
+            description="factor on the depth noise; 0 gives exact depth, with holes beyond the range only",
         ),
     ] = 1.0
-    nearest_m: Annotated[
-        float, Field(ge=0.0, le=FARTHEST_M, description="depth from which on it measures")
-    ] = 0.5
-    farthest_m: Annotated[
-        float, Field(gt=0.0, le=FARTHEST_M, description="depth up to which it measures")
-    ] = 10.0
-    colour: Annotated[
-        bool, Field(description="whether it gives colour, pixel for pixel beside the depth")
-    ] = True
+    nearest_m: Annotated[float, Field(ge=0.0, le=FARTHEST_M, description="smallest measured depth")] = 0.5
+    farthest_m: Annotated[float, Field(gt=0.0, le=FARTHEST_M, description="largest measured depth")] = 10.0
+    colour: Annotated[bool, Field(description="whether it gives colour for each depth pixel")] = True
     amplitude: Annotated[
         bool,
-        Field(description="of sensor `tof`: whether it gives the strength of its light that comes back, too"),
+        Field(description="for sensor `tof`: whether it also gives the amplitude of the returned light"),
     ] = False
-    offset_m: Annotated[
-        float, Field(ge=0.0, le=0.1, description="largest error of a pixel that is the same in all images")
-    ] = 0.0
+    offset_m: Annotated[float, Field(ge=0.0, le=0.1, description="largest constant error of a pixel")] = 0.0
 
     def __post_init__(self) -> None:
         """Refuse what no sensor does."""

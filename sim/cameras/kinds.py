@@ -192,7 +192,7 @@ class CameraKind:
 KINDS: Final[dict[str, CameraKind]] = {
     "thermal": CameraKind(
         config=ThermalConfig,
-        what="heat, in 8 bits and in hundredths of a kelvin",
+        what="temperature, in 8 bits and in hundredths of a kelvin",
         presets=THERMAL_PRESETS,
         presets_are="`uncooled`, with a plateau gain, sharpened edges, columns, warm corners, drift and a "
         "shutter; `uncooled_film`, that by way of JPEG",
@@ -203,14 +203,14 @@ KINDS: Final[dict[str, CameraKind]] = {
     ),
     "colour": CameraKind(
         config=ColourConfig,
-        what="light",
+        what="colour",
         sensor=ColourSensor,
         layers=(Layer(what="8-bit colour"),),
         channels=3,
     ),
     "panorama": CameraKind(
         config=PanoramaConfig,
-        what="light, all round",
+        what="colour, 360 degrees",
         sensor=PanoramaSensor,
         renderer=PanoramicRenderer(),
         layers=(Layer(what="8-bit colour all round, from the robot's back by its left, front and right"),),
@@ -219,7 +219,7 @@ KINDS: Final[dict[str, CameraKind]] = {
     ),
     "depth": CameraKind(
         config=DepthConfig,
-        what="how far everything is, and light",
+        what="depth and colour",
         presets=DEPTH_PRESETS,
         presets_are="`tof`, 176x144 by time of flight, pitched down by 12 degrees, with amplitude instead of "
         "colour; `kinect`, 320x240; `kinect_rough`, that with four times the noise",

@@ -33,7 +33,9 @@ class Mirror:
     """
 
     half_apex_rad: Annotated[
-        float, IN_DEGREES, Field(gt=45.0, le=89.0, description="between the cone's axis and its side")
+        float,
+        IN_DEGREES,
+        Field(gt=45.0, le=89.0, description="angle between the cone's axis and its surface"),
     ] = math.radians(72.5)
     lens_half_angle_rad: Annotated[
         float,
@@ -41,10 +43,12 @@ class Mirror:
         Field(
             gt=0.0,
             le=85.0,
-            description="between the lens's axis and its image's rim, where the view is highest",
+            description="angle between the lens's axis and the rim of its image, where the view is highest",
         ),
     ] = math.radians(47.0)
-    lens_m: Annotated[float, Field(gt=0.0, le=1.0, description="from the lens up to the cone's tip")] = 0.04
+    lens_m: Annotated[
+        float, Field(gt=0.0, le=1.0, description="distance from the lens up to the cone's tip")
+    ] = 0.04
     apex_m: Annotated[
         float, Field(gt=0.0, le=10.0, description="height of the cone's tip above the floor")
     ] = 1.68
@@ -97,7 +101,7 @@ class Panorama:
     """
 
     width: Annotated[
-        int, Field(ge=16, le=4096, alias="width_px", description="columns of the image, all round")
+        int, Field(ge=16, le=4096, alias="width_px", description="columns of the image, over 360 degrees")
     ] = 480
     height: Annotated[
         int,
@@ -105,7 +109,7 @@ class Panorama:
             ge=16,
             le=4096,
             alias="height_px",
-            description="rows of the image, from the lens's middle to its rim",
+            description="rows of the image, from the centre of the lens to its rim",
         ),
     ] = 120
     mirror: Annotated[

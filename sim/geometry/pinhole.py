@@ -30,7 +30,7 @@ class Pinhole:
     width: Annotated[int, Field(ge=16, le=4096, alias="width_px", description="columns of the image")] = 320
     height: Annotated[int, Field(ge=16, le=4096, alias="height_px", description="rows of the image")] = 240
     vertical_fov_rad: Annotated[
-        float, IN_DEGREES, Field(ge=5.0, le=150.0, description="angle from upper to lower edge")
+        float, IN_DEGREES, Field(ge=5.0, le=150.0, description="vertical field of view")
     ] = math.radians(44.0)
     position_m: Annotated[
         Position,

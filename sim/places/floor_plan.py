@@ -154,7 +154,7 @@ class Wall:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Door:
-    """A door in a wall. An open one leads to a small lobby, in which people wait out of sight."""
+    """A door in a wall. An open door leads to a small lobby, in which people wait out of sight."""
 
     wall: Annotated[
         Word,

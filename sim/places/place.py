@@ -45,7 +45,7 @@ class Fixture:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sun:
-    """Where the sun stands, and what it does to floor and walls that it reaches through windows."""
+    """Position of the sun, and its effect on floor and walls that it reaches through windows."""
 
     azimuth_deg: Annotated[Degrees, Field(description="where it stands: 0 is along x, 90 along y")]
     elevation_deg: Annotated[

@@ -36,7 +36,7 @@ class Temperatures:
         Celsius | None,
         Field(
             description="of the air: floor, ceiling, walls, surroundings, and things that are not heated "
-            "follow it where they have no temperature of their own; left out, all is as at 21 degC"
+            "follow it where they have no temperature of their own; if omitted, all is as at 21 degC"
         ),
     ] = None
     floor_c: Annotated[Celsius, Field(description="of the floor")] = 20.0
@@ -63,11 +63,9 @@ class Colours:
 class AnyPlaceConfig:
     """What all places have."""
 
-    width_m: Annotated[
-        float, Field(ge=1.2, le=60.0, description="across; of L and T corridors, of both legs")
-    ]
-    height_m: Annotated[float, Field(ge=2.2, le=8.0, description="from the floor to the ceiling")] = 2.7
-    doors: Annotated[tuple[Door, ...], Field(strict=False, description="openings in its walls")] = ()
+    width_m: Annotated[float, Field(ge=1.2, le=60.0, description="width; in L and T corridors, of both legs")]
+    height_m: Annotated[float, Field(ge=2.2, le=8.0, description="height of the ceiling")] = 2.7
+    doors: Annotated[tuple[Door, ...], Field(strict=False, description="openings in the walls")] = ()
     temperatures: Annotated[
         Temperatures, BeforeValidator(_follow_air), Field(description="of its surfaces")
     ] = field(default_factory=Temperatures)
@@ -80,7 +78,7 @@ class AnyPlaceConfig:
         ),
     ] = 0.3
     sun: Annotated[
-        Sun | None, Field(description="the sun, which only `detail: full` shows; left out, there is none")
+        Sun | None, Field(description="the sun, visible with `detail: full` only; none by default")
     ] = None
 
 
@@ -89,7 +87,7 @@ class RoomConfig(AnyPlaceConfig):
     """A rectangular room: x from 0 to length, y to half the width on either side."""
 
     kind: Annotated[Literal["room"], Field(description="a rectangular room")]
-    length_m: Annotated[Length, Field(description="how far it reaches along x")]
+    length_m: Annotated[Length, Field(description="length along x")]
 
     def areas(self) -> FloorPlan:
         """Lay out the floor without doors."""
@@ -101,7 +99,7 @@ class CorridorConfig(AnyPlaceConfig):
     """A straight corridor: x from 0 to length, y to half the width on either side."""
 
     kind: Annotated[Literal["corridor"], Field(description="a straight corridor")]
-    length_m: Annotated[Length, Field(description="how far it reaches along x")]
+    length_m: Annotated[Length, Field(description="length along x")]
 
     def areas(self) -> FloorPlan:
         """Lay out the floor without doors."""
@@ -110,14 +108,12 @@ class CorridorConfig(AnyPlaceConfig):
 
 @dataclass(frozen=True, kw_only=True)
 class LCorridorConfig(AnyPlaceConfig):
-    """A corridor along x from 0 whose end turns aside."""
+    """A corridor along x from 0 with a corner at its end."""
 
     kind: Annotated[Literal["l_corridor"], Field(description="a corridor with a corner")]
     first_m: Annotated[Length, Field(description="length of the first leg, with the corner")]
     second_m: Annotated[Length, Field(description="length of the second leg beyond the first one's side")]
-    turn: Annotated[Literal["left", "right"], Field(description="the side to which the second leg leads")] = (
-        "left"
-    )
+    turn: Annotated[Literal["left", "right"], Field(description="direction of the second leg")] = "left"
 
     def areas(self) -> FloorPlan:
         """Lay out the floor without doors.
@@ -152,10 +148,10 @@ class StreetConfig(AnyPlaceConfig):
     """A street along x from 0, y to half the width on either side: a road between two pavements, and sky."""
 
     kind: Annotated[Literal["street"], Field(description="a street, with houses and sky")]
-    length_m: Annotated[float, Field(ge=5.0, le=40.0, description="how far one can walk along x")]
+    length_m: Annotated[float, Field(ge=5.0, le=40.0, description="length along x")]
     houses: Annotated[
         Literal["both", "north", "south", "none"],
-        Field(description="the sides on which fronts of houses stand; doors are in them"),
+        Field(description="sides with house fronts, which contain the doors"),
     ] = "both"
     house_m: Annotated[float, Field(ge=4.0, le=20.0, description="height of the houses")] = 10.0
     sky_c: Annotated[

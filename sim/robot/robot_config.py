@@ -109,16 +109,16 @@ class DriveConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotConfig:
-    """The robot: where it starts and what it carries.
+    """The robot: start position and what it carries.
 
     Raises:
         BadInput: the cameras are not distinguished, or there is no thermal one.
     """
 
-    at_m: Annotated[Point, Field(description="where it starts")] = (0.0, 0.0)
-    heading_rad: Annotated[
-        float, IN_DEGREES, Field(ge=-720.0, le=720.0, description="where it looks at the start")
-    ] = 0.0
+    at_m: Annotated[Point, Field(description="start position")] = (0.0, 0.0)
+    heading_rad: Annotated[float, IN_DEGREES, Field(ge=-720.0, le=720.0, description="start orientation")] = (
+        0.0
+    )
     drive: DriveConfig = field(default_factory=DriveConfig)
     sonar: SonarConfig = field(default_factory=SonarConfig)
     # In this order; one of them is the thermal camera `thermal`.

@@ -8,7 +8,7 @@ import pytest
 from docs.generate import scenario_keys
 from docs.generate.offline import loads
 from docs.generate.parts import PARTS, PLACE, fill_in, outdated_pages
-from docs.generate.settings import COLUMNS, commented_settings
+from docs.generate.reference.settings import COLUMNS, commented_settings
 from peopleboy.scenarios.cli import cli
 from peopleboy.scenarios.files.robot import RobotSpec
 from peopleboy.scenarios.files.scenario_file import FaultSpec, json_schema

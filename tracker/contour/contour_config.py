@@ -23,7 +23,7 @@ REFERENCE_HEIGHT_PX = 240
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContourConfig:
-    """Where a contour is looked at, and how a difference of grey counts.
+    """Where contours are sampled, and how grey differences are weighted.
 
     The thesis says that inner and outer pixels along the ellipses are compared; how far from the contour, at
     how many points, and where the sides end, it leaves open: `reach_px`, `points` and `side_end_deg` are
@@ -75,7 +75,7 @@ class ContourConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LimitsConfig:
-    """What proportions and places a sample may have (thesis, table in section 4.4)."""
+    """Limits of a sample's proportions and position (thesis, table in section 4.4)."""
 
     ratio_wh: tuple[float, float] = (0.1, 0.9)
     ratio_dw: tuple[float, float] = (-1.5, 1.5)
@@ -96,7 +96,7 @@ class LimitsConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LikelihoodConfig:
-    """How the section differences become a weight and a probability."""
+    """How section differences become a weight and a probability."""
 
     model: str = "thesis"  # "thesis": equations 4.3 and 4.4; "paper": equations 3 and 4
     slope: float = 0.125  # kappa
@@ -113,7 +113,7 @@ class LikelihoodConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MotionConfig:
-    """Amplitudes of the random walk, B of equation 4.7, and what is known of the camera's own motion."""
+    """Amplitudes of the random walk (B of equation 4.7), and the camera's ego-motion."""
 
     noise_x: float = 30.0  # [px/s]
     noise_y: float = 30.0
@@ -157,7 +157,7 @@ class FilterConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LifeConfig:
-    """When a person is born, and when given up."""
+    """When a track is confirmed, and when it is deleted."""
 
     birth_confidence: float = 0.5
     birth_frames: int = 1  # frames in a row that must be above
@@ -173,15 +173,15 @@ class LifeConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SearchConfig:
-    """How new people are looked for, and who is confirmed sooner or later than by `LifeConfig`.
+    """How new people are searched for, and which of them are confirmed sooner or later than by `LifeConfig`.
 
-    The sources look at each image once, and treat all alike.
+    The sources search each image once, and treat all people alike.
     """
 
     scans: int = 1  # times that the detector moves its samples and weighs them in each image
     small_h: float = 0.0  # body semi-height [px] below which a person is small
     small_confidence: float = 0.5  # `birth_confidence` of who is small
-    # Who is not small, and has nobody known beside, is born after `clear_frames` above this; 1: never sooner.
+    # Large people without a neighbour are confirmed after `clear_frames` above this; 1: never sooner.
     clear_confidence: float = 1.0
     clear_frames: int = 1
     clear_margin: float = 0.0  # widths of those known that count as beside them, on each side
@@ -207,7 +207,7 @@ class BoxConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SmoothingConfig:
-    """Time constants of the low pass over a person's estimates; 0 is none."""
+    """Time constants of the low-pass filter on estimates; 0 disables it."""
 
     place_s: float = 0.0  # x, y
     size_s: float = 0.0  # w, h, d
@@ -218,7 +218,7 @@ class SmoothingConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AppearanceConfig:
-    """By how much the thermal pattern of one person differs from frame to frame, and its weight."""
+    """Variation of a person's thermal pattern from frame to frame, and its weight."""
 
     grey_spread: tuple[float, float, float] = (0.085, 0.012, 0.06)  # of the mean of head, torso, legs, 0..1
 
@@ -228,7 +228,7 @@ class AppearanceConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InteractionConfig:
-    """How filters keep off each other's people, and how many samples they share."""
+    """How filters avoid each other's people, and how they share samples."""
 
     detector_penalty: float = 0.01  # psi_D, factor on a detector's sample that overlaps a person
     detector_overlap: float = 0.0  # share of the sample's region above which it counts as overlapping
@@ -248,11 +248,11 @@ class DepthOrderConfig:
     """Depth order of people, and its effect on the evidence."""
 
     # By lower feet ("foot"), by appearance as well ("appearance"), by a boosted classifier ("learned");
-    # None: nobody is in front of anybody.
+    # None: no depth order.
     order: str | None = None
-    table: str = "contour"  # who the boosted classifier was taught for: its table of that name is taken
+    table: str = "contour"  # tracker for which the boosted classifier was trained: selects its table
     remembers_feet: bool = False  # the classifier takes feet as last seen whole, and not the contour's end
-    removes_front: bool = False  # points of the contour on people in front are left out of the evidence
+    removes_front: bool = False  # ignore contour points on people in front
     growth: float = 1.0  # by which the people in front are enlarged for that
 
     def __post_init__(self) -> None:
@@ -263,7 +263,7 @@ class DepthOrderConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HeightConfig:
-    """How far a person's height may stray from what it was when the person was last seen whole.
+    """How far a person's height may deviate from its value when the person was last fully visible.
 
     Spreads are those of the logarithm; 0: as far as it may.
     """
@@ -278,9 +278,9 @@ class HeightConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StayBehindConfig:
-    """Hidden people are where their occluder is (thesis, section 7.3).
+    """Occluded people are at the position of their occluder (thesis, section 7.3).
 
-    Without an order in depth nobody is ever in front, and nobody hidden.
+    Without a depth order, no person is in front and none is occluded.
     """
 
     head_covered: float = 0.8  # share of the head's contour behind others from which a person is hidden
@@ -291,7 +291,7 @@ class StayBehindConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WalkOnConfig:
-    """Hidden people walk on with the velocity that they had."""
+    """Occluded people continue with their last velocity."""
 
     remembers_lost: bool = False  # who is lost in any other way walks on, and is remembered as well
     shows_only_sure: bool = False  # the hidden are shown only while it is fairly certain where they are

@@ -79,54 +79,50 @@ class SpreadRow:
 
 
 FIGURES: tuple[Figure, ...] = (
-    Figure("CR", "%", "thesis.cr", "Count recall: of the people to find, how many were found."),
-    Figure("CP", "%", "thesis.cp", "Count precision: of the boxes given, how many are on a person."),
-    Figure("CA", "%", "thesis.ca", "Count accuracy: recall and precision of the counts in one."),
-    Figure("AR", "%", "thesis.ar", "Area recall: how much of a person's box its match covers."),
-    Figure("AP", "%", "thesis.ap", "Area precision: how much of a given box is on its person."),
-    Figure("AA", "%", "thesis.aa", "Area accuracy: recall and precision of the areas in one."),
-    Figure("OC", "%", "paper.oc", "Overlap coefficient: of a person's frames, how many its track has."),
-    Figure("DC", "%", "paper.dc", "Dice coefficient: OC that frames beyond the person's own make worse."),
+    Figure("CR", "%", "thesis.cr", "Count recall: people found, as a share of the people to find."),
+    Figure("CP", "%", "thesis.cp", "Count precision: boxes on a person, as a share of all boxes."),
+    Figure("CA", "%", "thesis.ca", "Count accuracy: combines CR and CP."),
+    Figure("AR", "%", "thesis.ar", "Area recall: share of a person's box that its match covers."),
+    Figure("AP", "%", "thesis.ap", "Area precision: share of a tracker's box that lies on its person."),
+    Figure("AA", "%", "thesis.aa", "Area accuracy: combines AR and AP."),
+    Figure("OC", "%", "paper.oc", "Overlap coefficient: share of a person's frames that its track covers."),
+    Figure("DC", "%", "paper.dc", "Dice coefficient: like OC, penalising frames outside the person's own."),
+    Figure("OCR", "%", "paper.ocr", "Object count recall: boxes per person to find, wherever the boxes are."),
     Figure(
-        "OCR", "%", "paper.ocr", "Object count recall: boxes given per person to find, wherever they are."
+        "OCP", "%", "paper.ocp", "Object count precision: people to find per box, wherever the boxes are."
     ),
+    Figure("OCA", "%", "paper.oca", "Object count accuracy: combines OCR and OCP."),
+    Figure("OAR", "%", "paper.oar", "Object area recall: AR without the IoU threshold of 0.5."),
+    Figure("BAP", "%", "paper.bap", "Box area precision: AP without the IoU threshold of 0.5."),
+    Figure("ADC", "%", "paper.adc", "Area Dice coefficient: AA without the IoU threshold of 0.5."),
     Figure(
-        "OCP", "%", "paper.ocp", "Object count precision: people to find per box given, wherever they are."
+        "MOTA", "%", "mot.clear.mota", "100 minus false negatives, false positives and switches, per person."
     ),
-    Figure("OCA", "%", "paper.oca", "Object count accuracy: OCR and OCP in one."),
-    Figure("OAR", "%", "paper.oar", "Object area recall: AR without the demand that IoU exceeds 0.5."),
-    Figure("BAP", "%", "paper.bap", "Box area precision: AP without the demand that IoU exceeds 0.5."),
-    Figure("ADC", "%", "paper.adc", "Area Dice coefficient: AA without the demand that IoU exceeds 0.5."),
-    Figure(
-        "MOTA", "%", "mot.clear.mota", "100 less the misses, false alarms and switches per person to find."
-    ),
-    Figure("MOTP", "%", "mot.clear.motp", "Mean IoU of the boxes that match."),
-    Figure("FN", "", "mot.clear.misses", "People without a box of IoU 0.5 or more."),
-    Figure("FP", "", "mot.clear.false_positives", "Boxes without a person at IoU 0.5 or more."),
+    Figure("MOTP", "%", "mot.clear.motp", "Mean IoU of matched boxes."),
+    Figure("FN", "", "mot.clear.misses", "False negatives: people without a box of IoU 0.5."),
+    Figure("FP", "", "mot.clear.false_positives", "False positives: boxes without a person of IoU 0.5."),
     Figure("IDSW", "", "mot.clear.switches", "Identity switches: a person's track gets another id."),
-    Figure("IDF1", "%", "mot.identity.idf1", "IDP and IDR in one: who is who over the whole sequence."),
-    Figure("IDP", "%", "mot.identity.idp", "Of the boxes given, how many are on the person of their track."),
-    Figure("IDR", "%", "mot.identity.idr", "Of the people to find, how many have the box of their track."),
-    Figure("HOTA", "%", "mot.hota.hota", "DetA and AssA in balance, averaged over IoU 0.05 to 0.95."),
-    Figure("DetA", "%", "mot.hota.deta", "Detection accuracy: matches per match, miss or false alarm."),
-    Figure(
-        "AssA", "%", "mot.hota.assa", "Association accuracy: how constantly matched boxes keep their person."
-    ),
-    Figure("mean error", "m", "floor.mean_m", "How far off the person a match is said to stand, mean."),
-    Figure("median error", "m", "floor.median_m", "The same, which half of the matches do not exceed."),
-    Figure("95 % error", "m", "floor.p95_m", "The same, which 95 % of the matches do not exceed."),
-    Figure("NEES", "", "floor.nees", "Error squared over its claimed variance; 2 if that is honest."),
-    Figure("in ellipse", "%", "floor.inside", "Matches within the 95 % ellipse of the claimed covariance."),
+    Figure("IDF1", "%", "mot.identity.idf1", "Identity F1: combines IDP and IDR over the whole sequence."),
+    Figure("IDP", "%", "mot.identity.idp", "Identity precision: boxes on the person of their track."),
+    Figure("IDR", "%", "mot.identity.idr", "Identity recall: people with a box of their track."),
+    Figure("HOTA", "%", "mot.hota.hota", "Geometric mean of DetA and AssA, averaged over IoU 0.05 to 0.95."),
+    Figure("DetA", "%", "mot.hota.deta", "Detection accuracy: matches per match or error."),
+    Figure("AssA", "%", "mot.hota.assa", "Association accuracy: consistency of ids over matched boxes."),
+    Figure("mean error", "m", "floor.mean_m", "Mean distance between estimated and true positions."),
+    Figure("median error", "m", "floor.median_m", "Median of that distance."),
+    Figure("95 % error", "m", "floor.p95_m", "95th percentile of that distance."),
+    Figure("NEES", "", "floor.nees", "Normalised estimation error squared; 2 if covariances are consistent."),
+    Figure("in ellipse", "%", "floor.inside", "Matches within the 95 % ellipse of the estimated covariance."),
     Figure("frames", "", "counts.frames", "Frames of the sequence, with or without people."),
     Figure("targets", "", "counts.targets", "Boxes of people to find."),
-    Figure("candidates", "", "counts.candidates", "Boxes that the tracker gave."),
-    Figure("ignored", "", "counts.ignored", "Further boxes that it gave, on people who do not count."),
-    Figure("matches", "", "counts.matches", "Boxes that are on a person, with IoU above 0.5."),
+    Figure("candidates", "", "counts.candidates", "Boxes of the tracker that were scored."),
+    Figure("ignored", "", "counts.ignored", "Further boxes, on people who do not count."),
+    Figure("matches", "", "counts.matches", "Boxes on a person, with IoU above 0.5."),
     Figure("misses", "", "counts.misses", "People to find without such a box."),
     Figure("false_alarms", "", "counts.false_alarms", "Boxes without such a person."),
     Figure("tracks", "", "counts.tracks", "Track ids."),
-    Figure("true_tracks", "", "counts.true_tracks", "Track ids that match a person at some time."),
-    Figure("false_tracks", "", "counts.false_tracks", "Track ids that never match anyone."),
+    Figure("true_tracks", "", "counts.true_tracks", "Track ids that match a person in at least one frame."),
+    Figure("false_tracks", "", "counts.false_tracks", "Track ids that match no person in any frame."),
 )
 
 # They ask whether boxes elsewhere are wrong, which nobody knows where one person alone is annotated.

@@ -17,11 +17,11 @@ from docs.generate.pictures import (
     panorama,
     rays,
     rgbd,
-    runs,
     scene_model,
     thermal,
     tracker,
 )
+from docs.generate.pictures.front import runs
 from docs.generate.pictures.paper import COLOURS, save
 from docs.generate.pictures.worlds import detections, hard_scenes, light, reactions
 from peopleboy.studies.reproductions.pictures.panoramic_figures import draw_features

@@ -136,8 +136,8 @@ class Clothes:
         BadInput: a garment or colour is not in the catalogue.
     """
 
-    top: Annotated[TopName, Field(description="shirt, jumper or the like")] = "shirt"
-    bottom: Annotated[BottomName, Field(description="trousers, skirt or the like")] = "trousers"
+    top: Annotated[TopName, Field(description="garment of the upper body")] = "shirt"
+    bottom: Annotated[BottomName, Field(description="garment of the lower body")] = "trousers"
     shoes: Annotated[ShoesName, Field(description="shoes")] = "leather_shoes"
     hair: Annotated[HairName, Field(description="hair, or a cap on it")] = "short"
     top_colour: Annotated[Colour | None, Field(description="colour of the top")] = None

@@ -42,7 +42,7 @@ class PatternConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ActionConfig:
-    """Something that happens to a thing, alone or by a person's hand."""
+    """A move of an object, by itself or by a person's hand."""
 
     at_s: Annotated[float, Field(le=36000.0, description="when it begins")]
     kind: Annotated[
@@ -54,96 +54,96 @@ class ActionConfig:
     ]
     to_m: Annotated[
         Point | None,
-        Field(description="where it is then; left out of `appear` and `glide`, where it was"),
+        Field(description="position afterwards; by default unchanged"),
     ] = None
     base_m: Annotated[
-        float | None, Field(ge=0.0, le=8.0, description="height of its foot then; left out, as it was")
+        float | None, Field(ge=0.0, le=8.0, description="height of its base afterwards; by default unchanged")
     ] = None
     facing_deg: Annotated[
         Degrees | None,
-        Field(description="where its front looks then, the shorter way round; left out, as it was"),
+        Field(description="orientation afterwards, by the shorter rotation; by default unchanged"),
     ] = None
     takes_s: Annotated[
-        float | None, Field(le=600.0, description="how long a `glide`, `turn` or `slide` lasts")
+        float | None, Field(le=600.0, description="duration of a `glide`, `turn` or `slide`")
     ] = None
     hinge_m: Annotated[
         Point | None,
-        Field(description="where the upright axis is that it turns about, which does not go along"),
+        Field(description="position of the vertical axis of a `turn`, fixed in the world"),
     ] = None
     by: Annotated[
         Name | None,
-        Field(
-            description="name of the person whose hand is at the thing meanwhile, and who must be near enough"
-        ),
+        Field(description="name of the person who moves the object, and who must be within reach"),
     ] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThingConfig:
-    """A thing that stands on the floor, on another thing, or on a wall."""
+    """An object on the floor, on another object, or on a wall."""
 
     kind: Annotated[ThingKind, Field(description="what it is")]
     name: Annotated[
         Name | None, Field(description="defaults to the kind and a number, such as radiator_1")
     ] = None
-    at_m: Annotated[Point | None, Field(description="where it stands; not together with wall")] = None
-    wall: Annotated[Word | None, Field(description="the wall that it hangs on or stands against")] = None
+    at_m: Annotated[Point | None, Field(description="position on the floor; not together with `wall`")] = None
+    wall: Annotated[Word | None, Field(description="wall on which it hangs or against which it stands")] = (
+        None
+    )
     along_m: Annotated[
         Coordinate | None,
         Field(
-            description="where along that wall: world x of north or south walls, world y of east or west "
+            description="position along that wall: world x of north or south walls, world y of east or west "
             "walls"
         ),
     ] = None
-    on_top_of: Annotated[Name | None, Field(description="name of the thing that it stands on")] = None
+    on_top_of: Annotated[Name | None, Field(description="name of the object on which it stands")] = None
     base_m: Annotated[
         float | None,
-        Field(ge=0.0, le=8.0, description="height of its foot, where the kind's own will not do"),
+        Field(ge=0.0, le=8.0, description="height of its base; default by kind"),
     ] = None
     facing_deg: Annotated[
-        Degrees, Field(description="where its front looks; a thing on a wall looks into the place")
+        Degrees, Field(description="orientation of its front; an object on a wall faces into the place")
     ] = 0.0
     size_m: Annotated[Size | None, Field(description="depth, width, height")] = None
     temperature_c: Annotated[
         Celsius | None,
-        Field(description="of its main surface; left out, the kind's own; thermal cameras read 160 at most"),
+        Field(
+            description="temperature of the main surface; default by kind; thermal cameras measure up to 160"
+        ),
     ] = None
     emissivity: Annotated[
         float,
         Field(
             gt=0.0,
             le=1.0,
-            description="of its main surface; what is missing to 1 mirrors the surroundings",
+            description="emissivity of the main surface; the rest to 1 reflects the surroundings",
         ),
     ] = 0.93
     shine: Annotated[
         Share | None,
         Field(
             description="how much of what its main surface reflects it mirrors, from 0, dull, to 1, glass; "
-            "seen with `detail: full` in flat sides; left out, the kind's own"
+            "seen with `detail: full` in flat sides; if omitted, the kind's own"
         ),
     ] = None
-    colour: Annotated[Colour | None, Field(description="of its main surface; left out, the kind's own")] = (
-        None
-    )
-    pattern: Annotated[PatternConfig, Field(description="of its main surface, seen by the colour camera")] = (
-        field(default_factory=lambda: PatternConfig(kind="plain"))
-    )
+    colour: Annotated[Colour | None, Field(description="colour of the main surface; default by kind")] = None
+    pattern: Annotated[
+        PatternConfig, Field(description="pattern of the main surface, visible to the colour camera")
+    ] = field(default_factory=lambda: PatternConfig(kind="plain"))
     urdf: Annotated[
         str | None,
         Field(
             min_length=1,
             max_length=200,
-            description="of kind urdf: a file of pybullet_data, or one in the scenario file's own folder",
+            description="for kind `urdf`: a file of pybullet_data, or one in the scenario file's folder",
         ),
     ] = None
-    hidden_at_start: Annotated[bool, Field(description="whether it is not there until it appears")] = False
+    hidden_at_start: Annotated[bool, Field(description="whether it is absent until it appears")] = False
     actions: Annotated[
         tuple[ActionConfig, ...],
         Field(
             strict=False,
             max_length=100,
-            description="what happens to it, in the order of time; it needs a name",
+            description="moves of the object, in order of time; requires a name",
         ),
     ] = ()
-    scale: Annotated[float, Field(ge=0.001, le=1000.0, description="factor on the size of a `urdf`")] = 1.0
+    scale: Annotated[float, Field(ge=0.001, le=1000.0, description="scale factor of a `urdf`")] = 1.0

@@ -9,4 +9,4 @@ from peopleboy.tracker.trackers import TRACKERS
 def trackers() -> str:
     """List every tracker, its scope, and what it is."""
     rows = [(f"`{name}`", entry.scope, entry.summary) for name, entry in TRACKERS.shipped.items()]
-    return table(("`--tracker`", "follows", "what it is"), rows)
+    return table(("`--tracker`", "source", "description"), rows)

@@ -29,7 +29,7 @@ def comfort() -> str:
     """List the figures of people's comfort."""
     figures = ComfortScore.metrics().values()
     rows = [(f"**{one.name}**", one.unit or "count", sentence(one.meaning)) for one in figures]
-    return table(("figure", "unit", "meaning"), rows)
+    return table(("metric", "unit", "meaning"), rows)
 
 
 def following() -> str:
@@ -48,4 +48,4 @@ def _driving(score: type[ScoreRecord]) -> str:
         (f"**{one.name}**", f"`{key}`", one.unit or "count", sentence(one.meaning))
         for key, one in score.metrics().items()
     ]
-    return table(("figure", "in `metrics.json`", "unit", "meaning"), rows)
+    return table(("metric", "in `metrics.json`", "unit", "meaning"), rows)

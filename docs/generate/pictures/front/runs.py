@@ -15,7 +15,7 @@ from peopleboy.scenarios.running.run import run
 from peopleboy.scenarios.running.run_options import RunOptions
 
 WIDTH_PX = 1100
-TUTORIAL = Path(__file__).parents[2] / "tutorial" / "own-scenario.md"
+TUTORIAL = Path(__file__).parents[3] / "tutorial" / "own-scenario.md"
 
 
 def first_run() -> Image.Image:

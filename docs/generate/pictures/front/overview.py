@@ -1,4 +1,4 @@
-"""What one run gives, in one picture: `python -m docs.generate.pictures.overview` draws docs/overview.png."""
+"""One instant of a run: `python -m docs.generate.pictures.front.overview` draws docs/overview.png."""
 
 from __future__ import annotations
 
@@ -25,16 +25,17 @@ from peopleboy.sim.robot.robot_body import RADIUS_M
 from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
-PATH = Path(__file__).parents[2] / "overview.png"
+PATH = Path(__file__).parents[3] / "overview.png"
 SCENARIO, SEED, FRAME = "crossing_4", 0, 41
 SCALE = 3
-LEAST_SHARE = 0.02  # hidden, from which it is said by whom
+LEAST_SHARE = 0.02  # smallest occluded fraction that gets an arrow
+LABEL_M = 0.4  # beyond the far wall, so that names of people near it are not cut
 NIGHT: Rgb = (24, 26, 32)
 TITLES = (
-    "thermal image as people are shown it, and what the tracker finds",
-    "colour image, from a camera 6 cm beside",
-    "truth: who, which part of the body, how much is visible",
-    "truth: who is where, and who hides how much of whom",
+    "thermal image with tracks",
+    "colour image, from a camera 6 cm away",
+    "ground truth: body parts, boxes, visible fraction",
+    "ground truth on the floor: who occludes whom, and how much",
 )
 
 
@@ -52,12 +53,13 @@ def overview() -> Figure:
         ),
     )
     show(colour, tick.observation.images["colour"])
-    _draw_truth(truth, tick.truth)
-    _draw_plan(plan, load_scenario(SCENARIO), tick)
+    draw_truth(truth, tick.truth)
+    draw_plan(plan, load_scenario(SCENARIO), tick)
     return figure
 
 
-def _draw_truth(axes: Axes, truth: Truth) -> None:
+def draw_truth(axes: Axes, truth: Truth) -> None:
+    """Draw masks by body part, boxes, and the visible fraction of each person."""
     show(axes, _bodies(truth))
     height, width = truth.instance.shape
     axes.set_xlim(-0.5, width - 0.5)
@@ -73,7 +75,7 @@ def _draw_truth(axes: Axes, truth: Truth) -> None:
 
 
 def _bodies(truth: Truth) -> NDArray[np.uint8]:
-    """Paint everybody's visible pixels (H, W, 3), each part of the body in a shade of its own."""
+    """Paint the visible pixels of all people (H, W, 3), one shade for each body part."""
     picture = np.empty((*truth.instance.shape, 3), np.uint8)
     picture[:] = NIGHT
     shades = 0.55 + 0.45 * (truth.body_part * 5 % 7) / 6.0
@@ -83,11 +85,12 @@ def _bodies(truth: Truth) -> NDArray[np.uint8]:
     return picture
 
 
-def _draw_plan(axes: Axes, scenario: Scenario, tick: Tick) -> None:
-    """Draw the place from above, the robot's view, everybody, and arrows from who hides to who is hidden."""
+def draw_plan(axes: Axes, scenario: Scenario, tick: Tick) -> None:
+    """Draw the place from above, the field of view, people, and arrows from occluder to occluded."""
     min_x, min_y, max_x, max_y = scenario.place.bounds
+    max_x += LABEL_M
     axes.set_xlim(min_x, max_x)
-    # As wide as high as the images beside it.
+    # The aspect ratio of the images in the other panels.
     axes.set_ylim(*((min_y + max_y) / 2.0 + np.array((-0.375, 0.375)) * (max_x - min_x)))
     axes.set_aspect("equal")
     labels = Labels(axes)
@@ -113,7 +116,7 @@ def _draw_plan(axes: Axes, scenario: Scenario, tick: Tick) -> None:
 
 
 def _hiding(people: tuple[PersonTruth, ...]) -> Iterator[tuple[PersonTruth, PersonTruth, float]]:
-    """Yield who hides, who is hidden, and the share."""
+    """Yield the occluder, the occluded person and the occluded fraction."""
     known = {person.name: person for person in people}
     for behind in people:
         for name, share in behind.hidden_by.items():

@@ -1,0 +1,1 @@
+"""Pictures of the README, the home page and the gallery."""

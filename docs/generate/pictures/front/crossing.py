@@ -1,0 +1,86 @@
+"""The moving picture of a crossing: `python -m docs.generate.pictures.front.crossing` draws it."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from matplotlib.figure import Figure
+from PIL import Image
+
+from docs.generate.pictures.front.overview import draw_plan, draw_truth
+from docs.generate.pictures.paper import panels, show
+from peopleboy.behaviours.scripted import Stand
+from peopleboy.scenarios.drawing.overlay import draw_tracks, enlarge, show_thermal
+from peopleboy.scenarios.files.load import load_scenario
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.loop.loop import Tick, closed_loop
+from peopleboy.sim.world import World
+from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
+
+PATH = Path(__file__).parents[3] / "pictures" / "crossing.webp"
+SCENARIO = """
+name: crossing
+description: Four people cross in front of a standing robot, in full detail.
+like: crossing_4
+detail: full
+robot:
+  at_m: [0.6, 0.0]
+  cameras: {thermal: {kind: thermal, preset: uncooled}}
+"""
+SEED, FROM_S, UNTIL_S = 0, 2.4, 10.4
+EVERY = 2  # ticks a frame of the picture: 7.5 frames a second, real time
+SCALE = 2
+HEIGHT_IN, DPI = 3.1, 100
+QUALITY = 65  # of WebP, 0 to 100: less makes lines and labels fray
+TITLES = ("thermal image with tracks", "ground truth: visible fraction", "plan: who occludes whom")
+
+
+def frames(path: Path) -> Iterator[Image.Image]:
+    """Play the scenario of a file and draw every second tick."""
+    scenario = load_scenario(path)
+    with World(scenario.world(SEED)) as world:
+        first, last = (round(time_s * world.config.control_hz) for time_s in (FROM_S, UNTIL_S))
+        tracker = make_tracker(DEFAULT_TRACKER, SEED)
+        for tick in islice(closed_loop(world, tracker, Stand(), last), first, None, EVERY):
+            yield _raster(_draw(scenario, tick))
+
+
+def _draw(scenario: Scenario, tick: Tick) -> Figure:
+    figure, (thermal, truth, plan) = panels(TITLES, HEIGHT_IN)
+    image = enlarge(show_thermal(tick.observation.images["thermal_scene"]), SCALE)
+    show(thermal, draw_tracks(image, tick.tracks, SCALE, tick.explanation))
+    draw_truth(truth, tick.truth)
+    draw_plan(plan, scenario, tick)
+    return figure
+
+
+def _raster(figure: Figure) -> Image.Image:
+    file = io.BytesIO()
+    figure.savefig(file, dpi=DPI, facecolor="white")
+    return Image.open(file).convert("RGB")
+
+
+def main() -> None:
+    """Write the moving picture."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "crossing.yaml"
+        path.write_text(SCENARIO, encoding="utf-8")
+        first, *others = frames(path)
+    first.save(
+        PATH,
+        save_all=True,
+        append_images=others,
+        duration=round(1000 * EVERY / 15),
+        loop=0,
+        quality=QUALITY,
+        method=6,
+    )
+    print(PATH, f"{PATH.stat().st_size / 1e6:.2f} MB, {len(others) + 1} frames")
+
+
+if __name__ == "__main__":
+    main()
