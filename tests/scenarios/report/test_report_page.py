@@ -232,7 +232,7 @@ def test_what_a_page_lacks_is_said_on_it_and_on_standard_error(
         main(["report", str(runs / "other")])
     assert ended.value.code == 0
     (line,) = capsys.readouterr().err.splitlines()
-    said = line.removeprefix("peopleboy: ")
+    said = line.removeprefix("peopleboy: note: ")
     assert "scenario.yaml: " in said
     text = " ".join(structure(runs / "other" / "report.html").text.split())
     assert said in text

@@ -116,7 +116,7 @@ FOLDERS = {
     "export or track": write_run,
     "run": lambda path: claim_folder(path, overwrite=False),
     "render": lambda path: render_set(
-        of_scenarios(["pass_behind"], 1), path, frames=False, tracker="truth", workers=Workers()
+        of_scenarios(["pass_behind"], range(1)), path, frames=False, tracker="truth", workers=Workers()
     ),
 }
 OTHERS = {
