@@ -46,7 +46,7 @@ class Reaction:
         BadInput: a value is out of range, or the reaction does not use it.
     """
 
-    to: Annotated[Literal["robot"], Field(description="to whom")] = "robot"
+    to: Annotated[Literal["robot"], Field(description="what the person reacts to")] = "robot"
     way: Annotated[
         Way,
         Field(
