@@ -1,7 +1,7 @@
-"""Boosted trees, one after another, until a window is no person any more.
+"""Soft cascade of boosted trees that classifies windows.
 
-A soft cascade (Bourdev and Brandt, CVPR 2005): after each tree, whoever has less than nearly all people have
-by then is let go.
+Source: Bourdev and Brandt, CVPR 2005. After each tree, windows are rejected whose score is below that of
+nearly all people at that stage.
 """
 
 from __future__ import annotations
@@ -20,23 +20,23 @@ from peopleboy.tracker.detector.window import COLUMNS, ROWS
 DEPTH: Final = 3
 NODES: Final = 2**DEPTH - 1
 LEAVES: Final = 2**DEPTH
-STRIDE: Final = 2  # [cells] between windows of the first look
+STRIDE: Final = 2  # [cells] between windows of the coarse scan
 _EARLY: Final = 32
-"""Trees that nearly no window comes through."""
+"""Trees that nearly no window passes."""
 PROMISING: Final = 256
-"""Trees: beside windows that come through so many there may be a better one."""
+"""Number of passed trees from which the neighbours of a window are evaluated, too."""
 
 _BESIDE: Final = (5, 2)
-"""Rows and columns up to which windows show mostly the same."""
-_WORSE: Final = 3.0  # log odds; a twentieth of the weight
+"""Rows and columns within which windows show mostly the same."""
+_WORSE: Final = 3.0  # log-odds below the best neighbour: a twentieth of its weight
 
 
 class Hits(NamedTuple):
-    """Windows that came through.
+    """Windows that passed the cascade.
 
     Attributes:
-        row: (N,) of the first cell, among those with the border.
-        column: (N,) likewise.
+        row: (N,) row of the first cell, including the border.
+        column: (N,) column of the first cell.
         score: (N,) sum of all trees.
     """
 
@@ -49,7 +49,7 @@ class Hits(NamedTuple):
         return Hits(self.row[these], self.column[these], self.score[these])
 
     def best(self) -> Hits:
-        """Return those that count: beside one that is much surer others hardly matter."""
+        """Return those that are not much worse than a neighbour."""
         is_kept = np.empty(len(self.score), np.bool_)
         _compare(*self, is_kept)
         return self.take(is_kept)
@@ -57,15 +57,15 @@ class Hits(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cascade:
-    """Trees of depth 3, of which each node sends a window to the right if its patch is above a threshold.
+    """Trees of depth 3; each node sends a window to the right if its patch is above a threshold.
 
     Attributes:
-        patches: all that nodes ask for.
-        feature: (T, 7) int32 number of a patch by node, those of one depth after another: 2 k + 1 and
-            2 k + 2 follow k.
+        patches: all patches that the nodes use.
+        feature: (T, 7) int32 number of a patch by node, level by level: the children of k are 2 k + 1 and
+            2 k + 2.
         threshold: (T, 7) float32.
-        leaf: (T, 8) float32, what each leaf adds to the score.
-        least: (T,) float32 score below which a window is let go after that tree.
+        leaf: (T, 8) float32, score of each leaf.
+        least: (T,) float32 score below which a window is rejected after that tree.
     """
 
     patches: Patches
@@ -76,7 +76,7 @@ class Cascade:
     _layouts: Layouts = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Keep where patches lie."""
+        """Cache the layouts of patches."""
         object.__setattr__(self, "_layouts", Layouts(self.patches, self.feature))
 
     def scan(
@@ -88,14 +88,14 @@ class Cascade:
         stride: int = STRIDE,
         promising: int = PROMISING,
     ) -> Hits:
-        """Look through all windows of a level, with their first cell in some rows, borders included.
+        """Evaluate all windows of a level whose first cell is in a range of rows, including borders.
 
         Args:
-            sums: (9, h + 1, w + 1) of its channels.
+            sums: (9, h + 1, w + 1) integral images of its channels.
             rows: the first one, and the one after the last.
-            is_known: (h - 19, w - 9) of windows by their first cell, at which nobody looks; None for none.
-            stride: cells between windows; with 2 and more, those beside a promising one are looked at, too.
-            promising: how many trees such a one must come through.
+            is_known: (h - 19, w - 9) windows to skip, by their first cell; None for none.
+            stride: cells between windows; from 2 on, the neighbours of promising windows are evaluated, too.
+            promising: number of passed trees of a promising window.
         """
         _, high, wide = sums.shape
         first, end = max(rows[0], 0), min(rows[1], high - ROWS)
@@ -112,7 +112,7 @@ class Cascade:
         return Hits(at_row + first, at_column, found[at_row, at_column].astype(np.float64))
 
     def calibrated(self, gain: float, offset: float) -> Cascade:
-        """Return the same trees with scores times a gain plus an offset."""
+        """Return the same trees with scores multiplied by a gain plus an offset."""
         leaf = self.leaf * np.float32(gain)
         leaf[0] += np.float32(offset)
         least = self.least * np.float32(gain) + np.float32(offset)
@@ -131,7 +131,7 @@ class Cascade:
 def find_leaf(
     sums: Sums, at: np.uint32, offset: NDArray[np.uint32], weight: Cells, threshold: Cells, nodes: np.uint32
 ) -> np.uint32:  # pragma: no cover
-    """Return the leaf (0 to 7) of a window that begins at a place, in the tree with nodes from one on."""
+    """Return the leaf (0 to 7) of a window at a position, in the tree whose nodes start at an index."""
     node = np.uint32(0)
     for _ in range(DEPTH):
         seen = patch(sums, at, offset[nodes + node], weight[nodes + node])
@@ -155,16 +155,17 @@ def _scan(
     is_passed: NDArray[np.bool_],
     found: Cells,
 ) -> None:  # pragma: no cover
-    """Look at every so many windows, then at those beside promising ones; leave their scores.
+    """Evaluate a grid of windows, then the neighbours of promising ones, and write their scores.
 
-    Rows are kept apart while many are let go, of windows that read what is near; then few are left, and all
-    of a level go through a tree at once, as trees take more room than what they read.
+    Rows are processed separately while many windows are rejected, so that their data stay in the cache; then
+    all remaining windows of a level go through one tree after the other, as trees take more memory than their
+    data.
     """
     rows, columns = found.shape
     early = min(_EARLY, promising)
     at, score = np.empty(rows * columns, np.uint32), np.empty(rows * columns, np.float32)
     is_wanted = np.zeros((rows, columns), np.bool_)
-    none: int = np.int64(0)  # type: ignore[assignment]  # called with a literal, kernels would be compiled for it, too
+    none: int = np.int64(0)  # type: ignore[assignment]  # a literal would compile the kernels a second time
     left = none
     for i in range(0, rows, stride):
         count = none
@@ -196,7 +197,7 @@ def _scan(
 def _compare(
     row: NDArray[np.int64], column: NDArray[np.int64], score: NDArray[np.float64], is_kept: NDArray[np.bool_]
 ) -> None:  # pragma: no cover
-    """Return which windows are not much worse than one beside them."""
+    """Return which windows are not much worse than a neighbour."""
     rows, columns = _BESIDE
     for k in range(len(row)):
         is_kept[k] = True
@@ -219,9 +220,9 @@ def _walk(
     least: Cells,
     begin: int,
 ) -> int:  # pragma: no cover
-    """Take windows that begin at places in sums through trees from one on; move those left to the front.
+    """Evaluate windows at positions in sums from one tree on, and move the remaining ones to the front.
 
-    All windows go through a tree before the next one: none waits for what another one reads.
+    All windows go through a tree before the next one, so that no window waits for the data of another.
     """
     for tree in range(begin, len(least)):
         kept = 0

@@ -1,7 +1,7 @@
-"""What is looked at in each cell of an image: grey and gradients, by what is around, and motion.
+"""Feature channels of an image: normalised grey, gradients and motion in cells.
 
-They are aggregated channel features (Dollár et al., Fast Feature Pyramids, PAMI 2014) without absolute grey:
-a gain or an offset of the image leaves them as they are, as far as it is well above the noise.
+Aggregated channel features (Dollár et al., Fast Feature Pyramids, PAMI 2014) without absolute grey: they are
+invariant to a gain or an offset of the image, as long as the contrast is well above the noise.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ DIRECTIONS: Final = 6
 MOTION: Final = FIRST_DIRECTION + DIRECTIONS
 CHANNELS: Final = MOTION + 1
 OVER: Final = 13
-"""Rows of cells that go on above and below an image as it ends: who is cut off there fills a window, too."""
+"""Rows of cells by which an image is extended above and below, for windows of truncated people."""
 BESIDE: Final = 4
-"""Columns on either side likewise."""
+"""Columns of cells by which it is extended on either side."""
 
-_SQUARES: Final = MOTION  # where sums of squares stand until motion does
-_NEAR: Final = 5  # [cells] gradients are normalised by those around
-_AROUND: Final = 21  # [cells] greys likewise
+_SQUARES: Final = MOTION  # sums of squares are stored here before motion is
+_NEAR: Final = 5  # [cells] neighbourhood in which gradients are normalised
+_AROUND: Final = 21  # [cells] neighbourhood in which greys are normalised
 _LEAST_GREY: Final = 1.0  # of 8 bits
 _NOISES: Final = 1.5
 _MOST_MOTION: Final = np.float32(3.0)
@@ -43,28 +43,28 @@ _SIN = np.sin(2.0 * _ANGLE).astype(np.float32)
 
 
 def noise_of(grey: Image) -> float:
-    """Estimate the deviation of an image's noise by the median of its second differences along rows."""
+    """Estimate the standard deviation of an image's noise from the median second difference along rows."""
     rows = grey[::3]
     second = rows[:, 2::3] + rows[:, :-2:3] - 2.0 * rows[:, 1:-1:3]
     return float(np.median(np.abs(second))) / 0.6745 / math.sqrt(6.0)
 
 
 def channels(grey: Image, change: Image, noise: float, buffer: Buffer | None = None) -> Cells:
-    """Describe the cells of an image.
+    """Return the channels of an image's cells.
 
-    Gradients are shared out among 6 directions, mod 180 deg: of a gradient of size m and direction a, one
-    of direction b has m max(0, 2 cos(2 (a - b)) - 1), which is m where they agree, and 0 from 30 deg on.
+    Gradients are divided among 6 directions, mod 180 deg: a gradient of magnitude m and direction a
+    contributes m max(0, 2 cos(2 (a - b)) - 1) to direction b, which is m for a = b, and 0 from 30 deg on.
 
     Args:
         grey: (2 h, 2 w) image.
-        change: (h, w) by how much greys changed, one number a cell.
-        noise: deviation of the image's noise.
-        buffer: where to put them; None for a place of their own.
+        change: (h, w) change of the greys, one value per cell.
+        noise: standard deviation of the image's noise.
+        buffer: output memory; None to allocate it.
 
     Returns:
-        (9, h + 26, w + 8): grey, gradient, 6 directions, motion; what is beyond the border is as at it.
+        (9, h + 26, w + 8): grey, gradient, 6 directions, motion; the border is replicated.
     """
-    # 1 2 1, both ways.
+    # binomial filter 1 2 1 in both directions
     smooth = np.asarray(cv2.GaussianBlur(grey, (3, 3), 0.0, borderType=cv2.BORDER_REFLECT_101), np.float32)
     rows, columns = change.shape
     cells = (buffer or Buffer()).take((CHANNELS, rows + 2 * OVER, columns + 2 * BESIDE))
@@ -80,7 +80,7 @@ def channels(grey: Image, change: Image, noise: float, buffer: Buffer | None = N
 
 @njit(cache=True, nogil=True, fastmath=True)
 def _sum_up(smooth: Image, cos: Cells, sin: Cells, cells: Cells) -> None:  # pragma: no cover
-    """Take the means of cells: grey, gradient, its directions, squared grey."""
+    """Average within cells: grey, gradient, its directions, squared grey."""
     rows, columns = cells.shape[1] - 2 * OVER, cells.shape[2] - 2 * BESIDE
     wide, last = CELL_PX * columns, CELL_PX * rows - 1
     quarter = np.float32(1.0 / CELL_PX**2)
@@ -121,7 +121,7 @@ def _sum_up(smooth: Image, cos: Cells, sin: Cells, cells: Cells) -> None:  # pra
 def _relate(
     cells: Cells, change: Cells, mean: Cells, squares: Cells, strength: Cells, least: np.float32
 ) -> None:  # pragma: no cover
-    """Express all in what is around: grey and motion in its deviation, gradients in their mean."""
+    """Normalise by the neighbourhood: grey and motion by its standard deviation, gradients by their mean."""
     rows, columns = change.shape
     zero, one, two = np.float32(0.0), np.float32(1.0), np.float32(2.0)
     share = np.empty(columns, np.float32)
@@ -141,7 +141,7 @@ def _relate(
 
 @njit(cache=True, nogil=True, fastmath=True)
 def _spread(cells: Cells) -> None:  # pragma: no cover
-    """Smooth by 1 2 1 both ways, and go on beyond the borders."""
+    """Smooth by 1 2 1 in both directions, and replicate the borders."""
     count, rows, columns = cells.shape[0], cells.shape[1] - 2 * OVER, cells.shape[2] - 2 * BESIDE
     quarter, half = np.float32(0.25), np.float32(0.5)
     line, above = np.empty(columns + 2, np.float32), np.empty(columns, np.float32)

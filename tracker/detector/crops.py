@@ -1,4 +1,4 @@
-"""The input of rescoring and box refinement: a crop round each detection, and a few features of it."""
+"""Input of rescoring and box refinement: a crop around each detection, and a few further features."""
 
 from __future__ import annotations
 
@@ -20,33 +20,33 @@ Crops = NDArray[np.uint8]
 Planes = NDArray[np.float32]
 
 FEATURES: Final = 9
-"""How many `crop_features` a detection has."""
+"""Number of `crop_features` of a detection."""
 SCORES: Final = 4.0
-"""Log odds in a unit of the first feature, the score."""
+"""Unit of the first feature, the score, in log-odds."""
 
-_USUAL_PX: Final = 80.0  # height of people in the middle of all sizes
-_STATURE_M: Final = 1.7  # of the mean person
+_USUAL_PX: Final = 80.0  # typical height of people
+_STATURE_M: Final = 1.7  # mean stature
 _MOST: Final = 2.0
-_SHARPNESS: Final = 6.0  # of the logarithm of the stature
-_LEAST_GREY: Final = 2.0  # deviation that is noise
-_MOST_GREY: Final = 4.0  # deviations
+_SHARPNESS: Final = 6.0  # scale of the logarithm of the stature
+_LEAST_GREY: Final = 2.0  # standard deviation below which contrast is noise
+_MOST_GREY: Final = 4.0  # in standard deviations
 _FLAGS: Final = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
 
 
 def cut_crops(grey: Grey, change: Grey, boxes: Floats, size: CropSize) -> Crops:
-    """Cut boxes (N, 4) [px] out of an image with what is round them, (N, rows, columns, 3).
+    """Crop boxes (N, 4) [px] with their surroundings from an image, (N, rows, columns, 3).
 
     Args:
         grey: (H, W) image.
-        change: (H, W) by how much greys changed.
-        boxes: from head to feet; the crop of each is about its middle.
+        change: (H, W) change of the greys.
+        boxes: from head to feet; each crop is centred on its box.
         size: of the crops.
     """
     rows, columns, heights = size
     crops = np.zeros((len(boxes), rows, columns, CHANNELS), np.uint8)
     images = [(grey, change)]
     for crop, (left, top, width, height) in zip(crops, boxes.tolist(), strict=True):
-        scale = heights * height / rows  # [px] of the image in one of the crop
+        scale = heights * height / rows  # [px] of the image per pixel of the crop
         halvings = max(int(np.floor(np.log2(scale) + 0.25)), 0)
         while len(images) <= halvings:
             images.append((_half(images[-1][0]), _half(images[-1][1])))
@@ -73,7 +73,7 @@ def normalise_crops(crops: Crops) -> Planes:
 
 @njit(cache=True, nogil=True)
 def _normalise(crop: Crops, planes: Planes) -> None:  # pragma: no cover
-    """Express pixels (M, 3) in their mean and deviation inside the image."""
+    """Normalise pixels (M, 3) by mean and standard deviation of those inside the image."""
     count, total, squares = 0, 0.0, 0.0
     for one, _, inside in crop:
         if inside > 0:
@@ -91,18 +91,18 @@ def _normalise(crop: Crops, planes: Planes) -> None:  # pragma: no cover
 
 
 def crop_features(found: Detections, crops: Crops, shape: tuple[int, int], mount: Mount | None) -> Planes:
-    """Return features of detections that crops (N, rows, columns, 3) do not show.
+    """Return features of detections that are not visible in crops (N, rows, columns, 3).
 
     Args:
         found: N detections.
-        crops: of them.
+        crops: of the detections.
         shape: rows and columns of the image.
-        mount: of the camera; None if that is not known.
+        mount: of the camera; None if unknown.
 
     Returns:
-        (N, 9) score, logarithm of the height, shares that are above, below, left and right of the image,
-        logarithm of the contrast, and the logarithm of the stature of a person who stands there on the
-        floor, and whether that is known.
+        (N, 9) score, logarithm of the height, shares above, below, left and right of the image, logarithm of
+        the contrast, logarithm of the stature of a person standing on the floor at that position, and whether
+        the stature is known.
     """
     rows, columns = shape
     left, top, width, height = found.box.T
@@ -138,7 +138,7 @@ def _mark_inside(
 
 @njit(cache=True, nogil=True)
 def _deviations(crops: Crops) -> Floats:  # pragma: no cover
-    """Return the deviations (N,) of the greys of crops."""
+    """Return the standard deviations (N,) of the greys of crops."""
     deviation = np.empty(len(crops))
     for number in range(len(crops)):
         total, squares = 0, 0

@@ -1,4 +1,4 @@
-"""Detections, and non-maximum suppression: one box for each person, of many windows that show them."""
+"""Detections, and non-maximum suppression: one box per person from many overlapping windows."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from peopleboy.tracker.boxes import area, cover, intersection
 
 Floats = NDArray[np.float64]
 
-SHARED: Final = 0.65  # of the smaller box: from then on two boxes are of one person
-_ALIKE: Final = 0.5  # IoU of boxes whose mean is taken
-_TOUCHED: Final = 0.12  # share of a box that is theirs who are to its left and right, each at least
-_BETWEEN: Final = 0.6  # share of it that is one's or the other's
+SHARED: Final = 0.65  # share of the smaller box from which two boxes show one person
+_ALIKE: Final = 0.5  # IoU of boxes that are averaged
+_TOUCHED: Final = 0.12  # least share of a box overlapped by its left, and by its right neighbour
+_BETWEEN: Final = 0.6  # share of a box covered by both neighbours
 
 
 class Detections(NamedTuple):
-    """People that were detected in one image.
+    """People detected in one image.
 
     Attributes:
-        box: (N, 4) [px] from head to feet, the surest first.
-        score: (N,) log odds on images like those of the training: 0 is even.
-        trees: (N,) likewise, of the cascade alone.
+        box: (N, 4) [px] from head to feet, the highest score first.
+        score: (N,) log-odds, calibrated on images like those of the training.
+        trees: (N,) log-odds of the cascade alone.
     """
 
     box: Floats
@@ -46,10 +46,10 @@ NO_DETECTIONS: Final = Detections.from_trees(np.empty((0, 4)), np.empty(0))
 
 
 def suppress(found: Detections) -> Detections:
-    """Keep the best of boxes that share much of the smaller one's area, each the mean of those like it.
+    """Keep the best of overlapping boxes, each averaged with similar ones.
 
-    Greedy (Dollár et al., PAMI 2012). A box weighs exp(score) in the mean. Of those kept, one is left out
-    that lies between two surer ones and is mostly theirs.
+    Greedy (Dollár et al., PAMI 2012), with weights exp(score) in the average. A box is dropped if it lies
+    between two boxes with higher scores that cover most of it.
     """
     ordered = found.take(np.argsort(-found.score, kind="stable"))
     means = np.empty((len(ordered.box), 4))
@@ -60,7 +60,7 @@ def suppress(found: Detections) -> Detections:
 
 @njit(cache=True, nogil=True)
 def _best(box: Floats, score: Floats, means: Floats) -> NDArray[np.intp]:  # pragma: no cover
-    """Return who is the best of those with boxes (N, 4) near, the surest first; give their means (N, 4)."""
+    """Return the best of overlapping boxes (N, 4), the highest score first, and write the averages (N, 4)."""
     kept, is_left = np.empty(len(box), np.intp), np.ones(len(box), np.bool_)
     count = 0
     for k in range(len(box)):
@@ -83,7 +83,7 @@ def _best(box: Floats, score: Floats, means: Floats) -> NDArray[np.intp]:  # pra
 
 
 def _is_between(found: Detections) -> NDArray[np.bool_]:
-    """Return which of N boxes show but the arm of a person to the left, and of another one to the right."""
+    """Return which of N boxes only show arms of their left and right neighbours."""
     share = cover(intersection(found.box[:, None], found.box[None]), area(found.box)[:, None])
     share *= found.score[None] > found.score[:, None]
     middle = found.box[:, 0] + found.box[:, 2] / 2.0

@@ -1,4 +1,4 @@
-"""The detector of people in thermal images: cascade, rescoring and box refinement, one after another."""
+"""The detector of people in thermal images: cascade, rescoring and box refinement."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from peopleboy.tracker.networks.inference import one_thread
 Grey = NDArray[np.uint8]
 
 SMALLEST_PX: Final = 24.0
-"""Height of the smallest people that are detected."""
+"""Height of the smallest detected people."""
 
 WEAKEST: Final = -3.5
-"""Score from which on a detection of the cascade is rescored."""
+"""Score from which a detection of the cascade is rescored."""
 
 
 class PeopleDetector:
-    """Detects people in images that come one after another, and keeps earlier ones, which show what moves."""
+    """Detects people in consecutive images; earlier images are kept to detect motion."""
 
     def __init__(
         self,
@@ -39,14 +39,14 @@ class PeopleDetector:
         smallest_px: float = SMALLEST_PX,
         least_score: float = 0.0,
     ) -> None:
-        """Take the shipped trees and networks, or others.
+        """Make one with the shipped trees and networks, or with others.
 
         Args:
             model: trees of cascade and box regression.
-            rescoring: corrects their detections.
-            box_refinement: corrects the boxes of what is left.
+            rescoring: network that corrects the scores.
+            box_refinement: network that corrects the boxes.
             smallest_px: height of the smallest people that are detected.
-            least_score: of the detections that are returned.
+            least_score: of the returned detections.
         """
         self._model = shipped_people_trees() if model is None else model
         self._rescoring = RescoringNetwork.shipped() if rescoring is None else rescoring
@@ -69,12 +69,12 @@ class PeopleDetector:
         """Detect people.
 
         Args:
-            grey: (H, W) image; greys may mean anything, as long as that does not change much in 0.2 s.
-            time_s: when it was taken.
-            odometry: how the robot moved since the last one; None if that is not known.
-            mount: of the camera; None if that is not known: then people may be anywhere.
-            expected: known people with the scores that the cascade gave them; it skips their windows.
-            everywhere: whether to detect others, too; if not, and nobody is expected, the image is only kept.
+            grey: (H, W) image; the meaning of greys must not change much within 0.2 s.
+            time_s: time of the image.
+            odometry: motion of the robot since the last image; None if unknown.
+            mount: of the camera; None if unknown, then people are searched for everywhere.
+            expected: predicted people with their last cascade scores; the cascade skips their windows.
+            everywhere: whether to search the whole image; otherwise only `expected` is rescored.
         """
         self._past.keep(grey, time_s, odometry)
         if not everywhere and len(expected.box) == 0:
@@ -84,14 +84,14 @@ class PeopleDetector:
     def detect(
         self, grey: Grey, change: Grey, mount: Mount | None, expected: Detections, *, everywhere: bool
     ) -> Detections:
-        """Detect people in an image (H, W) with the change of its greys (H, W)."""
+        """Detect people in an image (H, W), given the change of its greys (H, W)."""
         first = self.detect_first(grey, change, mount, expected) if everywhere else expected
-        with one_thread():  # once for both networks, as each call of the library takes a while
+        with one_thread():  # once for both networks, as each call of the library takes time
             found = rescore(self._rescoring, grey, change, first, mount, self._least_score, self._workspace)
             return refine_boxes(self._box_refinement, grey, change, found, mount, self._workspace)
 
     def detect_first(self, grey: Grey, change: Grey, mount: Mount | None, known: Detections) -> Detections:
-        """Detect people by the cascade, and add those that are known."""
+        """Detect people with the cascade, and add the predicted ones."""
         return detect_with_trees(
             self._model, grey, change, mount, self._smallest_px, WEAKEST, known, self._buffer
         )
@@ -107,9 +107,9 @@ def detect_with_trees(
     known: Detections = NO_DETECTIONS,
     buffer: Buffer | None = None,
 ) -> Detections:
-    """Detect people by the cascade in an image (H, W) with the change of its greys (H, W).
+    """Run the cascade on an image (H, W), given the change of its greys (H, W).
 
-    Windows of known people are skipped; these people are added to the detections.
+    Windows of predicted people are skipped, and these people are added to the detections.
     """
     boxes, scores = [known.box], [known.trees]
     for level in pyramid_levels(grey, change, mount, smallest_px, buffer or Buffer()):
@@ -122,7 +122,7 @@ def detect_with_trees(
                 if not is_sure.any():
                     continue
                 hits = hits.take(is_sure)
-                if mount is not None:  # without a known mount all windows help
+                if mount is not None:  # without a known mount all windows are evaluated
                     hits = hits.best()
                 row, column = hits.row, hits.column
                 boxes.append(trees.regression.boxes(sums, row, column, level.boxes(row, column)))

@@ -1,4 +1,4 @@
-"""Change of an image beyond what the camera's own motion causes, by images of the last half second."""
+"""Change detection between images, with the camera's own motion compensated."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ Grey = NDArray[np.uint8]
 Matrix = NDArray[np.float64]
 
 _STILL_PX: Final = 1.0 / 64.0
-"""Shift up to which no pixel moves: pixels between others are read to 1/32."""
-_SURE: Final = 0.12  # response of the correlation below which nothing is said of a shift
+"""Shift below which the image is not warped: pixels are interpolated to 1/32."""
+_SURE: Final = 0.12  # response of the phase correlation below which a shift is unreliable
 
 
 def rotation_homography(mount: Mount, shape: tuple[int, int], turn_rad: float) -> Matrix:
-    """Return the homography (3, 3) by which pixels (u, v, 1) move when the robot turns.
+    """Return the homography (3, 3) of pixels (u, v, 1) for a rotation of the robot.
 
     Args:
-        mount: of the camera, whose optical axis is in the middle of the image's columns and rows.
+        mount: of the camera, whose optical axis is in the middle of the image.
         shape: rows and columns of the image.
         turn_rad: to the left.
     """
@@ -34,16 +34,16 @@ def rotation_homography(mount: Mount, shape: tuple[int, int], turn_rad: float) -
     middle = np.array([(columns - 1) / 2.0, (rows - 1) / 2.0])
     inward = np.array([[mount.focal_px, 0.0, middle[0]], [0.0, mount.focal_px, middle[1]], [0.0, 0.0, 1.0]])
     pitch = math.atan2(middle[1] - mount.horizon_px, mount.focal_px)
-    # Upright axis in the camera's frame, x right, y down, z forward; a camera that looks down has it behind.
+    # Vertical axis in the camera frame, x right, y down, z forward; behind a camera that looks down.
     axis = np.array([0.0, -math.cos(pitch), -math.sin(pitch)])
     rotation, _ = cv2.Rodrigues(-turn_rad * axis)
     return np.asarray(inward @ rotation @ inverse(inward), np.float64)
 
 
 def shift_homography(before: Grey, now: Grey) -> Matrix:
-    """Estimate a shift (3, 3) of pixels (u, v, 1) from one image to the next.
+    """Estimate the shift (3, 3) of pixels (u, v, 1) between two images.
 
-    The shift is that of phase correlation at half size; none where that is not sure.
+    By phase correlation at half size; no shift if that is unreliable.
     """
     half = (max(now.shape[1] // 2, 1), max(now.shape[0] // 2, 1))
     smaller = [cv2.resize(image, half, interpolation=cv2.INTER_AREA) for image in (before, now)]
@@ -60,7 +60,7 @@ def shift_homography(before: Grey, now: Grey) -> Matrix:
 def image_difference(before: Grey, now: Grey, moved: Matrix) -> Grey:
     """Return the absolute difference (H, W) of an image and an earlier one, warped by a homography.
 
-    What has come into view since is no difference.
+    Areas that were outside the earlier image have no difference.
     """
     rows, columns = now.shape
     if _farthest_px(moved, rows, columns) > _STILL_PX:
@@ -74,7 +74,7 @@ def image_difference(before: Grey, now: Grey, moved: Matrix) -> Grey:
 
 
 def _farthest_px(moved: Matrix, rows: int, columns: int) -> float:
-    """Return how far the corner of an image moves that moves farthest, along columns or rows."""
+    """Return the greatest displacement of an image corner along columns or rows."""
     right, bottom = columns - 1.0, rows - 1.0
     corners = np.array([[0.0, right, 0.0, right], [0.0, 0.0, bottom, bottom], [1.0, 1.0, 1.0, 1.0]])
     there = moved @ corners
@@ -82,7 +82,7 @@ def _farthest_px(moved: Matrix, rows: int, columns: int) -> float:
 
 
 EARLIER_S: Final = 0.2
-"""Age of the image that the present one is compared with."""
+"""Age of the image with which the present one is compared."""
 
 _OLDEST_S: Final = 2.5 * EARLIER_S
 
@@ -91,22 +91,22 @@ class _Past(NamedTuple):
     grey: Grey
     time_s: float
     heading_rad: float
-    is_known: bool  # how the robot turned since the image before
+    is_known: bool  # whether the rotation since the previous image is known
 
 
 class PastImages:
-    """Images of one camera that come one after another."""
+    """The latest images of one camera."""
 
     def __init__(self) -> None:
         self._past: deque[_Past] = deque()
 
     def keep(self, grey: Grey, time_s: float, odometry: Odometry | None = None) -> None:
-        """Take in the next one.
+        """Add the next image.
 
         Args:
-            grey: (H, W); one of another size begins anew, and so does one that is not later.
-            time_s: when it was taken.
-            odometry: how the robot moved since the last one; None if that is not known.
+            grey: (H, W); an image of another size, or one that is not later, resets the history.
+            time_s: time of the image.
+            odometry: motion of the robot since the last image; None if unknown.
         """
         past = self._past
         if past and (past[-1].time_s >= time_s or past[-1].grey.shape != grey.shape):
@@ -118,10 +118,10 @@ class PastImages:
             past.popleft()
 
     def change(self, mount: Mount | None = None) -> Grey:
-        """Return by how much the last one (H, W) differs from that of about 0.2 s before; 0 if there is none.
+        """Return the difference (H, W) of the last image from that of about 0.2 s before, or 0.
 
         Args:
-            mount: of the camera, with which odometry gives how pixels moved; without, the images do.
+            mount: of the camera, used with odometry to warp images; None estimates the shift from the images.
         """
         *earlier, now = self._past
         if not earlier:

@@ -1,7 +1,7 @@
-"""What trees ask of a window: the mean of a rectangle of cells, or by how much it exceeds that of another.
+"""Features of a window: the mean of a rectangle of cells, or the difference of two such means.
 
-They are read off integral images (Viola and Jones, CVPR 2001; Dollár et al., Integral Channel Features, BMVC
-2009), of whole numbers, so that no digits are lost in large images.
+They are computed from integral images (Viola and Jones, CVPR 2001; Dollár et al., Integral Channel Features,
+BMVC 2009) of integers, so that no precision is lost in large images.
 """
 
 from __future__ import annotations
@@ -17,27 +17,27 @@ from peopleboy.tracker.detector.channels import CHANNELS, Cells
 from peopleboy.tracker.detector.window import COLUMNS, ROWS
 
 Sums = NDArray[np.int32]
-"""(9, h + 1, w + 1): of all cells above and to the left, in parts of `PART`."""
+"""(9, h + 1, w + 1): sums of all cells above and to the left, in units of `PART`."""
 
 Layout = tuple[NDArray[np.uint32], Cells]
-"""Of patches: offsets (N, 8) of their corners in sums, and by what to multiply (N, 2) both rectangles'."""
+"""Offsets (N, 8) of the corners of patches in the sums, and the factors (N, 2) of both rectangles."""
 
 PART: Final = np.float32(512.0)
 CORNERS: Final = 8
-"""Of two rectangles: each adds its last and first ones and loses the others."""
+"""Signs of the corners of two rectangles: last and first are added, the others subtracted."""
 
 _LAYOUTS: Final = 40
-"""Sizes that are kept: those of one image are half as many."""
+"""Number of cached sizes: an image has half as many."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Patches:
-    """Rectangles of cells of a window, by pairs.
+    """Pairs of rectangles of cells in a window.
 
     Attributes:
         channel: (F,) uint8.
         first: (F, 4) uint8 row and column of the first cell, and those after the last.
-        second: (F, 4) uint8 of what is taken off; all 0 for nothing.
+        second: (F, 4) uint8 of the subtracted rectangle; all 0 for none.
     """
 
     channel: NDArray[np.uint8]
@@ -48,13 +48,13 @@ class Patches:
         return len(self.channel)
 
     def corners(self, feature: NDArray[np.int32], high: int, wide: int) -> Layout:
-        """Return where patches (N,) lie in sums of `high` by `wide`, seen from a window's first cell."""
+        """Return offsets of patches (N,) in sums of `high` by `wide`, relative to a window's first cell."""
         offset, weight = np.empty((len(feature), CORNERS), np.uint32), np.empty((len(feature), 2), np.float32)
         _corners(feature, self.channel, self.first, self.second, high, wide, offset, weight)
         return offset, weight
 
     def of(self, sums: Sums, number: int) -> Cells:
-        """Return a patch (N,) of windows of which each has sums in its column (9 * 21 * 11, N)."""
+        """Return a patch (N,) of windows whose sums are the columns of an array (9 * 21 * 11, N)."""
         offset, weight = self.corners(np.array([number], np.int32), ROWS + 1, COLUMNS + 1)
         result = np.empty(sums.shape[1], np.float32)
         _measure(sums, offset[0], weight[0], result)
@@ -62,10 +62,10 @@ class Patches:
 
 
 class Layouts:
-    """Where patches lie in sums of several sizes, as levels of one image after another have."""
+    """Layouts of patches in sums of several sizes, as for the levels of consecutive images."""
 
     def __init__(self, patches: Patches, feature: NDArray[np.int32]) -> None:
-        """Keep what some nodes ask for."""
+        """Store the patches of the nodes."""
         self._patches = patches
         self._feature = feature.ravel()
         self._kept: dict[tuple[int, int], Layout] = {}
@@ -82,7 +82,7 @@ class Layouts:
 
 
 def integrate(cells: Cells) -> Sums:
-    """Add up channels (9, h, w)."""
+    """Return the integral images of channels (9, h, w)."""
     _, high, wide = cells.shape
     sums = np.empty((CHANNELS, high + 1, wide + 1), np.int32)
     _sum(cells, sums)
@@ -90,7 +90,7 @@ def integrate(cells: Cells) -> Sums:
 
 
 def integrate_windows(windows: NDArray[np.float16]) -> Sums:
-    """Add up windows (N, 1800), each in a column (9 * 21 * 11, N)."""
+    """Return the integral images of windows (N, 1800), as columns (9 * 21 * 11, N)."""
     sums = np.empty((CHANNELS * (ROWS + 1) * (COLUMNS + 1), len(windows)), np.int32)
     for number, window in enumerate(windows):
         sums[:, number] = integrate(window.astype(np.float32).reshape(CHANNELS, ROWS, COLUMNS)).ravel()
@@ -99,7 +99,7 @@ def integrate_windows(windows: NDArray[np.float16]) -> Sums:
 
 @njit(inline="always")
 def patch(sums: Sums, at: np.uint32, corner: NDArray[np.uint32], by: Cells) -> np.float32:  # pragma: no cover
-    """Return a patch of the window that begins at a place in sums, by its corners and their weights."""
+    """Return a patch of the window at a position in sums, from its corners and their factors."""
     one = sums[at + corner[0]] - sums[at + corner[1]] - sums[at + corner[2]] + sums[at + corner[3]]
     two = sums[at + corner[4]] - sums[at + corner[5]] - sums[at + corner[6]] + sums[at + corner[7]]
     return np.float32(np.float32(one) * by[0] - np.float32(two) * by[1])

@@ -35,7 +35,7 @@ class PeopleTrees(NamedTuple):
 
     Attributes:
         cascade: scores windows.
-        regression: predicts where in a window the person is.
+        regression: predicts the person's box in a window.
     """
 
     cascade: Cascade
@@ -44,11 +44,11 @@ class PeopleTrees(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PeopleModel:
-    """The trees for all kinds of windows, which share their patches.
+    """The trees for all kinds of windows, with common patches.
 
     Attributes:
         trees: by kind of window.
-        about: what they were trained on, for the reader.
+        about: description of the training data, for readers of the file.
     """
 
     trees: Mapping[WindowKind, PeopleTrees]
@@ -70,7 +70,7 @@ class PeopleModel:
         """Read trees.
 
         Raises:
-            BadInput: a file that is missing, is none, or holds other trees.
+            BadInput: the file is missing, invalid, or holds other trees.
         """
         specs = _PATCHES | {name: spec for kind in WindowKind for name, spec in _tree_specs(kind).items()}
         archive = WeightsArchive.load(path, MODEL, specs)
@@ -116,5 +116,5 @@ def _lie_in_the_window(patches: Patches) -> bool:
 
 @cache
 def shipped_people_trees() -> PeopleModel:
-    """Read the trees that come with the tracker."""
+    """Read the shipped trees."""
     return PeopleModel.load(SHIPPED / FILE)

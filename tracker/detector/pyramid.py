@@ -1,4 +1,4 @@
-"""An image in the sizes at which people of all sizes fill the window."""
+"""Image pyramid: the sizes at which people of each size fill a window."""
 
 from __future__ import annotations
 
@@ -28,19 +28,19 @@ from peopleboy.tracker.detector.window import (
 from peopleboy.tracker.networks.convolution import Buffer
 
 STEP: Final = 2.0 ** (1.0 / 3.0)
-"""Between the sizes of people of one level and the next."""
+"""Ratio of the sizes of people of consecutive levels."""
 
-_STATURES_M: Final = (1.4, 2.0)  # of who is looked for
-_SLACK: Final = 0.15  # of a person's height: the pitch of the camera, the gait, and cells are none of a ray's
+_STATURES_M: Final = (1.4, 2.0)  # of detected people
+_SLACK: Final = 0.15  # tolerance in a person's heights, for pitch, gait and the size of cells
 _WHOLE_OVER: Final = 8
-"""Rows of cells that a window of a person who is mostly in the image may reach beyond it."""
+"""Rows of cells by which a window of a mostly visible person may extend beyond the image."""
 _CUT_OVER: Final = (6, 9)
-"""Rows above and below the image from which on a window is of a person who is cut off."""
-_CUT_PX: Final = 48.0  # height of the smallest people who are looked for cut off
+"""Rows above and below the image from which a window shows a truncated person."""
+_CUT_PX: Final = 48.0  # height of the smallest truncated people that are detected
 _LEAST_ROWS: Final = 7  # of cells in an image: a third of a window
-_LEAST_WHOLE_ROWS: Final = 12  # likewise; it shows the larger part of a person that it cuts off
+_LEAST_WHOLE_ROWS: Final = 12  # the same for the larger part of a truncated person
 _CONTEXT: Final = 12
-"""Cells above and below a window that its channels depend on."""
+"""Cells above and below a window that influence its channels."""
 
 
 Rows = tuple[int, int]
@@ -52,9 +52,9 @@ class Level:
     """One size of the image.
 
     Attributes:
-        cells: (9, h, w) channels, of those rows that are looked at and some around; with a border.
-        first: row of the first cell in the whole level, the border's not counted.
-        rows: ranges of rows of `cells` where windows of a kind may begin.
+        cells: (9, h, w) channels of the searched rows and their surroundings, with a border.
+        first: row of the first cell in the whole level, without the border.
+        rows: ranges of rows of `cells` in which windows of a kind may start.
         scale: pixels of the level per pixel of the image, down and right.
     """
 
@@ -69,13 +69,14 @@ class Level:
         return boxes_of(corner[0], corner[1], self.scale)
 
     def covered(self, box: Floats, share: float) -> NDArray[np.bool_]:
-        """Tell of windows (h - 19, w - 9) whether their people and one of boxes (K, 4) have much in common.
+        """Return which windows (h - 19, w - 9) overlap one of boxes (K, 4) strongly.
 
-        Windows are broader than people: theirs are taken to be as broad, in heights, as the one compared.
+        Windows are wider than people; their people are assumed to be as wide, in heights, as the compared
+        box.
 
         Args:
-            box: of some people [px].
-            share: of the smaller box of both, from which on it is much.
+            box: of people [px].
+            share: least overlap in shares of the smaller box.
         """
         _, high, wide = self.cells.shape
         is_covered = np.zeros((max(high - ROWS + 1, 0), max(wide - COLUMNS + 1, 0)), np.bool_)
@@ -84,7 +85,7 @@ class Level:
         return is_covered
 
     def windows(self, box: Floats) -> Floats:
-        """Return row and column (N, 2) in `cells` of the windows that people of boxes (N, 4) fill."""
+        """Return row and column (N, 2) in `cells` of the windows that people with boxes (N, 4) fill."""
         return np.asarray(cells_of(box, self.scale) + np.array([OVER - self.first, BESIDE]), np.float64)
 
 
@@ -99,10 +100,10 @@ def pyramid_levels(
 
     Args:
         grey: (H, W) image.
-        change: (H, W) by how much greys changed.
-        mount: of the camera; if it is known, only rows are looked at where people may stand.
+        change: (H, W) change of the greys.
+        mount: of the camera; if known, only rows in which people can stand are searched.
         smallest_px: height of the smallest people.
-        buffer: for the channels; a level then holds until the next one is asked for.
+        buffer: memory of the channels; a level is valid until the next one is computed.
     """
     original = grey.astype(np.float32)
     image, changes = _Halves(original), _Halves(change.astype(np.float32))
@@ -132,7 +133,7 @@ def pyramid_levels(
 
 
 def _ranges(start: int, end: int, high: int, person_px: float) -> dict[WindowKind, tuple[Rows, ...]]:
-    """Return in which rows windows of each kind begin, of those from a start to an end."""
+    """Return the rows in which windows of each kind start, within a range."""
     whole = [(-_WHOLE_OVER, high + _WHOLE_OVER - ROWS + 1)] if high >= _LEAST_WHOLE_ROWS else []
     cut = [(start, 1 - _CUT_OVER[0]), (high + _CUT_OVER[1] - ROWS, end)] if whole else [(start, end)]
     if person_px < _CUT_PX:
@@ -155,17 +156,17 @@ def _moved(ranges: Mapping[WindowKind, tuple[Rows, ...]], by: int) -> dict[Windo
 
 
 class _Halves:
-    """An image, half of it, a quarter of it and so on, of which others are made without skipping pixels."""
+    """An image at powers of one half, from which other sizes are computed without aliasing."""
 
     def __init__(self, image: Image) -> None:
         self._images = [image]
 
     def sized(self, size: tuple[int, int], scale: float) -> Image:
-        """Return the image in another size (columns, rows), which is about a scale of its own."""
+        """Return the image in another size (columns, rows), given its approximate scale."""
         return np.asarray(cv2.resize(self._at(scale), size), np.float32)
 
     def _at(self, scale: float) -> Image:
-        """Return the smallest that is as large as a scale asks for."""
+        """Return the smallest image that is large enough for a scale."""
         halvings = max(math.floor(-math.log2(scale) + 1e-9), 0)
         while len(self._images) <= halvings:
             rows, columns = self._images[-1].shape
@@ -176,11 +177,11 @@ class _Halves:
 
 
 def _beginnings(mount: Mount | None, high: int, down: float) -> tuple[int, int]:
-    """Return in which rows of cells windows may begin; the border's are below 0 and beyond."""
+    """Return the rows of cells in which windows may start, including those in the border."""
     everywhere = (-OVER, high + OVER - ROWS + 1)
     if mount is None:
         return everywhere
-    # Whoever stands has the feet as far below the horizon as the camera is high.
+    # The feet of a standing person are as far below the horizon as the camera is high.
     height = PERSON_PX / down
     feet = [mount.horizon_px + height * mount.height_m / stature for stature in _STATURES_M]
     slack = _SLACK * PERSON_PX / CELL_PX
@@ -193,7 +194,7 @@ def _beginnings(mount: Mount | None, high: int, down: float) -> tuple[int, int]:
 def _cover(
     boxes: Floats, first: Floats, step: Floats, share: float, is_covered: NDArray[np.bool_]
 ) -> None:  # pragma: no cover
-    """Return for windows, the first of which is a box (4,), at some steps (2,) [px], who covers them."""
+    """Return which windows, given the first box (4,) and steps (2,) [px], overlap one of the boxes."""
     rows, columns = is_covered.shape
     wide, high = first[2], first[3]
     for left, top, width, height in boxes:

@@ -28,25 +28,25 @@ _LAYERS: Final = tuple(
     NetworkLayer(*one) for one in ((5, 2, 24), (3, 2, 48), (3, 1, 64), (3, 2, 96), (3, 1, 96))
 )
 
-# In rendered images all of the correction would be right; on images of real cameras the network is too sure
-# of itself, and most so where the mount is not known, which is no robot's own camera.
+# The full correction would be best on rendered images; on images of real cameras the network is
+# overconfident, most of all with an unknown mount, as the robot's own camera has a known one.
 TRUSTED: Final = 0.5
-"""Share of the network's correction of the log odds that is applied."""
+"""Factor on the network's correction of the log-odds."""
 TRUSTED_WITHOUT_MOUNT: Final = 0.3
-"""The same for a camera whose mount is not known."""
+"""The same for a camera with an unknown mount."""
 
 
 class RescoringNetwork(CropNetwork):
-    """Predicts log odds and offsets; its weight `line` is gain and offset that calibrate the log odds."""
+    """Predicts log-odds and offsets; the weight `line` holds gain and offset of the calibration."""
 
     ARCHITECTURE: ClassVar[Architecture] = Architecture(
         CropSize(64, 48, 1.4), FEATURES, (*_LAYERS, NetworkLayer(1, 1, 32)), 128, 1 + OFFSETS
     )
     MODEL: ClassVar[str] = "rescoring"
     SCALES: ClassVar[Floats] = np.array([1.0, 0.02, 0.06, 0.08, 0.03])
-    """Units of the outputs: log odds, and offsets as of `encode_boxes`."""
+    """Units of the outputs: log-odds, and offsets as in `encode_boxes`."""
     USUAL: ClassVar[Floats] = np.array([0.0, 0.0, 0.0, 0.0, 0.22])
-    """What outputs of 0 stand for."""
+    """Values at outputs of 0."""
 
     @classmethod
     def shapes(cls) -> dict[str, tuple[int, ...]]:
@@ -54,7 +54,7 @@ class RescoringNetwork(CropNetwork):
         return cls.ARCHITECTURE.shapes() | {"line": (2,)}
 
     def predict(self, planes: Planes, features: Planes, workspace: Workspace | None = None) -> Floats:
-        """Return log odds and offsets (N, 5) for crops (N, 64, 48, 3) with features (N, 9)."""
+        """Return log-odds and offsets (N, 5) for crops (N, 64, 48, 3) with features (N, 9)."""
         outputs = self.outputs(planes, features, workspace).astype(np.float64)
         outputs[:, 0] += SCORES * features[:, 0]
         gain, offset = self.weights["line"].tolist()
@@ -63,19 +63,19 @@ class RescoringNetwork(CropNetwork):
 
 
 class BoxRefinementNetwork(CropNetwork):
-    """Predicts offsets of boxes, and no scores; it sees 1.6 times as finely."""
+    """Predicts offsets of boxes, without scores; its resolution is 1.6 times as high."""
 
     ARCHITECTURE: ClassVar[Architecture] = Architecture(
         CropSize(96, 72, 1.3), FEATURES - 1, (*_LAYERS, NetworkLayer(3, 2, 128)), 160, OFFSETS
     )
     MODEL: ClassVar[str] = "box-refinement"
     SCALES: ClassVar[Floats] = np.array([0.015, 0.03, 0.05, 0.03])
-    """Units of the outputs: offsets as of `encode_boxes`."""
+    """Units of the outputs: offsets as in `encode_boxes`."""
     USUAL: ClassVar[Floats] = np.array([0.0, 0.0, 0.0, 0.22])
-    """What outputs of 0 stand for."""
+    """Values at outputs of 0."""
 
     def predict(self, planes: Planes, features: Planes, workspace: Workspace | None = None) -> Floats:
-        """Return offsets (N, 4) for crops (N, 96, 72, 3) with features (N, 9), the score aside."""
+        """Return offsets (N, 4) for crops (N, 96, 72, 3) with features (N, 9) without the score."""
         outputs = self.outputs(planes, features, workspace)
         return np.asarray(outputs.astype(np.float64) * self.SCALES + self.USUAL)
 
@@ -89,9 +89,9 @@ def rescore(
     least_score: float,
     workspace: Workspace | None = None,
 ) -> Detections:
-    """Rescore the cascade's detections in an image (H, W) with the change of its greys (H, W).
+    """Rescore the cascade's detections in an image (H, W), given the change of its greys (H, W).
 
-    Boxes are the network's; scores lie between the network's and the cascade's.
+    Boxes are the network's; scores are blended from the network's and the cascade's.
     """
     if len(first.box) == 0:
         return first
@@ -110,7 +110,7 @@ def refine_boxes(
     mount: Mount | None,
     workspace: Workspace | None = None,
 ) -> Detections:
-    """Refine the boxes of detections in an image (H, W) with the change of its greys (H, W)."""
+    """Refine the boxes of detections in an image (H, W), given the change of its greys (H, W)."""
     if len(found.box) == 0:
         return found
     offsets = network.predict(*_inputs(network, grey, change, found, mount), workspace)

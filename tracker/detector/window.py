@@ -1,4 +1,4 @@
-"""The window that the detector looks through: its cells, and the person that fills it."""
+"""Geometry of the detector's window: its cells, and the person that fills it."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ COLUMNS: Final = 10
 PERSON_PX: Final = 32.0  # height of the person that fills a window, in pixels of its level
 WIDTH_PER_HEIGHT: Final = 0.41  # of a person's box
 ABOVE_PX: Final = (ROWS * CELL_PX - PERSON_PX) / 2.0
-"""Of a window is above the head, and as much below the feet."""
+"""Share of a window above the head, and below the feet."""
 
 
 class WindowKind(StrEnum):
-    """What windows show: people who are mostly in the image, or whose head or feet are outside it."""
+    """Kinds of windows: people who are mostly in the image, or whose head or feet are outside."""
 
     WHOLE = "whole"
     CUT = "cut"
 
 
 def row_of(top: Top, down: float) -> Top:
-    """Return the row of the windows that people fill whose heads are at some rows of the image, or at one."""
+    """Return the row of the windows of people whose heads are at one or more rows of the image."""
     return ((top + 0.5) * down - ABOVE_PX) / CELL_PX
 
 
@@ -37,7 +37,7 @@ def boxes_of(row: Floats, column: Floats, scale: tuple[float, float]) -> Floats:
 
     Args:
         row: (N,) of a window's first cell.
-        column: (N,) likewise.
+        column: (N,) column of the first cell.
         scale: pixels of the level per pixel of the image, down and right.
     """
     down, right = scale
@@ -49,7 +49,7 @@ def boxes_of(row: Floats, column: Floats, scale: tuple[float, float]) -> Floats:
 
 
 def cells_of(box: Floats, scale: tuple[float, float]) -> Floats:
-    """Return row and column (N, 2) of the windows that the people of boxes (N, 4) fill, as a fraction."""
+    """Return row and column (N, 2) of the windows that people with boxes (N, 4) fill, as fractions."""
     down, right = scale
     row = row_of(box[:, 1], down)
     column = (box[:, 0] + box[:, 2] / 2.0 + 0.5) * right / CELL_PX - COLUMNS / 2.0

@@ -1,4 +1,4 @@
-"""How well people are found: thesis, paper and MOT metrics over boxes, from MOTChallenge files or arrays.
+"""Evaluation of trackers: thesis, paper and MOT metrics over boxes, from MOTChallenge files or arrays.
 
-`evaluate.evaluate` composes the rest; nothing here looks at images or knows a tracker.
+`evaluate.evaluate` combines the rest; nothing here depends on images or on a tracker.
 """

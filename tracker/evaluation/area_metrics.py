@@ -1,15 +1,16 @@
 """Area metrics of the 2007 thesis; temporal, detection and localisation metrics of the 2005 paper.
 
-The paper's (its section 4.2) differ from the thesis's: counts take no notice of how well a candidate fits,
-and areas are compared without the 50 % gate. Where the paper is silent, it is read as follows.
+The paper's metrics (its section 4.2) differ from the thesis's: counts ignore the quality of a candidate, and
+areas are compared without the 50 % gate. Where the paper is silent, it is read as follows.
 
-- A range is the set of frames that a track has. Ranges are paired one to one over the sequence by the largest
-  sum of IoU. A target's range without a partner scores 0; a candidate's range without one belongs to no pair
-  (it costs OCP and BAP).
-- The candidate that corresponds to a target is its partner in the frame's one-to-one association by IoU,
-  however small the overlap.
-- Averages are weighted by the count that the ratio is over. Counts are capped at 100 % in each frame. A
-  metric without a denominator is undefined (NaN).
+- A range is the set of frames of a track. Ranges are paired one to one over the sequence by the largest sum
+of
+  IoU. A target's range without a partner scores 0; a candidate's range without one belongs to no pair (it
+  lowers OCP and BAP).
+- A target's candidate is its partner in the frame's one-to-one association by IoU, however small the
+  overlap.
+- Averages are weighted by the ratio's denominator. Counts are capped at 100 % in each frame. A metric without
+  a denominator is undefined (NaN).
 """
 
 from dataclasses import dataclass
@@ -26,13 +27,13 @@ from peopleboy.tracker.evaluation.sequence import Ints, TrackBoxes, TrueBoxes
 
 @dataclass(frozen=True, slots=True)
 class AreaSums(Sums):
-    """Sums of covered shares of area; a target or candidate without a partner is covered by 0.
+    """Sums of covered shares of area; a target or candidate without a partner has a share of 0.
 
     Attributes:
         targets: number of targets.
         candidates: number of candidates.
-        of_targets: sum over targets of the share of the target that its candidate covers.
-        of_candidates: sum over candidates of the share of the candidate that lies on its target.
+        of_targets: sum over targets of the share covered by the target's candidate.
+        of_candidates: sum over candidates of the share on the candidate's target.
         of_both: sum over frames of 2 * shared area / (area of all targets + area of all candidates), times
             the number of targets and candidates in the frame.
     """
@@ -45,7 +46,7 @@ class AreaSums(Sums):
 
     @classmethod
     def over(cls, truth: TrueBoxes, tracks: TrackBoxes, pairs: Pairs, matched: Ints) -> Self:
-        """Sum up the sequence whose matched pairs are the rows (M,) of `pairs`."""
+        """Sum up a sequence with the matched pairs in rows (M,) of `pairs`."""
         target, candidate = pairs.target[matched], pairs.candidate[matched]
         shared = pairs.shared[matched]  # (M,)
         return cls(
@@ -58,26 +59,26 @@ class AreaSums(Sums):
 
     @property
     def recall(self) -> float:
-        """Mean share of a target that is covered [%]."""
+        """Mean covered share of a target [%]."""
         return percent(self.of_targets, self.targets)
 
     @property
     def precision(self) -> float:
-        """Mean share of a candidate that lies on its target [%]."""
+        """Mean share of a candidate on its target [%]."""
         return percent(self.of_candidates, self.candidates)
 
     @property
     def accuracy(self) -> float:
-        """Mean over frames, weighted by their boxes, of the Dice coefficient of the areas [%].
+        """Mean over frames, weighted by their number of boxes, of the Dice coefficient of the areas [%].
 
-        A false alarm lowers the coefficient of its frame, but raises the frame's weight: with a small one in
-        a good frame, the mean can rise.
+        A false positive lowers the coefficient of its frame, but raises the frame's weight: a small one in a
+        good frame can raise the mean.
         """
         return percent(self.of_both, self.targets + self.candidates)
 
 
 def _sum_dice(truth: TrueBoxes, tracks: TrackBoxes, shared_frame: Ints, shared: Floats) -> float:
-    """Sum the frames' Dice coefficients of areas, each times the number of boxes in its frame."""
+    """Sum the frames' Dice coefficients of areas, each multiplied by the frame's number of boxes."""
     box_frame = np.concatenate([truth.frame, tracks.frame])
     box_area = np.concatenate([area(truth.box), area(tracks.box)])
     frames, frame = np.unique(box_frame, return_inverse=True)
@@ -93,7 +94,7 @@ class RangeSums(Sums):
 
     Attributes:
         of_targets: sum of |R_T| over all target ranges.
-        of_partners: sum of |R_C| over the candidate ranges that are some target's partner.
+        of_partners: sum of |R_C| over the candidate ranges that are a target's partner.
         common: sum of |R_T n R_C| over the pairs.
     """
 
@@ -123,7 +124,7 @@ class PaperMetrics(Sums):
     Attributes:
         ranges: time ranges of tracks.
         least: min(N_T, N_C) summed over the frames.
-        areas: areas of targets (A_T) and candidates (A_C), and what they share.
+        areas: areas of targets (A_T) and candidates (A_C), and their intersections.
     """
 
     ranges: RangeSums
@@ -183,11 +184,11 @@ def measure_paper(truth: TrueBoxes, tracks: TrackBoxes, pairs: Pairs) -> PaperMe
 
 # The 2007 thesis's detection and localisation metrics (section 3.4), in percent.
 #
-# Candidates are associated with targets in each frame on its own, by pairs with IoU > 0.5 only; every
-# other candidate is a false alarm. Each metric is "a weighted average of all frames"; the weight is read
-# as the count that the ratio is over (N_T, N_C or N_T + N_C), so that CR, CP and CA are ratios of totals.
-# A metric without a denominator is undefined (NaN). Results above 100 % are capped, which one-to-one
-# association never needs.
+# Candidates are associated with targets in each frame independently, by pairs with IoU > 0.5 only; every
+# other candidate is a false positive. Each metric is "a weighted average of all frames"; the weight is read
+# as the ratio's denominator (N_T, N_C or N_T + N_C), so that CR, CP and CA are ratios of totals. A metric
+# without a denominator is undefined (NaN). Results above 100 % would be capped, but do not occur with
+# one-to-one association.
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,5 +235,5 @@ class ThesisMetrics(Sums):
 
 
 def measure_thesis(truth: TrueBoxes, tracks: TrackBoxes, pairs: Pairs, matched: Ints) -> ThesisMetrics:
-    """Sum up one sequence, whose correct detections are the rows `matched` (M,) of the pairs."""
+    """Sum up one sequence, given the rows (M,) `matched` of the pairs that are correct detections."""
     return ThesisMetrics(len(matched), AreaSums.over(truth, tracks, pairs, matched))

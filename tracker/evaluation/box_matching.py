@@ -1,4 +1,4 @@
-"""Which candidate is which target, each frame on its own."""
+"""Matching of candidates and targets, independently in each frame."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -24,7 +24,7 @@ class Pairs:
     Attributes:
         target: (P,) row of the truth.
         candidate: (P,) row of the tracks.
-        shared: (P,) area that both cover [px^2].
+        shared: (P,) intersection [px^2].
         iou: (P,) their intersection over union.
         start: (F + 1,) first pair of each of the F frames that have both targets and candidates, and P.
         width: (F,) how many candidates each of these frames has.
@@ -59,9 +59,9 @@ def pair_up(truth: TrueBoxes, tracks: TrackBoxes) -> Pairs:
 
 
 def associate(pairs: Pairs, gate: float = GATE) -> Ints:
-    """Choose pairs (M,), at most one per target and per candidate, each with more IoU than the gate.
+    """Choose pairs (M,), at most one per target and per candidate, with IoU above the gate.
 
-    In each frame the sum of the chosen IoUs is the largest possible. Identity over time plays no part.
+    In each frame the sum of the chosen IoUs is maximal. Identities over time are ignored.
 
     Source: thesis, section 3.4; its "overlap ratio" is read as intersection over union.
     """
@@ -83,20 +83,20 @@ def assign(pairs: Pairs, score: Floats) -> Ints:
 
 
 def _span(frame: Ints, frames: Ints) -> tuple[Ints, Ints]:
-    """Find each of the frames in the sorted column: its first row, and its number of rows."""
+    """Return for each of the frames its first row in the sorted column, and its number of rows."""
     first = np.searchsorted(frame, frames, side="left")
     return first, np.searchsorted(frame, frames, side="right") - first
 
 
-# What to do about people that the tracker is not asked to find.
+# Handling of people that the tracker is not required to find.
 #
-# A truth row is uncounted if the person is nearer than 3 m or farther than 10 m (`counted` is False), or
-# so hidden that the visible fraction is at most `min_visible` (by default: totally hidden). Uncounted
-# people are never misses. A tracker may find them all the same, and there are two rules for that:
+# A truth row is ignored if the person is nearer than 3 m or farther than 10 m (`counted` is False), or if the
+# visible fraction is at most `min_visible` (by default: fully occluded). Ignored people never count as
+# misses. There are two rules for candidates on them:
 #
-# - `ignore` (default, as the distractors of MOTChallenge): a candidate on an uncounted person is neither
-# right nor wrong and leaves the evaluation. - `absent` (the sources to the letter): such people are
-# simply not in the truth, so a candidate on one is a false alarm.
+# - `ignore` (default, as the distractors of MOTChallenge): a candidate on an ignored person is neither right
+# nor wrong and is removed. - `absent` (the sources, literally): such people are removed from the truth, so a
+# candidate on one is a false positive.
 #
 # Either rule is applied once, before any metric, so that all metrics see the same data.
 
@@ -107,12 +107,12 @@ MIN_VISIBLE = 0.0  # a target counts if more than this fraction of the person is
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Judged:
-    """The rows that count.
+    """The evaluated rows.
 
     Attributes:
-        truth: the counted targets.
-        tracks: the candidates to judge.
-        ignored: the candidates that were taken out, because they lie on uncounted people.
+        truth: the evaluated targets.
+        tracks: the evaluated candidates.
+        ignored: the removed candidates on ignored people.
     """
 
     truth: TrueBoxes
@@ -121,12 +121,12 @@ class Judged:
 
 
 def counts(counted: Flags, visible: Floats, min_visible: float = MIN_VISIBLE) -> Flags:
-    """Return who is a target: near enough to be counted, and more than a share of the person visible.
+    """Return which people are targets: counted, and with more than a least visible fraction.
 
     Args:
         counted: (N,) whether the truth counts the person.
         visible: (N,) visible fraction, 0..1.
-        min_visible: that share.
+        min_visible: that fraction.
     """
     return np.asarray(counted & (visible > min_visible))
 
@@ -134,10 +134,10 @@ def counts(counted: Flags, visible: Floats, min_visible: float = MIN_VISIBLE) ->
 def settle_uncounted(
     truth: TrueBoxes, tracks: TrackBoxes, *, rule: Rule = "ignore", min_visible: float = MIN_VISIBLE
 ) -> Judged:
-    """Take out the uncounted people by the named rule.
+    """Remove the ignored people by the named rule.
 
     Raises:
-        BadInput: there is no such rule, or `min_visible` is not in 0..1.
+        BadInput: the rule is unknown, or `min_visible` is not in 0..1.
     """
     if rule not in get_args(Rule):
         raise BadInput(f"uncounted must be one of {', '.join(get_args(Rule))}, got {rule!r}")
@@ -151,11 +151,11 @@ def settle_uncounted(
 
 
 def ignore_uncounted(truth: TrueBoxes, tracks: TrackBoxes, gate: float = GATE) -> Judged:
-    """Take out the uncounted people, and the candidates on them.
+    """Remove the ignored people, and the candidates on them.
 
-    All people choose together, so that the sum of overlaps is largest: where a person uncounted and a target
-    stand at one place, a candidate belongs to the one that it overlaps more. Each uncounted person takes
-    out at most one; two candidates on one uncounted person leave one false alarm.
+    All people are matched together at the largest sum of overlaps: where an ignored person and a target share
+    a position, a candidate belongs to the one that it overlaps more. Each ignored person removes at most one
+    candidate; of two candidates on one ignored person, one is a false positive.
 
     Source: TrackEval 1.0, `MotChallenge2DBox.get_preprocessed_seq_data`, of distractors.
     """

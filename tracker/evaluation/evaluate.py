@@ -1,4 +1,4 @@
-"""The one call: from truth and tracks to every figure."""
+"""Evaluation of tracks against ground truth: all scores in one call."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,17 +20,17 @@ from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
 @dataclass(frozen=True, slots=True)
 class Counts(Sums):
-    """What was there to count, after uncounted people were settled.
+    """Counts after ignored people were removed.
 
     Attributes:
         frames: frames of the sequence, with or without people.
-        targets: boxes to find.
-        candidates: boxes that the tracker gave.
-        ignored: further boxes that it gave, left out because they lie on uncounted people.
-        matches: candidates that are associated with a target (thesis, section 3.4).
+        targets: boxes of people to be found.
+        candidates: boxes of the tracker.
+        ignored: further boxes of the tracker, removed because they lie on ignored people.
+        matches: candidates that match a target (thesis, section 3.4).
         tracks: track ids, ignored or not.
-        false_tracks: track ids of which no box ever matches anyone, counted or ignored.
-        partly_annotated: frames of sequences whose truth has one person alone, whoever else is there.
+        false_tracks: track ids whose boxes never match anyone, counted or ignored.
+        partly_annotated: frames of sequences in which only one person is annotated.
     """
 
     frames: int
@@ -44,7 +44,7 @@ class Counts(Sums):
 
     @property
     def true_tracks(self) -> int:
-        """Track ids that are on a person at some time."""
+        """Track ids that match a person at some time."""
         return self.tracks - self.false_tracks
 
     @property
@@ -60,7 +60,7 @@ class Counts(Sums):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scores(Sums):
-    """How well people are found in one sequence, or, added up, in several."""
+    """Scores of one sequence, or of several combined."""
 
     counts: Counts
     thesis: ThesisMetrics
@@ -69,7 +69,7 @@ class Scores(Sums):
     floor: FloorErrors = NOWHERE
 
     def __repr__(self) -> str:
-        """Give the scores that are quoted most."""
+        """Show the main scores."""
         clear, identity = self.mot.clear, self.mot.identity
         return (
             f"Scores({self.counts.frames} frames: HOTA {self.mot.hota.hota:.1f} %, MOTA {clear.mota:.1f} %, "
@@ -90,20 +90,21 @@ def evaluate(
 ) -> Scores:
     """Score the tracks of one sequence against its truth.
 
-    Every id in `tracks` is taken for a confirmed track. A frame without targets is a frame without people,
-    also after the last target: candidates there are false alarms.
+    All tracks are taken as confirmed. A frame without targets is a frame without people, also after the last
+    target: candidates in it are false positives.
 
     Args:
-        truth: the people.
-        tracks: what the tracker claims.
-        frames: length of the sequence, which the truth does not tell if nobody is there at its end; None
-            takes the last frame that has a target or a candidate. It changes `counts.frames` only.
-        uncounted: what to do about uncounted people: `ignore` candidates on them, or take them for `absent`.
-        min_visible: people of whose body at most this fraction is visible are uncounted as well.
-        is_single: whether the truth has one person alone, whoever else is there. Boxes elsewhere are then
-            neither right nor wrong, and the figures that need to know are undefined (`table.FIGURES`).
-        standing: where the people stand on the floor; None if nobody knows.
-        believed: where the tracker says that they stand; None if it does not.
+        truth: ground truth.
+        tracks: output of the tracker.
+        frames: length of the sequence, as people may be missing at its end; None for the last frame with a
+            target or a candidate. Only `counts.frames` depends on it.
+        uncounted: whether candidates on uncounted people are ignored (`ignore`) or false positives
+            (`absent`).
+        min_visible: people with at most this visible fraction are uncounted as well.
+        is_single: whether only one person is annotated. Boxes elsewhere are then neither right nor wrong, and
+            metrics that depend on them are undefined (`table.FIGURES`).
+        standing: true positions on the floor; None if unknown.
+        believed: the tracker's positions on the floor; None if it has none.
 
     Raises:
         BadInput: a target or candidate lies beyond `frames`, or an argument is out of range.
@@ -138,7 +139,7 @@ def evaluate(
 
 
 def combine(sequences: Sequence[Scores]) -> Scores:
-    """Take the sequences together: sums of numerators and denominators, not means of ratios.
+    """Combine sequences: sums of numerators and denominators, not means of ratios.
 
     Raises:
         BadInput: there is no sequence.

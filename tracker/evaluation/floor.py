@@ -1,4 +1,4 @@
-"""Where on the floor people are said to be: errors in metres, and how honest the covariances are."""
+"""Metrics of positions on the floor: errors in metres, and consistency of the covariances."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from peopleboy.tracker.evaluation.sequence import Bools, Ints, TrackBoxes, TrueB
 
 CHI2_95: Final = 5.991  # quantile of chi squared with two degrees of freedom
 SIDE_M: Final = 1.5
-"""Side of the square that stands for a person on the floor: its IoU is above one half up to 0.5 m off."""
+"""Side of the square that represents a person on the floor: its IoU is above one half up to 0.5 m off."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Places:
-    """Where people stand, in the robot's frame: one row per frame and person or track.
+    """Positions on the floor, in the robot frame: one row per frame and person or track.
 
     Attributes:
         frame: (N,) from 1.
         id: (N,) unique within a frame.
         position_m: (N, 2) [m] forward, left.
-        covariance_m2: (N, 3) xx, xy, yy [m2] of the error; None for the truth.
+        covariance_m2: (N, 3) xx, xy, yy [m2]; None for ground truth.
 
     Raises:
-        BadInput: columns of other shapes.
+        BadInput: columns have other shapes.
     """
 
     frame: Ints
@@ -37,7 +37,7 @@ class Places:
     covariance_m2: Floats | None = None
 
     def __post_init__(self) -> None:
-        """Refuse columns that do not belong together."""
+        """Refuse columns of inconsistent shapes."""
         rows = len(self.frame)
         shapes = [self.id.shape, self.position_m.shape]
         if self.covariance_m2 is not None:
@@ -46,36 +46,36 @@ class Places:
             raise BadInput(f"places: shapes must be ({rows},), ({rows}, 2), ({rows}, 3), got {shapes}")
 
     def find(self, frame: Ints, number: Ints) -> Ints:
-        """Return for each pair of frame (M,) and id (M,) the index of the place, -1 where there is none."""
+        """Return the index of the position for each pair of frame (M,) and id (M,), -1 if there is none."""
         index = {key: k for k, key in enumerate(zip(self.frame.tolist(), self.id.tolist(), strict=True))}
         wanted = zip(frame.tolist(), number.tolist(), strict=True)
         return np.array([index.get(key, -1) for key in wanted], dtype=np.int64)
 
     def as_targets(self, counted: Bools, visible: Floats) -> TrueBoxes:
-        """Return squares on the floor [m] that stand for people, who count and are visible as given (N,)."""
+        """Return squares on the floor [m] for people, counted and visible as given (N,)."""
         box = floor_squares(self.position_m)
         return TrueBoxes(frame=self.frame, id=self.id, box=box, counted=counted, visible=visible)
 
     def as_candidates(self, confidence: Floats) -> TrackBoxes:
-        """Return squares on the floor [m] that stand for tracks, each with a confidence (N,)."""
+        """Return squares on the floor [m] for tracks, each with a confidence (N,)."""
         box = floor_squares(self.position_m)
         return TrackBoxes(frame=self.frame, id=self.id, box=box, confidence=confidence)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FloorErrors:
-    """Errors of tracks on the floor against the people that they are matched with.
+    """Errors of matched tracks on the floor.
 
     Attributes:
-        offset_m: (N, 2) [m] where the track says minus where the person is, in the robot's frame.
-        covariance_m2: (N, 3) xx, xy, yy [m2] that the tracker claims for it.
+        offset_m: (N, 2) [m] estimated minus true position, in the robot frame.
+        covariance_m2: (N, 3) xx, xy, yy [m2] of the tracker.
     """
 
     offset_m: Floats
     covariance_m2: Floats
 
     def __add__(self, other: Self) -> Self:
-        """Take the errors of two sequences together."""
+        """Return the errors of two sequences combined."""
         return type(self)(
             np.concatenate([self.offset_m, other.offset_m]),
             np.concatenate([self.covariance_m2, other.covariance_m2]),
@@ -96,12 +96,12 @@ class FloorErrors:
 
     @property
     def p95_m(self) -> float:
-        """Distance [m] that 95 % do not exceed; NaN without any."""
+        """95th percentile of the distance [m]; NaN without any."""
         return float(np.percentile(self._distance_m, 95.0)) if len(self) else math.nan
 
     @property
     def nees(self) -> float:
-        """Mean of the normalised error squared, 2 for honest covariances; NaN where none is claimed.
+        """Mean normalised estimation error squared, 2 for consistent covariances; NaN without covariances.
 
         Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 5.4.
         """
@@ -110,7 +110,7 @@ class FloorErrors:
 
     @property
     def inside(self) -> float:
-        """Share of errors within the 95 % ellipse [%]; NaN where no covariance is claimed."""
+        """Share of errors within the 95 % ellipse [%]; NaN without covariances."""
         squared = self._squared
         return 100.0 * float(np.mean(squared <= CHI2_95)) if len(squared) else math.nan
 
@@ -130,20 +130,20 @@ class FloorErrors:
 
 
 NOWHERE: Final = FloorErrors(np.zeros((0, 2)), np.zeros((0, 3)))
-"""Of tracks that say of nobody where it stands."""
+"""Errors of tracks without positions."""
 
 
 def measure_floor(
     frame: Ints, person: Ints, track: Ints, standing: Places | None, believed: Places | None
 ) -> FloorErrors:
-    """Measure the errors on the floor of people and tracks that are matched.
+    """Return the errors on the floor of matched people and tracks.
 
     Args:
         frame: (M,) of each match.
-        person: (M,) its id.
-        track: (M,) the id of the track.
-        standing: where people stand; None if nobody knows.
-        believed: where the tracker says that they stand; None if it does not.
+        person: (M,) id of the person.
+        track: (M,) id of the track.
+        standing: true positions; None if unknown.
+        believed: the tracker's positions; None if it has none.
     """
     if standing is None or believed is None or believed.covariance_m2 is None:
         return NOWHERE
@@ -155,9 +155,9 @@ def measure_floor(
 
 
 def floor_squares(position_m: Floats) -> Floats:
-    """Return squares (..., 4) on the floor, left, top, width, height [m], that stand for people (..., 2).
+    """Return squares (..., 4) on the floor, left, top, width, height [m], for people (..., 2).
 
-    Trackers that give no boxes are scored by them, as others are by boxes in an image.
+    They score trackers without boxes, as boxes in an image do for others.
     """
     side = np.full(position_m.shape, SIDE_M)
     return np.concatenate([position_m - SIDE_M / 2.0, side], axis=-1)

@@ -1,11 +1,12 @@
-"""Truth and tracks as MOTChallenge text: one line per box, comma separated, frames from 1.
+"""Ground truth and tracks as MOTChallenge text: one line per box, comma separated, frames from 1.
 
-Truth: frame, id, left, top, width, height, 1 if counted else 0, class, visible fraction. Ours has
-class 1 (person) alone; of the other classes of MOT16 to MOT20, those that do not count are read as such.
-Others leave the last columns out, or write -1 there for what is unknown; all are persons then, who count and
-are visible. Lines of ten end with a place in the world instead of class and visible fraction, as in MOT15.
+Truth: frame, id, left, top, width, height, 1 if counted else 0, class, visible fraction. PeopleBoy only
+    writes
+class 1 (person); of the other classes of MOT16 to MOT20, distractors are read as uncounted. If the last
+columns are missing, or -1 for unknown, all are counted and visible persons. Lines of ten numbers end with a
+world position instead of class and visible fraction, as in MOT15.
 Results: frame, id, left, top, width, height, confidence, -1, -1, -1 (no world position).
-An empty file is a sequence without people, or a tracker that found nobody.
+An empty file is a sequence without people, or a tracker without tracks.
 """
 
 from collections.abc import Sequence
@@ -24,21 +25,21 @@ PERSON = 1
 DISTRACTORS = (2, 7, 8, 12)  # person on vehicle, static person, distractor, reflection
 CLASSES = range(1, 14)
 WIDTHS = range(6, 11)
-"""How many numbers a line of truth may have."""
+"""Allowed numbers of values per line of truth."""
 
-_PLACED = 10  # numbers in lines that end with a place, of which the first 7 are read
+_PLACED = 10  # values of a line with a position, of which the first 7 are read
 _UNTOLD = -1.0
 
 Kind = TypeVar("Kind", bound=Rows)
 
 
 def read_truth(path: Path, *, keeps_things: bool = False) -> TrueBoxes:
-    """Read a truth file (`gt.txt`); distractors do not count, and things are left out, as in TrackEval.
+    """Read a truth file (`gt.txt`); distractors are uncounted, and objects are removed, as in TrackEval.
 
     Args:
         path: the file.
-        keeps_things: whether things stay, without counting, so that a box on one, such as on a bicycle with
-            a person on it, is not wrong either.
+        keeps_things: whether objects are kept as uncounted, so that a box on one, such as on a bicycle with a
+            person on it, is not a false positive.
 
     Raises:
         BadInput: the file cannot be read, or one of its lines is malformed (the message names the line).
@@ -47,12 +48,12 @@ def read_truth(path: Path, *, keeps_things: bool = False) -> TrueBoxes:
 
 
 def read_rows(path: Path) -> Floats:
-    """Read the lines of a truth file as numbers (N, 9), without looking at what they are.
+    """Read the lines of a truth file as numbers (N, 9), without interpreting them.
 
-    What is missing is 1: people count, are persons, and visible.
+    Missing values are 1: counted, person, visible.
 
     Raises:
-        BadInput: the file cannot be read, or a line has other than numbers, or not as many as the first.
+        BadInput: the file cannot be read, or a line is not numeric, or has another length than the first.
     """
     given = _read_table(path, TRUTH_COLUMNS, WIDTHS)
     columns = TRUTH_COLUMNS.count(",") + 1
@@ -65,7 +66,7 @@ def read_rows(path: Path) -> Floats:
 
 
 def truth_of(path: Path, table: Floats, *, keeps_things: bool = False) -> TrueBoxes:
-    """Make truth of the rows (N, 9) of a file, as `read_truth` says.
+    """Make ground truth from the rows (N, 9) of a file, as `read_truth` does.
 
     Raises:
         BadInput: a row is impossible (the message names its line).
@@ -84,7 +85,7 @@ def truth_of(path: Path, table: Floats, *, keeps_things: bool = False) -> TrueBo
 
 
 def read_tracks(path: Path) -> TrackBoxes:
-    """Read a tracker's results (`tracks.txt`); the world position in the last three columns is not kept.
+    """Read a tracker's results (`tracks.txt`), without the world position in the last three columns.
 
     Raises:
         BadInput: the file cannot be read, or one of its lines is malformed (the message names the line).
@@ -125,14 +126,14 @@ def track_line(frame: int, identity: int, box: Sequence[float], confidence: floa
 
 
 def _read_table(path: Path, names: str, widths: range) -> Floats:
-    """Read the lines as numbers, all as many as in the first, which must be of these widths."""
+    """Read the lines as numbers; all must have the first line's length, which must be one of these."""
     try:
         lines = path.read_text(encoding="utf-8").split("\n")
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "not a text file"
         raise BadInput(f"{path}: cannot be read as MOTChallenge text: {reason}") from error
     while lines and not lines[-1].strip():
-        lines.pop()  # the newline that ends the last line, and empty lines with which others end files
+        lines.pop()  # the newline after the last line, and trailing empty lines
     count = len(lines[0].split(",")) if lines else widths[-1]
     if count in widths:
         widths = range(count, count + 1)
@@ -154,7 +155,7 @@ def _parse_line(line: str, names: str, widths: range, where: str) -> list[float]
 
 
 def _build(path: Path, kind: type[Kind], table: Floats, **others: Floats) -> Kind:
-    """Build the record from the table, naming the line of the first impossible row."""
+    """Make the record from the table; errors name the line of the first invalid row."""
     columns: dict[str, Any] = {"frame": table[:, 0], "id": table[:, 1], "box": table[:, 2:6], **others}
     fault = find_fault(columns)
     if fault is not None:
@@ -163,7 +164,7 @@ def _build(path: Path, kind: type[Kind], table: Floats, **others: Floats) -> Kin
 
 
 def _start(frame: int, identity: int, box: Sequence[float]) -> str:
-    """Format the columns that both kinds of file begin with."""
+    """Format the first columns of both kinds of file."""
     edges = ",".join(f"{edge:z.2f}" for edge in box)  # z: never -0.00
     return f"{frame},{identity},{edges}"
 

@@ -1,7 +1,7 @@
 """The metrics of multi-object tracking benchmarks: CLEAR MOT, identity and HOTA, in percent.
 
-They are computed here with numpy and scipy alone, and agree with the reference implementation TrackEval,
-except that a figure without a denominator is undefined (NaN), where TrackEval gives 0.
+They use NumPy and SciPy alone, and agree with the reference implementation TrackEval, except that a metric
+without a denominator is undefined (NaN), where TrackEval gives 0.
 """
 
 import math
@@ -15,12 +15,12 @@ from peopleboy.tracker.boxes import Floats, cover
 from peopleboy.tracker.evaluation.box_matching import GATE, Pairs, assign
 from peopleboy.tracker.evaluation.sequence import Bools, Ints, TrackBoxes, TrueBoxes
 
-# Numerators and denominators that add up over sequences, and the percentages made of them.
+# Numerators and denominators that add up over sequences, and the percentages computed from them.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sums:
-    """A record of sums: adding two gives the record of both sequences taken together."""
+    """A record of sums: adding two gives the record of both sequences combined."""
 
     def __add__(self, other: Self) -> Self:
         names = [field.name for field in fields(self)]
@@ -28,17 +28,17 @@ class Sums:
 
 
 def percent(numerator: float, denominator: float) -> float:
-    """Return the ratio in percent, at most 100; NaN, for undefined, if the denominator is 0."""
+    """Return the ratio in percent, at most 100; NaN (undefined) if the denominator is 0."""
     return min(100.0, 100.0 * numerator / denominator) if denominator else math.nan
 
 
 def sum_by(group: Ints, values: Floats, groups: int) -> Floats:
-    """Sum the values (N,) of each group: (groups,), where group (N,) says to which each value belongs."""
-    # Of no values, bincount gives integers.
+    """Sum the values (N,) of each group: (groups,), given the group (N,) of each value."""
+    # Without values, bincount returns integers.
     return np.bincount(group, values, groups).astype(np.float64)
 
 
-# CLEAR MOT: misses, false positives and identity switches in one figure.
+# CLEAR MOT: misses, false positives and identity switches in one metric.
 
 KEPT = 1000.0  # a kept identity outweighs any overlap
 
@@ -47,8 +47,8 @@ KEPT = 1000.0  # a kept identity outweighs any overlap
 class Clear(Sums):
     """Counts of CLEAR MOT, whose matches need IoU >= 0.5.
 
-    A person keeps the track of the previous frame as long as the two overlap enough; the others are matched
-    by the largest sum of IoU. "Previous" is the last frame that had both targets and candidates, as in
+    A person keeps the track of the previous frame as long as the overlap suffices; the others are matched by
+    the largest sum of IoU. "Previous" is the last frame that had both targets and candidates, as in
     TrackEval.
 
     Source: Bernardin and Stiefelhagen 2008, as TrackEval implements it.
@@ -57,7 +57,7 @@ class Clear(Sums):
         targets: number of targets.
         candidates: number of candidates.
         matches: number of matched pairs.
-        switches: how often a person is matched to another track than at the last match (IDSW).
+        switches: number of matches of a person to another track than at the last match (IDSW).
         overlap: sum of the IoU of the matched pairs.
     """
 
@@ -74,7 +74,7 @@ class Clear(Sums):
         track, _ = tracks.number_ids()
         person, track = person[pairs.target], track[pairs.candidate]  # (P,)
         last = np.full(len(rows), -1)  # each person's track at the last match
-        previous = last.copy()  # the same, but -1 for those who were not matched in the previous frame
+        previous = last.copy()  # the same, but -1 for people without a match in the previous frame
         matches, switches, overlap = 0, 0, 0.0
         for frame, width in pairs.frames():
             is_kept = previous[person[frame]] == track[frame]
@@ -118,15 +118,15 @@ def _match_frame(overlap: Floats, is_kept: Bools, width: int) -> Ints:
     return chosen[score[chosen] > 0.0]
 
 
-# Identity metrics: how long each person is followed under one name.
+# Identity metrics: how long each person keeps one track id.
 
 
 @dataclass(frozen=True, slots=True)
 class Identity(Sums):
     """Counts of the identity metrics.
 
-    Persons are paired one to one with tracks over the whole sequence, so that the number of frames in which
-    partners have IoU >= 0.5 is the largest possible.
+    Persons are paired one to one with tracks over the whole sequence, at the largest number of frames in
+    which partners have IoU >= 0.5.
 
     Source: Ristani et al. 2016.
 
@@ -168,9 +168,9 @@ class Identity(Sums):
         return percent(self.matches, self.targets)
 
 
-# HOTA: detection and association in balance, averaged over how strictly boxes must fit.
+# HOTA: detection and association in balance, averaged over IoU thresholds.
 
-ALPHAS = np.arange(0.05, 0.99, 0.05)  # (19,) IoU that a match needs
+ALPHAS = np.arange(0.05, 0.99, 0.05)  # (19,) IoU thresholds of a match
 ROUNDING = float(np.finfo(np.float64).eps)
 
 
@@ -178,7 +178,7 @@ ROUNDING = float(np.finfo(np.float64).eps)
 class Hota(Sums):
     """Counts of HOTA at each of the 19 thresholds alpha = 0.05 .. 0.95.
 
-    One assignment serves all thresholds: it prefers pairs of person and track that overlap much over the
+    One assignment is used for all thresholds: it prefers pairs of person and track that overlap much over the
     whole sequence.
 
     Source: Luiten et al. 2021, "HOTA: a higher order metric for evaluating multi-object tracking".
@@ -244,10 +244,10 @@ class Hota(Sums):
 
 
 def _pair_ids(truth: TrueBoxes, tracks: TrackBoxes, pairs: Pairs) -> tuple[Ints, Floats]:
-    """Number the combinations of person and track that ever share a frame.
+    """Number the combinations of person and track that share a frame.
 
     Returns:
-        The combination of each pair (P,), and the rows that person and track have together (K,).
+        The combination of each pair (P,), and the number of rows of person and track together (K,).
     """
     person, of_person = truth.number_ids()
     track, of_track = tracks.number_ids()
@@ -258,7 +258,7 @@ def _pair_ids(truth: TrueBoxes, tracks: TrackBoxes, pairs: Pairs) -> tuple[Ints,
 
 
 def _share(pairs: Pairs, targets: int, candidates: int) -> Floats:
-    """Return each pair's IoU as a share (P,) of all overlap that its target and its candidate have."""
+    """Return each pair's IoU as a share (P,) of all overlap of its target and its candidate."""
     of_target = sum_by(pairs.target, pairs.iou, targets)[pairs.target]
     of_candidate = sum_by(pairs.candidate, pairs.iou, candidates)[pairs.candidate]
     return cover(pairs.iou, of_target + of_candidate - pairs.iou)
@@ -266,7 +266,7 @@ def _share(pairs: Pairs, targets: int, candidates: int) -> Floats:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MotMetrics(Sums):
-    """The three families."""
+    """The three families of metrics."""
 
     clear: Clear
     identity: Identity

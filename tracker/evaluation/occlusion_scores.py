@@ -1,8 +1,7 @@
-"""What becomes of a person's identity when something hides the person wholly: one record per occlusion.
+"""Identity after full occlusions: one record per occlusion.
 
-The tracks say which id lies on a person at each frame: that of the matching candidate (thesis, section 3.4,
-each frame on its own). Before an occlusion, and after it, a person's id is the one that lies on it most often
-within a window.
+The id of a person in a frame is that of the matching candidate (thesis, section 3.4, each frame
+independently). The ids before and after an occlusion are the most frequent ones within a window.
 """
 
 from __future__ import annotations
@@ -21,11 +20,11 @@ from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-# Shares hidden of what lies inside the image; the same as in the simulated world's event log, which is not
-# known here.
+# Occluded shares of the part inside the image; equal to those of the simulator's event log, which is not
+# imported here.
 TOTAL_STARTS = 0.98
 TOTAL_ENDS = 0.90
-SEEN_AGAIN = 0.5  # share hidden below which a person can be expected to be found
+SEEN_AGAIN = 0.5  # occluded share below which a person can be found again
 WINDOW_S = 1.0  # before an occlusion
 PATIENCE_S = 3.0  # after it, within which the person must be found again
 LENGTHS_S = (0.0, 0.35, 0.75, 1.5, 3.0, 6.0, math.inf)  # edges of the bins of occlusion length
@@ -33,17 +32,17 @@ LENGTHS_S = (0.0, 0.35, 0.75, 1.5, 3.0, 6.0, math.inf)  # edges of the bins of o
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Occlusion:
-    """One time that a person was wholly hidden.
+    """One full occlusion of a person.
 
     Attributes:
-        person: id in the truth.
-        start_frame: first frame with more than `TOTAL_STARTS` hidden.
-        end_frame: first frame after that with less than `SEEN_AGAIN` hidden.
-        duration_s: time between the two with at least `TOTAL_ENDS` hidden. A person in a crowd may peep out
-            of one total occlusion and vanish in the next; that is one occlusion.
-        id_before: the track on the person before; None if nobody tracked it.
-        id_after: the track that is first found on the person again; None if none is.
-        found_after_s: from the end of the occlusion to that moment; NaN if it never comes.
+        person: id in the ground truth.
+        start_frame: first frame with more than `TOTAL_STARTS` occluded.
+        end_frame: first later frame with less than `SEEN_AGAIN` occluded.
+        duration_s: time between the two with at least `TOTAL_ENDS` occluded. Brief partial visibility within
+            a crowd does not end an occlusion.
+        id_before: track id before the occlusion; None if the person was not tracked.
+        id_after: first track id after the occlusion; None if the person is not found.
+        found_after_s: time from the end of the occlusion until then; NaN if the person is not found.
     """
 
     person: int
@@ -56,7 +55,7 @@ class Occlusion:
 
     @property
     def is_kept(self) -> bool:
-        """Whether the person has the same id before and after."""
+        """Whether the id is the same before and after."""
         return self.id_before is not None and self.id_before == self.id_after
 
 
@@ -66,9 +65,9 @@ class LengthRow:
 
     Attributes:
         from_s, to_s: the range; `to_s` may be infinite.
-        occlusions: of persons who were tracked before.
-        kept: how many kept their identity.
-        found: how many were found again at all.
+        occlusions: number of occlusions of tracked people.
+        kept: number with the same id afterwards.
+        found: number in which the person was found again.
         found_after_s: median time until then [s]; NaN if none was found.
     """
 
@@ -81,20 +80,20 @@ class LengthRow:
 
     @property
     def kept_share(self) -> float:
-        """Share that kept their identity; NaN without occlusions."""
+        """Share of kept identities; NaN without occlusions."""
         return self.kept / self.occlusions if self.occlusions else math.nan
 
 
 def find_occlusions(frame: Ints, hidden: Floats) -> list[tuple[int, int]]:
-    """Find the times at which one person is wholly hidden and comes back.
+    """Return the full occlusions of one person that end within the sequence.
 
     Args:
-        frame: (N,) rising frames in which the person is in the image.
-        hidden: (N,) share hidden of what lies inside the image.
+        frame: (N,) increasing frames in which the person is in the image.
+        hidden: (N,) occluded share of the part inside the image.
 
     Returns:
-        First frame with more than `TOTAL_STARTS` hidden, and first one after it with less than `SEEN_AGAIN`.
-        Who leaves the image meanwhile, or is never seen again, is left out.
+        First frame with more than `TOTAL_STARTS` occluded, and first later one with less than `SEEN_AGAIN`.
+        Occlusions during which the person leaves the image, or which do not end, are left out.
     """
     found: list[tuple[int, int]] = []
     start: int | None = None
@@ -112,14 +111,14 @@ def find_occlusions(frame: Ints, hidden: Floats) -> list[tuple[int, int]]:
 def score_occlusions(
     truth: TrueBoxes, tracks: TrackBoxes, hidden: Floats, in_image: NDArray[np.bool_], rate_hz: float
 ) -> list[Occlusion]:
-    """Return for every total occlusion in a sequence what became of the identity.
+    """Return the identity outcome of every full occlusion in a sequence.
 
     Args:
-        truth: the people of the sequence.
-        tracks: what a tracker claims.
-        hidden: (N,) for each row of the truth, the share hidden of what lies inside the image.
-        in_image: (N,) for each row, whether any of the silhouette lies inside the image, hidden or not.
-        rate_hz: frames a second.
+        truth: ground truth of the sequence.
+        tracks: output of a tracker.
+        hidden: (N,) for each row of the truth, the occluded share of the part inside the image.
+        in_image: (N,) for each row, whether any of the silhouette lies inside the image, occluded or not.
+        rate_hz: frames per second.
     """
     on_person = _ids_on_people(truth, tracks)
     scores = []
@@ -136,7 +135,7 @@ def score_occlusions(
 
 
 def by_length(occlusions: Sequence[Occlusion], edges_s: Sequence[float] = LENGTHS_S) -> list[LengthRow]:
-    """Sum up by occlusion length; who was not tracked before had no identity to keep and is left out."""
+    """Aggregate by occlusion length, without people who were not tracked before."""
     tracked = [o for o in occlusions if o.id_before is not None]
     table = []
     for low, high in pairwise(edges_s):
@@ -156,7 +155,7 @@ def by_length(occlusions: Sequence[Occlusion], edges_s: Sequence[float] = LENGTH
 
 
 def _ids_on_people(truth: TrueBoxes, tracks: TrackBoxes) -> list[int | None]:
-    """The track id on each row of the truth."""
+    """Return the track id on each row of the truth."""
     pairs = pair_up(truth, tracks)
     ids: list[int | None] = [None] * len(truth)
     for pair in associate(pairs):
@@ -171,7 +170,7 @@ def _score(
     ids: dict[int, int | None],
     rate_hz: float,
 ) -> Occlusion:
-    """Score one occlusion by its first frame, the first after it, and the first of the next one."""
+    """Score one occlusion, given its first frame, the first after it, and the start of the next one."""
     start, end, limit = span
     window, patience = round(WINDOW_S * rate_hz), round(PATIENCE_S * rate_hz)
     before = [ids.get(frame) for frame in range(start - window, start)]
@@ -189,13 +188,13 @@ def _score(
 
 
 def _most_common(ids: Sequence[int | None]) -> int | None:
-    """The commonest id; of several the latest."""
+    """Return the most frequent id; of several the latest."""
     known = [track for track in ids if track is not None]
     return max(reversed(known), key=known.count, default=None)
 
 
 def _first_steady(ids: Sequence[tuple[int, int | None]]) -> tuple[int, int] | None:
-    """The commonest id, and the first frame at which it lies on the person: a fleeting one does not count."""
+    """Return the most frequent id, ignoring brief ones, and the first frame in which the person has it."""
     track = _most_common([track for _, track in ids])
     if track is None:
         return None

@@ -1,4 +1,4 @@
-"""One sequence of boxes: who was there (`TrueBoxes`), and what a tracker claims (`TrackBoxes`)."""
+"""Boxes of one sequence: ground truth (`TrueBoxes`), and the output of a tracker (`TrackBoxes`)."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -17,15 +17,15 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 DTYPES = {"frame": np.int64, "id": np.int64, "counted": np.bool_}  # every other column is float64
-LARGEST = 2**53  # whole numbers above it are not exact in float64, through which every column passes
-FARTHEST = 1e6  # [px] no image is larger, and areas of larger boxes would overflow in the end
+LARGEST = 2**53  # larger integers are not exact in float64, which all columns pass through
+FARTHEST = 1e6  # [px] no image is larger, and areas of larger boxes would overflow
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Rows:
     """Boxes of a sequence: one row per frame and id.
 
-    Rows may be given in any order; they are kept as read-only copies, sorted by frame, then id.
+    Rows may be given in any order; they are copied, sorted by frame, then id, and read-only.
 
     Attributes:
         frame: (N,) from 1.
@@ -33,7 +33,7 @@ class Rows:
         box: (N, 4) [px] left, top, width, height; sizes 0 or more.
 
     Raises:
-        BadInput: a column has the wrong shape, or a value is impossible.
+        BadInput: a column has the wrong shape, or a value is invalid.
     """
 
     source: ClassVar[str] = "boxes"
@@ -54,7 +54,7 @@ class Rows:
             object.__setattr__(self, name, settled)
 
     def __repr__(self) -> str:
-        """Count the boxes."""
+        """Show the numbers of boxes and ids."""
         ids = len(np.unique(self.id))
         return f"{type(self).__name__}({len(self)} boxes, {ids} ids, last frame {self.last_frame})"
 
@@ -62,29 +62,29 @@ class Rows:
         return len(self.frame)
 
     def take(self, rows: Ints | Bools) -> Self:
-        """Keep only these rows: indices (M,), or a mask (N,)."""
+        """Return some rows: indices (M,), or a mask (N,)."""
         taken: dict[str, Any] = {name: getattr(self, name)[rows] for name in self._columns()}
         return replace(self, **taken)
 
     @classmethod
     def from_rows(cls, rows: Iterable[Sequence[Any]]) -> Self:
-        """Build the columns from rows, each with one value per column, in the order of the fields."""
+        """Make one from rows, each with one value per column, in the order of the fields."""
         columns = zip(*rows, strict=True)
         return cls(**{name: np.array(next(columns, ())) for name in cls._columns()})
 
     @classmethod
     def _columns(cls) -> list[str]:
-        """Name what each row has a value of."""
+        """Return the names of the columns."""
         return [each.name for each in fields(cls) if each.default is MISSING]
 
     def number_ids(self) -> tuple[Ints, Ints]:
-        """Number the K ids from 0: the number of each row's id (N,), and how many rows each id has (K,)."""
+        """Return the number from 0 of each row's id (N,), and the number of rows of each id (K,)."""
         _, number, rows = np.unique(self.id, return_inverse=True, return_counts=True)
         return number, rows
 
     @property
     def last_frame(self) -> int:
-        """The last frame that has a row; 0 without rows."""
+        """The last frame with a row; 0 without rows."""
         return int(self.frame[-1]) if len(self) else 0
 
 
@@ -94,9 +94,9 @@ class TrueBoxes(Rows):
 
     Attributes:
         counted: (N,) False for people that a tracker need not find (nearer than 3 m, farther than 10 m).
-        visible: (N,) in 0..1, the fraction of the person that nothing hides.
-        around_px: columns after which the image begins anew, if it is one all round; boxes, the candidates'
-            too, may then go on over its seam.
+        visible: (N,) in 0..1, the visible fraction of the person.
+        around_px: columns of a full turn in a panoramic image; boxes, including the candidates', may then
+            cross its seam. None otherwise.
     """
 
     source: ClassVar[str] = "truth"
@@ -108,10 +108,10 @@ class TrueBoxes(Rows):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, kw_only=True)
 class TrackBoxes(Rows):
-    """What a tracker claims in one sequence, the *candidates*: one row per frame and track id.
+    """The output of a tracker in one sequence, the *candidates*: one row per frame and track id.
 
     Attributes:
-        confidence: (N,) finite; no metric here reads it.
+        confidence: (N,) finite; not used by the metrics.
     """
 
     source: ClassVar[str] = "tracks"
@@ -120,11 +120,11 @@ class TrackBoxes(Rows):
 
     @classmethod
     def from_tracks(cls, frames: Iterable[Iterable[Track]], camera: str = THERMAL) -> Self:
-        """Take the confirmed tracks of each frame, the first of which is frame 1.
+        """Make one from the confirmed tracks of each frame, starting with frame 1.
 
         Args:
-            frames: what the tracker's `update` returned for one frame after the other.
-            camera: in whose image the boxes are.
+            frames: return values of the tracker's `update`, frame by frame.
+            camera: camera of the boxes.
         """
         return cls.from_rows(
             (number, track.id, box, track.confidence)
@@ -153,7 +153,7 @@ def as_columns(values: Mapping[str, ArrayLike]) -> dict[str, Floats]:
 
 
 def find_fault(columns: Mapping[str, Floats]) -> tuple[int, str] | None:
-    """Find the first row that no sequence may have: its index, and one line about what is wrong with it."""
+    """Return the index of the first invalid row, and a message."""
     broken = [(int(np.argmin(good)), rule, name) for name, good, rule in _rules(columns) if not good.all()]
     if not broken:
         return None
@@ -163,7 +163,7 @@ def find_fault(columns: Mapping[str, Floats]) -> tuple[int, str] | None:
 
 
 def _rules(columns: Mapping[str, Floats]) -> list[tuple[str, Bools, str]]:
-    """List what must hold: the column, the rows (N,) where it holds, and the rule in words."""
+    """Return the rules: column, rows (N,) that satisfy it, and message."""
     is_near = np.asarray((np.abs(columns["box"]) <= FARTHEST).all(axis=1))
     is_size = np.asarray((columns["box"][:, 2:] >= 0.0).all(axis=1))
     rules: list[tuple[str, Bools, str]] = [

@@ -14,13 +14,13 @@ FLOOR: Final = "floor"
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """One figure of the scores.
+    """One metric.
 
     Attributes:
-        name: its usual name, unique among the figures.
+        name: usual name, unique among the metrics.
         unit: `%`, `m`, or empty for a plain number.
-        where: path of the figure in `Scores`; its first part is the figure's group.
-        meaning: what it says, for a reader who does not know the name.
+        where: path of the metric in `Scores`; its first part is the metric's group.
+        meaning: explanation for readers who do not know the name.
     """
 
     name: str
@@ -30,7 +30,7 @@ class Figure:
 
     @property
     def group(self) -> str:
-        """Family of the figure: counts, thesis, paper, mot or floor."""
+        """Group of the metric: counts, thesis, paper, mot or floor."""
         return self.where.partition(".")[0]
 
     @property
@@ -40,13 +40,13 @@ class Figure:
         return self.name.replace("95 %", "p95").replace(" ", "_") + unit
 
     def is_defined_for(self, scores: Scores) -> bool:
-        """Return whether truth and tracks of these scores have what the figure needs."""
+        """Return whether these scores include the data that the metric needs."""
         if self.group == FLOOR:
             return len(scores.floor) > 0
         return not (scores.counts.partly_annotated and self.name in NEED_EVERYBODY)
 
     def of(self, scores: Scores) -> float:
-        """Look the figure up; NaN if it is undefined."""
+        """Return the value; NaN if it is undefined."""
         if not self.is_defined_for(scores):
             return math.nan
         value: float = attrgetter(self.where)(scores)
@@ -55,7 +55,7 @@ class Figure:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One figure with its value; NaN if undefined."""
+    """One metric with its value; NaN if undefined."""
 
     figure: Figure
     value: float
@@ -63,13 +63,13 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class SpreadRow:
-    """One figure over several sequences.
+    """One metric over several sequences.
 
     Attributes:
-        figure: what the numbers are about.
-        mean: mean over the sequences in which the figure is defined; NaN if there is none.
+        figure: the metric.
+        mean: mean over the sequences in which the metric is defined; NaN if there is none.
         sd: their sample standard deviation; NaN if there are fewer than two.
-        sequences: in how many sequences it is defined.
+        sequences: number of sequences in which it is defined.
     """
 
     figure: Figure
@@ -125,7 +125,7 @@ FIGURES: tuple[Figure, ...] = (
     Figure("false_tracks", "", "counts.false_tracks", "Track ids that match no person in any frame."),
 )
 
-# They ask whether boxes elsewhere are wrong, which nobody knows where one person alone is annotated.
+# They depend on boxes elsewhere, which cannot be judged where only one person is annotated.
 NEED_EVERYBODY = frozenset(
     (
         *("CP", "CA", "AP", "AA", "OCR", "OCP", "OCA", "BAP", "ADC"),
@@ -135,17 +135,17 @@ NEED_EVERYBODY = frozenset(
 
 
 def rows(scores: Scores) -> list[Row]:
-    """List every figure with its value, for a table."""
+    """Return every metric with its value, for a table."""
     return [Row(figure, figure.of(scores)) for figure in FIGURES]
 
 
 def spread(sequences: Sequence[Scores]) -> list[SpreadRow]:
-    """List every figure with its mean and standard deviation over the sequences."""
+    """Return every metric with its mean and standard deviation over the sequences."""
     return [_spread_row(figure, [figure.of(scores) for scores in sequences]) for figure in FIGURES]
 
 
 def to_json(scores: Scores) -> dict[str, dict[str, float | int | None]]:
-    """Return the figures by group and key, as JSON can hold them: None for undefined."""
+    """Return the metrics by group and key, for JSON: None for undefined."""
     groups: dict[str, dict[str, float | int | None]] = {}
     for row in rows(scores):
         if row.figure.group == FLOOR and not row.figure.is_defined_for(scores):

@@ -1,1 +1,1 @@
-"""Footage that others recorded: pictures, their grey, their temperatures, their truth."""
+"""Import of recorded footage: pictures, greys, temperatures, and ground truth."""

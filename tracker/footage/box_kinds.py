@@ -1,7 +1,7 @@
-"""What boxes are drawn round: the torso, as ours are, or all of a person, as annotators and detectors do.
+"""Box conventions: around the torso, or around the whole person, as in most annotations and detectors.
 
-Annotators also count pixels from the image's corner, and ours are counted from the middle of the first one;
-theirs end at the image's borders, and ours go on.
+Annotators also count pixels from the image's corner, while ours are relative to the middle of the first
+pixel; their boxes end at the image's borders, and ours may extend beyond.
 """
 
 from __future__ import annotations
@@ -20,28 +20,28 @@ from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Track
 
 TORSO_PER_HEIGHT: Final = 0.22
-"""Width of the torso over people's height: the median of those in random worlds."""
+"""Width of the torso divided by people's height: the median in random worlds."""
 WHOLE_PER_HEIGHT: Final = 0.45
-"""The same of people as they are annotated, arms and legs included: by HOTA of camel_08 and camel_21."""
+"""The same for annotated people, including arms and legs: chosen by HOTA on camel_08 and camel_21."""
 CORNER_PX: Final = 0.5
-"""Of an image, from the middle of its first pixel."""
-_WIDEST_TORSO: Final = 0.3  # width over height up to which boxes are taken for those of torsos
+"""Corner of an image, relative to the middle of its first pixel."""
+_WIDEST_TORSO: Final = 0.3  # width divided by height up to which boxes are taken for torso boxes
 
 
 class BoxKind(StrEnum):
-    """What boxes are drawn round."""
+    """Box convention."""
 
     TORSO = "torso"
     WHOLE = "whole"
 
     @classmethod
     def of(cls, truth: TrueBoxes) -> BoxKind:
-        """Return by how wide they are, in the median; without any, people are taken to be boxed whole."""
+        """Return the convention of boxes, by their median width; without any, whole people."""
         return cls.TORSO if width_per_height(truth) <= _WIDEST_TORSO else cls.WHOLE
 
 
 def width_per_height(boxes: Rows) -> float:
-    """Return how wide boxes are for their height, in the median; NaN without any."""
+    """Return the median ratio of width to height of boxes; NaN without any."""
     is_tall = boxes.box[:, 3] > 0.0
     if not is_tall.any():
         return math.nan
@@ -49,10 +49,10 @@ def width_per_height(boxes: Rows) -> float:
 
 
 def boxed_whole(tracks: Iterable[Track], frame: Frame) -> tuple[Track, ...]:
-    """Return tracks with boxes round all of a person, in the place of those round the torso.
+    """Return tracks with boxes around the whole person instead of the torso.
 
-    They end at the borders of the frame's images; who is outside an image has no box in it, and where there
-    is no image, none is cut off.
+    Boxes are clipped to the borders of the frame's images, and dropped outside. Without an image they are not
+    clipped.
     """
     return tuple(replace(track, boxes=dict(_within(track.boxes, frame))) for track in tracks)
 
@@ -69,14 +69,14 @@ def _within(torsos: Mapping[str, Box], frame: Frame) -> Iterator[tuple[str, Box]
 
 
 def whole_of(torso: Box) -> Box:
-    """Make a box as wide as people mostly are, about the same middle, and count it from the corner."""
+    """Return a box of a typical whole person's width about the torso box, relative to the image's corner."""
     left, top, width, height = torso
     whole = WHOLE_PER_HEIGHT * height
     return left + (width - whole) / 2.0 + CORNER_PX, top + CORNER_PX, whole, height
 
 
 def torso_of(whole: Box) -> Box:
-    """Make a box that is counted from the corner as wide as torsos mostly are, about the same middle."""
+    """Return the torso box centred on a whole person's box that is relative to the image's corner."""
     left, top, width, height = whole
     torso = TORSO_PER_HEIGHT * height
     return left + (width - torso) / 2.0 - CORNER_PX, top - CORNER_PX, torso, height

@@ -1,4 +1,4 @@
-"""Colour and depth pictures that belong together: by their order, or by the times that their names tell."""
+"""Matching of colour and depth pictures, by their order or by the timestamps in their names."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from peopleboy.tracker.footage.read_picture import Raw
 Floats = NDArray[np.float64]
 
 STAMP: Final = re.compile(r"\d+\.\d+")
-"""Seconds with decimals, as the TUM RGB-D benchmark names its pictures."""
+"""Seconds with decimals, as in the TUM RGB-D benchmark."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PicturePairs:
-    """Pictures of the same instants.
+    """Pairs of colour and depth pictures.
 
     Attributes:
         colour: N files.
-        depth: N files; one may be there twice.
-        time_s: (N,) since the first; None if the names tell no times.
-        rate_hz: pairs a second, by the median of the times between them; None if the names do not tell it.
+        depth: N files; a file may occur twice.
+        time_s: (N,) since the first; None if the names are not timestamps.
+        rate_hz: pairs per second, from the median interval; None if the names are not timestamps.
     """
 
     colour: Sequence[Path]
@@ -39,15 +39,15 @@ class PicturePairs:
 
 
 def pair_up(colour: Sequence[Path], depth: Sequence[Path]) -> PicturePairs:
-    """Find the depth picture of each colour picture: the nearest in time if all names are time stamps.
+    """Return the depth picture of each colour picture: the nearest in time if all names are timestamps.
 
     Args:
         colour: at least one file, in order.
-        depth: likewise.
+        depth: at least one file, in order.
 
     Raises:
-        BadInput: there are more of one kind than of the other, or two of one time; or a depth picture is
-            older or newer than its colour by more than half of the time between two colour pictures.
+        BadInput: numbers of pictures differ, two have the same time, or a depth picture differs from its
+            colour picture by more than half of a picture's interval.
     """
     times, depth_times = time_stamps(colour), time_stamps(depth)
     if times is None or depth_times is None:
@@ -68,7 +68,7 @@ def pair_up(colour: Sequence[Path], depth: Sequence[Path]) -> PicturePairs:
 
 
 def time_stamps(paths: Sequence[Path]) -> Floats | None:
-    """Read names as seconds (N,); None if one of them is no time stamp."""
+    """Return names as seconds (N,); None if one of them is not a timestamp."""
     if not all(STAMP.fullmatch(path.stem) for path in paths):
         return None
     return np.array([float(path.stem) for path in paths])
@@ -84,7 +84,7 @@ def _in_order(colour: Sequence[Path], depth: Sequence[Path]) -> PicturePairs:
 
 
 def _nearest(sorted_times: Floats, times: Floats) -> NDArray[np.int64]:
-    """Return which of the sorted times is nearest to each of others (N,)."""
+    """Return the index of the nearest of the sorted times for each of others (N,)."""
     after = np.searchsorted(sorted_times, times).clip(1, max(len(sorted_times) - 1, 1))
     before, last = after - 1, np.minimum(after, len(sorted_times) - 1)
     is_before = times - sorted_times[before] <= sorted_times[last] - times
@@ -92,7 +92,7 @@ def _nearest(sorted_times: Floats, times: Floats) -> NDArray[np.int64]:
 
 
 def _step(paths: Sequence[Path], times: Floats) -> float:
-    """Return the median time between pictures [s]."""
+    """Return the median interval of pictures [s]."""
     steps = np.diff(times)
     if not steps.all():
         twice = paths[int(np.argmin(steps)) + 1]
@@ -116,21 +116,21 @@ def _check_near(paths: Sequence[Path], away_s: Floats, most_s: float) -> None:
 
 MILLIMETRES: Final = 0.001
 TUM: Final = 0.0002
-"""Metres a count stands for: what most sensors' drivers write, and the TUM RGB-D benchmark."""
+"""Metres per count of most sensors' drivers."""
 
 PLAUSIBLE_M: Final = (0.2, 30.0)
-"""Half of what is read in a picture with people is within."""
+"""Range in which the median depth of a place with people lies."""
 
 
 class DepthCounts:
-    """Turns counts into millimetres.
+    """Converts counts to millimetres.
 
     Args:
-        folder: of the pictures, as the user knows it.
-        m_per_count: metres that a count stands for; 0 counts are no reading.
+        folder: of the pictures, for messages.
+        m_per_count: metres per count; a count of 0 is no reading.
 
     Raises:
-        BadInput: it is not above 0 and finite.
+        BadInput: it is not positive and finite.
     """
 
     def __init__(self, folder: Path, m_per_count: float) -> None:
@@ -143,10 +143,10 @@ class DepthCounts:
         self._millimetres = np.where(millimetres <= 65535.0, millimetres, 0.0).astype(np.uint16)
 
     def __call__(self, picture: Raw) -> NDArray[np.uint16]:
-        """Return depths (H, W) [mm] of counts; 0 where nothing is read, or what is farther than 65.5 m.
+        """Return the depths (H, W) [mm] of counts; 0 for no reading and for more than 65.5 m.
 
         Raises:
-            BadInput: the picture is none of 16-bit counts.
+            BadInput: the picture does not have 16-bit counts.
         """
         if picture.dtype != np.uint16:
             raise BadInput(
@@ -155,10 +155,10 @@ class DepthCounts:
         return np.asarray(self._millimetres[picture])
 
     def check_plausible(self, picture: Raw) -> None:
-        """Refuse a scale by which the counts (H, W) of a picture are no depths of a place with people.
+        """Refuse a scale that gives implausible depths for the counts (H, W) of a picture.
 
         Raises:
-            BadInput: half of what is read is nearer, or farther, than `PLAUSIBLE_M`.
+            BadInput: half of the readings are nearer or farther than `PLAUSIBLE_M`.
         """
         read = picture[picture > 0]
         if not len(read) or _is_plausible(median := float(np.median(read)), self.m_per_count):

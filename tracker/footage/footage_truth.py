@@ -1,4 +1,4 @@
-"""Ground truth that comes with footage: VOT, OTB and MOTChallenge."""
+"""Ground truth of recorded footage: VOT, OTB and MOTChallenge."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from peopleboy.tracker.evaluation.mot_files import WIDTHS, read_rows, truth_of
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.footage.image_sequences import beside
 
-# Implausible truth gives a note rather than an error: it may still be right.
+# Implausible truth causes a note rather than an error: it may be correct.
 
-_MOST_OUTSIDE: Final = 0.1  # share of boxes that are wholly beyond the pictures' right or lower edge
-_LEAST_SPREAD: Final = 0.25  # of the width: boxes that spread less may well be in one corner
+_MOST_OUTSIDE: Final = 0.1  # share of boxes that are entirely beyond the pictures' right or lower edge
+_LEAST_SPREAD: Final = 0.25  # of the width: a smaller spread of boxes may be real
 
 
 def frames_before(frame: Floats, numbers: range | None, path: Path, notes: list[str]) -> int:
-    """Return how much less the frames of the truth must be, so that 1 is the first picture.
+    """Return the offset to subtract from frames of the truth, so that 1 is the first picture.
 
     Args:
         frame: (N,) frames of the truth.
-        numbers: those in the pictures' names, in a row; None if they tell none.
-        path: of the truth.
-        notes: gets a line if the numbers do not begin with 1.
+        numbers: consecutive numbers in the pictures' names; None if there are none.
+        path: of the truth file.
+        notes: list to which a note is added if the numbers do not start with 1.
     """
     if numbers is None or numbers[0] == 1 or not len(frame):
         return 0
@@ -46,10 +46,10 @@ def frames_before(frame: Floats, numbers: range | None, path: Path, notes: list[
 
 
 def doubts(truth: TrueBoxes, width: int, height: int) -> list[str]:
-    """Say if boxes look like those of pictures of another size.
+    """Add a note if boxes seem to belong to pictures of another size.
 
-    People partly outside do not count, be most of them outside as of those near the camera; and nor do boxes
-    that are all in a small part of the upper left.
+    Partly visible people are not counted, as most people near the camera are; nor are boxes that all lie in a
+    small part of the upper left.
     """
     if not len(truth):
         return []
@@ -69,9 +69,9 @@ def doubts(truth: TrueBoxes, width: int, height: int) -> list[str]:
     ]
 
 
-# Formats are recognised by the shape of their lines: MOTChallenge, or one box or polygon an image.
+# Formats are recognised by the form of their lines: MOTChallenge, or one box or polygon per image.
 
-_AS_POLYGON: Final = (8, 10)  # how many numbers can be either format's
+_AS_POLYGON: Final = (8, 10)  # lengths of a line that occur in both formats
 
 
 def cells_of(line: str) -> list[str]:
@@ -80,14 +80,14 @@ def cells_of(line: str) -> list[str]:
 
 
 def is_motchallenge(lines: Sequence[str], path: Path) -> bool:
-    """Return whether a file, by its lines, is MOTChallenge's; one without any is.
+    """Return whether a file is in MOTChallenge's format, by its lines; an empty one is.
 
-    Lines of 6, 7 and 9 numbers can be nothing else. Those of 8 and 10 can be corners of a polygon; they are
-    MOTChallenge's if all begin with two whole numbers, frame and id, and have 0, 1 or a share as the seventh,
-    and are no upright rectangles.
+    Lines of 6, 7 and 9 numbers always are. Lines of 8 and 10 numbers can be the corners of a polygon; they
+    are in MOTChallenge's format if all begin with two integers, frame and id, have a share as the seventh
+    number, and are not upright rectangles.
 
     Raises:
-        BadInput: they may well be either: frames rise from 0 or 1 on for each id, with another seventh.
+        BadInput: the format is ambiguous: frames rise from 0 or 1 for each id, with another seventh number.
     """
     count = len(cells_of(lines[0])) if lines else WIDTHS[0]
     if count not in _AS_POLYGON:
@@ -106,7 +106,7 @@ def is_motchallenge(lines: Sequence[str], path: Path) -> bool:
 
 
 def _numbers(lines: Sequence[str], count: int) -> Floats | None:
-    """Read all lines (N, count); None if one has another count, or is none of numbers."""
+    """Read all lines (N, count); None if a line has another length, or is not numeric."""
     rows = [cells_of(line) for line in lines]
     if any(len(row) != count for row in rows):
         return None
@@ -117,15 +117,15 @@ def _numbers(lines: Sequence[str], count: int) -> Floats | None:
 
 
 def _are_keys(keys: Floats) -> bool:
-    """Return whether rows (N, 2) can be frame and id; those of detections are -1."""
+    """Return whether rows (N, 2) can be frame and id; detections have -1."""
     return bool((keys == np.floor(keys)).all() and (keys >= (0.0, -1.0)).all())
 
 
 def _are_upright(table: Floats) -> bool:
-    """Return whether rows (N, count) are four corners of upright rectangles, from whichever on."""
+    """Return whether rows (N, count) are the corners of upright rectangles, from any corner on."""
     if table.shape[1] != 8:
         return False
-    # How far it is to the next corner: one of both is 0 along an edge, the other one along the next edge.
+    # Along one edge one of the differences to the next corner is 0, and along the next edge the other one.
     corners = table.reshape(-1, 4, 2)
     still = np.roll(corners, -1, axis=1) == corners  # (N, 4, 2)
     first_across = still[:, ::2, 1].all(axis=1) & still[:, 1::2, 0].all(axis=1)
@@ -141,7 +141,7 @@ def _rise(keys: Floats) -> bool:
 
 
 KEPT_SINGLE: Final = Path("truth") / "groundtruth.txt"
-"""Where a run of ours keeps truth of a single person, as it was given: the format says that it is one."""
+"""Where a run keeps the original truth of a single person, as its format marks it as such."""
 NAMES: Final = (
     "groundtruth.txt",
     "groundtruth_rect.txt",
@@ -150,19 +150,19 @@ NAMES: Final = (
     "truth/gt.txt",
     str(KEPT_SINGLE),
 )
-"""Where the truth lies beside or above the pictures: VOT, OTB, MOTChallenge (twice), a run of ours."""
-_EXACT: Final = "truth.parquet"  # of a run of ours, in which people may be hidden all the time
+"""Where the truth lies relative to the pictures: VOT, OTB, MOTChallenge (twice), a run of ours."""
+_EXACT: Final = "truth.parquet"  # of a simulated run, in which people may be fully occluded
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GivenTruth:
-    """The truth of some footage.
+    """Ground truth of footage.
 
     Attributes:
         truth: the boxes.
-        is_single: whether one person alone is annotated, whoever else is there.
+        is_single: whether only one person is annotated.
         path: the file.
-        notes: what was taken as something else than it is, to be reported once.
+        notes: reinterpretations, to be reported once.
     """
 
     truth: TrueBoxes
@@ -184,25 +184,25 @@ class GivenTruth:
 
 
 def find_truth(footage: Path) -> Path | None:
-    """Look for truth beside the pictures, in their folder or the one above; None if there is none."""
+    """Return the truth file next to the pictures, in their folder or the one above, or None."""
     places = [home / name for home in beside(footage) for name in NAMES]
     return next((path for path in places if path.is_file()), None)
 
 
 def load_truth(path: Path, frames: int | None, numbers: range | None = None) -> GivenTruth:
-    """Read a truth file; its format follows from its lines.
+    """Read a truth file; the format is recognised by its lines.
 
-    Lines of 4 numbers are x, y, w, h (OTB, VOT), of 8 or more even numbers a polygon (VOT), one line a frame,
-    a line of NaN or of an empty box a frame without the person. Lines of 6 to 10 numbers that begin with
+    Lines of 4 numbers are x, y, w, h (OTB, VOT), lines of 8 or more even numbers a polygon (VOT), one line
+    per frame; NaN or an empty box marks a frame without the person. Lines of 6 to 10 numbers that begin with
     frame and id, an empty file and a gt.txt are MOTChallenge's.
 
     Args:
         path: the file.
-        frames: number of pictures, which lines of a single person must equal; None if unknown.
-        numbers: those in the pictures' names, which frames of MOTChallenge may be; None if they tell none.
+        frames: number of pictures, which the lines of a single person must match; None if unknown.
+        numbers: those in the pictures' names, which MOTChallenge's frames may use; None if there are none.
 
     Raises:
-        BadInput: the file cannot be read, or does not belong to the pictures.
+        BadInput: the file cannot be read, or does not match the pictures.
     """
     if not path.exists():
         raise BadInput(f"{path}: there is no such file")
@@ -251,7 +251,7 @@ def _box(line: str, where: str) -> NDArray[np.float64]:
 
 
 def _single(boxes: list[NDArray[np.float64]]) -> TrueBoxes:
-    """Make the truth of one person from a box (4,) a frame."""
+    """Make the truth of one person from a box (4,) per frame."""
     table = np.array(boxes, dtype=np.float64).reshape(-1, 4)
     is_there = np.isfinite(table).all(axis=1) & (table[:, 2:] > 0).all(axis=1)
     frame = np.flatnonzero(is_there) + 1

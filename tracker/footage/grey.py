@@ -1,4 +1,4 @@
-"""What a thermal picture of any kind looks like to the tracker: (H, W) uint8, warm bright."""
+"""Conversion of thermal pictures to the tracker's input: (H, W) uint8, brighter for warmer."""
 
 from __future__ import annotations
 
@@ -16,37 +16,37 @@ from peopleboy.bad_input import BadInput
 from peopleboy.settings import Metavar
 from peopleboy.tracker.footage.read_picture import Raw
 
-# Trackers that use contrast alone get each pixel in standard deviations of its neighbourhood.
+# For trackers that use contrast alone, each pixel is expressed in standard deviations of its neighbourhood.
 
 Values = NDArray[np.float32]
 
 AROUND: Final = 0.4
-"""Deviation of the Gaussian that says what is around, in heights of the picture."""
+"""Standard deviation of the Gaussian neighbourhood, in heights of the picture."""
 
 GREYS: Final = 50.0
-"""How many greys a deviation makes."""
+"""Greys per standard deviation."""
 
 NOISE: Final = 20.0
-"""Standard deviations of the noise in the least deviation, so that a bare wall stays one."""
+"""Least standard deviation in standard deviations of the noise, so that a plain wall stays plain."""
 
 LEAST: Final = 0.01
-"""The same, in spans of the whole picture, as pictures of few steps seem to have no noise."""
+"""The same in spans of the whole picture, as coarsely quantised pictures seem noiseless."""
 
 OUTLIERS: Final = 0.05
-"""Share of the pixels, of lamps and heaters, which differ no more than the others do."""
+"""Share of clipped pixels, such as lamps and heaters."""
 
 
 def local_grey(values: Values) -> Grey:
-    """Return by how much each pixel differs from those around it, in what they differ by among each other.
+    """Normalise each pixel by mean and standard deviation of its neighbourhood.
 
-    What is hardly warmer or colder than a wall stands out though a lamp in the picture is far hotter, which
-    a single gain for all of it cannot give. Greys depend neither on the unit nor on the temperature.
+    Small contrasts stay visible even if a lamp in the picture is far hotter, which a single gain for the
+    whole picture cannot achieve. Greys do not depend on the unit or the temperature.
 
     Args:
-        values: (H, W) of any unit, 0 being no special one; warm is more.
+        values: (H, W) in any unit; warmer is larger.
 
     Returns:
-        (H, W), 128 being as warm as what is around.
+        (H, W), 128 for the mean of the neighbourhood.
     """
     values = values - np.float32(np.median(values))  # so that rounding does not grow with the offset
     away = values - _around(values)
@@ -58,7 +58,7 @@ def local_grey(values: Values) -> Grey:
 
 
 def noise_of(values: Values) -> float:
-    """Return the standard deviation of the noise of a picture (H, W), by how much rows bend."""
+    """Return the standard deviation of the noise of a picture (H, W), from second differences along rows."""
     bend = values[:, 2:] + values[:, :-2] - 2.0 * values[:, 1:-1]
     return float(np.median(np.abs(bend)) / 0.6745 / np.sqrt(6.0))
 
@@ -74,18 +74,18 @@ def _around(values: Values) -> NDArray[Any]:
 
 Grey = NDArray[np.uint8]
 
-ROBOT_SPAN_C: Final = (24.0, 36.0)  # that of the robot's own thermal camera (thesis, chapter 3)
+ROBOT_SPAN_C: Final = (24.0, 36.0)  # of the robot's own thermal camera (thesis, chapter 3)
 CENTIKELVIN: Final = (0.01, -273.15)
 CLUTTER_GREY: Final = 11.0
 MEMORY_FRAMES: Final = 30
-NOISE_SPAN: Final = 40.0  # standard deviations of the noise in the least span
+NOISE_SPAN: Final = 40.0  # least span in standard deviations of the noise
 LEAST_SIDE_PX: Final = 24
-_ALIKE: Final = 12  # grey by which channels of a grey picture differ at most, after a lossy codec
+_ALIKE: Final = 12  # greatest difference between channels of a grey picture, after a lossy codec
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Radiometry:
-    """How pixels become degC, as far as anybody knows.
+    """Conversion of pixels to degC, if known.
 
     Attributes:
         scale: gain and offset of counts to degC; None if unknown.
@@ -119,10 +119,10 @@ class Radiometry:
         return self.span_c is not None or self.scale is not None
 
     def values(self, picture: Raw, notes: list[str]) -> NDArray[np.float32]:
-        """Return what pixels (H, W) stand for: degC if known, else grey or counts; warm is always more.
+        """Return the values of pixels (H, W): degC if known, else grey or counts; warmer is always larger.
 
         Raises:
-            BadInput: the picture's depth is not that of the option given.
+            BadInput: the picture's bit depth does not match the given option.
         """
         flat = one_channel(picture, notes)
         is_eight_bit = flat.dtype == np.uint8
@@ -146,7 +146,7 @@ class Radiometry:
 
 
 def parse_scale(text: str) -> tuple[float, float]:
-    """Read `centikelvin`, or `GAIN,OFFSET`.
+    """Parse `centikelvin`, or `GAIN,OFFSET`.
 
     Raises:
         BadInput: it is neither.
@@ -163,7 +163,7 @@ def parse_scale(text: str) -> tuple[float, float]:
 
 
 def one_channel(picture: Raw, notes: list[str]) -> NDArray[Any]:
-    """Turn a picture (H, W) or (H, W, 3) into (H, W); false colours become as bright as they look."""
+    """Convert a picture (H, W) or (H, W, 3) to (H, W); false colours become their brightness."""
     if picture.ndim == 2:
         return picture
     if int(np.ptp(picture[::4, ::4].astype(np.int16), axis=2).max()) > _ALIKE:
@@ -174,7 +174,7 @@ def one_channel(picture: Raw, notes: list[str]) -> NDArray[Any]:
 
 
 def spanned(values: NDArray[np.float32], span: tuple[float, float] = ROBOT_SPAN_C) -> Grey:
-    """Return values (H, W) the greys that fill a span, by default those of degC of the robot's own camera."""
+    """Scale values (H, W) to greys over a span, by default degC of the robot's own camera."""
     low, high = span
     return _whole_grey((values - np.float32(low)) * np.float32(255.0 / (high - low)))
 
@@ -184,19 +184,19 @@ def _whole_grey(grey: NDArray[np.float32]) -> Grey:
 
 
 class AutomaticGrey:
-    """Brings any pictures to the contrast that the tracker is made for.
+    """Scales pictures to the contrast that the tracker expects.
 
-    The span of the scene fills the grey scale, unless its clutter would then be as strong as people are: the
-    contrast of neighbouring places, which is higher than `CLUTTER_GREY` in a third of them. A span of noise
-    alone is not stretched either. What is measured is a low pass over the pictures so far, so that the grey
-    of a thing changes slowly.
+    The scene's span fills the grey scale, unless its clutter would then be as strong as people are: the
+    contrast of neighbouring positions that is above `CLUTTER_GREY` in a third of them. A span of pure noise
+    is not stretched either. Measurements are low-passed over the pictures so far, so that the grey of an
+    object changes slowly.
     """
 
     def __init__(self) -> None:
         self._measured: NDArray[np.float64] | None = None
 
     def __call__(self, values: NDArray[np.float32]) -> Grey:
-        """Turn values (H, W) of any unit into grey."""
+        """Convert values (H, W) in any unit to grey."""
         now = _measure(values)
         before = now if self._measured is None else self._measured
         self._measured = before + (now - before) / MEMORY_FRAMES
@@ -207,7 +207,7 @@ class AutomaticGrey:
 
 
 def _measure(values: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Measure low and high, clutter and noise of a picture (H, W); a few bright pixels do not count."""
+    """Measure low and high, clutter and noise of a picture (H, W), robust to a few bright pixels."""
     few = values[::2, ::2]
     away = max(few.shape[0] // 40, 1)
     across, down = few[:, 2 * away :] - few[:, : -2 * away], few[2 * away :] - few[: -2 * away]
@@ -219,39 +219,38 @@ def _measure(values: NDArray[np.float32]) -> NDArray[np.float64]:
 def grey_maker(
     radiometry: Radiometry, *, is_grey: bool, by_contrast: bool
 ) -> Callable[[NDArray[np.float32]], Grey]:
-    """Choose how values become grey.
+    """Return the conversion of values to grey.
 
     Args:
-        radiometry: what is known of the pixels.
+        radiometry: known properties of the pixels.
         is_grey: whether the pictures have 8 bits.
-        by_contrast: whether they are for a tracker to which only contrast matters: it gets 8-bit pictures as
-            they are.
+        by_contrast: whether the tracker only uses contrast; it then gets 8-bit pictures unchanged.
     """
     if by_contrast:
         return partial(spanned, span=radiometry.span_c or (0.0, 255.0)) if is_grey else local_grey
     return spanned if radiometry.is_known else AutomaticGrey()
 
 
-# Temperatures that no place with people has mean a wrong scale, which would silently ruin the tracking.
+# Implausible temperatures indicate a wrong scale, which would silently ruin the tracking.
 
 PLAUSIBLE_C: Final = (-100.0, 200.0)
-"""Half of a picture is within: cameras see no sky colder, and nobody stands where half of it is hotter."""
+"""Range of the median: no camera sees a colder sky, and nobody stands in a hotter place."""
 
 _ZERO_K_C: Final = CENTIKELVIN[1]
-_COUNTS_PER_K: Final = (100, 25, 10, 1)  # in which cameras write kelvin
+_COUNTS_PER_K: Final = (100, 25, 10, 1)  # units in which cameras write kelvin
 
 
 def check_plausible(radiometry: Radiometry, values: NDArray[np.float32]) -> None:
-    """Refuse temperatures that no place with people has, such as those of pixels in another unit.
+    """Refuse implausible temperatures, such as those of pixels in another unit.
 
-    The median decides, so that dead pixels and empty borders do not count.
+    The median is used, so that dead pixels and empty borders have no effect.
 
     Args:
-        radiometry: what is known of the pixels.
-        values: (H, W) what it makes of a picture; degC if they are known.
+        radiometry: known properties of the pixels.
+        values: (H, W) converted values; degC if they are known.
 
     Raises:
-        BadInput: half of the pixels are colder, or hotter, than `PLAUSIBLE_C`.
+        BadInput: the median is colder or hotter than `PLAUSIBLE_C`.
     """
     if not radiometry.is_known or _is_plausible(values):
         return
@@ -274,7 +273,7 @@ def _option(radiometry: Radiometry) -> str:
 
 
 def _advice(radiometry: Radiometry, values: NDArray[np.float32]) -> str:
-    """Return which option would make these (H, W) plausible."""
+    """Return the option that would make these values (H, W) plausible."""
     if radiometry.scale is None:
         return "is it kelvin? give degC" if _is_plausible(values + np.float32(_ZERO_K_C)) else "give degC"
     gain, offset = radiometry.scale

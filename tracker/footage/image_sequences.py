@@ -1,4 +1,4 @@
-"""Footage as a row of arrays: a folder of pictures in natural order, the pages of one, or a video."""
+"""Image sequences as arrays: a folder of pictures in natural order, the pages of a file, or a video."""
 
 from __future__ import annotations
 
@@ -24,23 +24,23 @@ from peopleboy.wording import counted
 
 OF_A_RUN: Final = "thermal"
 INNER: Final = ("img", "img1", "color", OF_A_RUN)
-"""Where benchmarks' sequences and runs of ours keep their pictures."""
+"""Where benchmark sequences and runs keep their pictures."""
 PAGED: Final = (".tif", ".tiff")
 """Files that may hold several pictures."""
 _TEXT: Final = b"ansi"
-_DEEP_GREY: Final = b"Y1\x00"  # with the number of bits, by FFmpeg's table of raw formats
+_DEEP_GREY: Final = b"Y1\x00"  # followed by the number of bits, in FFmpeg's table of raw formats
 
 
 class Footage(Protocol):
-    """A row of pictures of one size.
+    """A sequence of pictures of one size.
 
     Attributes:
-        name: the folder's, or the file's without its ending.
-        rate_hz: pictures a second; None if nobody says.
-        expected: how many pictures there should be; a damaged video has fewer.
-        is_exact: whether there are exactly as many.
-        numbers: those in the pictures' names, in a row; None if they tell none.
-        notes: what was taken as something else than it is, to be reported once; complete after reading.
+        name: the folder's, or the file's without its suffix.
+        rate_hz: frame rate; None if unknown.
+        expected: expected number of pictures; a damaged video has fewer.
+        is_exact: whether that number is exact.
+        numbers: consecutive numbers in the pictures' names; None if there are none.
+        notes: reinterpretations, to be reported once; complete after reading.
     """
 
     name: str
@@ -67,13 +67,13 @@ def open_footage(path: Path) -> Footage:
         raise BadInput(f"{path}: there is no such folder or video")
     if path.suffix.lower() in PAGED:
         return Pages(path, path.stem)
-    if path.suffix.lower() in SUFFIXES:  # of which a reader of videos would make 8 bits
+    if path.suffix.lower() in SUFFIXES:  # which a video reader would reduce to 8 bits
         raise BadInput(f"{path}: is one picture; give a folder of them")
     return Video(path)
 
 
 def beside(footage: Path) -> list[Path]:
-    """List the folders where what belongs to footage lies: its own, and the one above inner pictures."""
+    """Return the folders that may hold related files: its own, and the one above inner pictures."""
     if not footage.is_dir():
         return []
     return [footage, footage.parent] if footage.name in INNER else [footage]
@@ -87,7 +87,7 @@ def _open_folder(folder: Path, name: str) -> Footage:
 
 
 def _home_of_pictures(path: Path) -> Path:
-    # Beside a run's frames lies its contact sheet, a picture too.
+    # A run's contact sheet is also a picture.
     if (path / "run.json").is_file():
         if not (path / OF_A_RUN).is_dir():
             raise BadInput(f"{path}: this run has no folder {OF_A_RUN}; `peopleboy run --frames` writes one")
@@ -100,7 +100,7 @@ class PictureFolder:
     """The pictures of a folder, in natural order of their names.
 
     Attributes:
-        paths: its files, but for a few that are called otherwise.
+        paths: its files, without a few of other names.
 
     Raises:
         BadInput: there are none, or those of two cameras, or the folder cannot be read.
@@ -191,7 +191,7 @@ class Video:
             self.notes.append(f"{self.path}: ended after {count} of {self.expected} pictures")
 
     def _open(self) -> cv2.VideoCapture:
-        # FFmpeg's own lines about damaged files would stand before ours; OpenCV reads this as it opens.
+        # Hides FFmpeg's own messages about damaged files; OpenCV reads the variable when opening.
         os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
         film = cv2.VideoCapture(str(self.path))
         if not film.isOpened() or _code(film, cv2.CAP_PROP_FOURCC) == _TEXT:  # FFmpeg draws text files
@@ -208,7 +208,7 @@ def _code(film: cv2.VideoCapture, which: int) -> bytes:
 
 
 def _where_else(folder: Path) -> str:
-    """Return which folder inside has pictures, or what a picture is."""
+    """Return which inner folder has pictures, or the supported formats."""
     for inner in sorted(path for path in folder.iterdir() if path.is_dir()):
         if count := len(pictures_in(inner)):
             return f"but {inner.name}/ has {count}; give {inner}"

@@ -1,4 +1,4 @@
-"""The pictures of a folder by their names: their order, and what the names say is amiss."""
+"""Order of the pictures in a folder by their names, with checks for missing and foreign ones."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SUFFIXES: Final = (".png", ".tif", ".tiff", ".jpg", ".jpeg", ".bmp")
 
 
 def natural_order(name: str) -> list[tuple[int, str]]:
-    """Return a key by which frame 2 comes before frame 10."""
+    """Return a sort key by which frame 2 comes before frame 10."""
     return [(int(part), "") if part.isdecimal() else (-1, part) for part in re.split(r"(\d+)", name)]
 
 
@@ -23,7 +23,7 @@ def pictures_in(folder: Path) -> list[Path]:
     """List the pictures of a folder in natural order.
 
     Raises:
-        BadInput: the folder cannot be read, or a picture is there twice, as two kinds of file.
+        BadInput: the folder cannot be read, or a picture exists as two kinds of file.
     """
     try:
         found = [path for path in folder.iterdir() if path.suffix.lower() in SUFFIXES and path.is_file()]
@@ -37,7 +37,7 @@ def pictures_in(folder: Path) -> list[Path]:
 
 
 def numbers_in_a_row(paths: Sequence[Path]) -> range | None:
-    """Give the numbers of pictures whose names have consecutive ones and differ in nothing else, or None."""
+    """Return the numbers of pictures whose names differ only in consecutive numbers, or None."""
     numbers = _numbers(paths)
     if numbers is None:
         return None
@@ -46,10 +46,10 @@ def numbers_in_a_row(paths: Sequence[Path]) -> range | None:
 
 
 def jumps(paths: Sequence[Path]) -> list[tuple[int, int]]:
-    """Find where numbers are missing in a row: the numbers before and after.
+    """Return the gaps in a sequence of numbers: the numbers before and after.
 
-    Names have to differ in one number alone, which mostly grows by the same step; others, such as times, are
-    in no row.
+    Names must differ in one number alone, which mostly grows by the same step; others, such as times, have no
+    gaps.
     """
     numbers = _numbers(paths)
     if numbers is None:
@@ -62,7 +62,7 @@ def jumps(paths: Sequence[Path]) -> list[tuple[int, int]]:
 
 
 def _numbers(paths: Sequence[Path]) -> list[int] | None:
-    """Read the one number in which names differ; None if they differ otherwise, or not."""
+    """Return the one number in which names differ; None if they differ otherwise, or not at all."""
     parts = [re.split(r"(\d+)", path.stem) for path in paths]
     if len({len(each) for each in parts}) != 1:
         return None
@@ -72,25 +72,25 @@ def _numbers(paths: Sequence[Path]) -> list[int] | None:
     return [int(number) for number in differing[0]]
 
 
-# A folder may hold a few images beside those of its sequence: masks, covers, images of another camera.
+# A folder may hold a few images besides those of its sequence: masks, covers, images of another camera.
 
 Pattern = tuple[str, ...]
-"""What stands round the numbers of a name."""
+"""The parts of a name around its numbers."""
 
-_LEAST_SEQUENCE: Final = 3  # pictures, and thrice the others: fewer names tell no pattern
-_MOST_OTHERS: Final = 10  # of as many pictures, one may be another, or one in all
+_LEAST_SEQUENCE: Final = 3  # pictures, and three times the others: fewer names show no pattern
+_MOST_OTHERS: Final = 10  # one of this many pictures may be another one, or one in all
 
 
 def split_sequence(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
-    """Divide the pictures of a folder into those of the sequence and a few others.
+    """Separate the pictures of the sequence in a folder from a few others.
 
-    If nearly all have names of one pattern with numbers, such as frame1.png, the rest are others.
+    If nearly all names have one pattern with numbers, such as frame1.png, the rest are others.
 
     Args:
         paths: the pictures, in order.
 
     Raises:
-        BadInput: two patterns have the same numbers, as those of two cameras have.
+        BadInput: two patterns have the same numbers, as those of two cameras do.
     """
     groups: dict[Pattern, list[Path]] = defaultdict(list)
     for path in paths:
@@ -106,7 +106,7 @@ def split_sequence(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
 
 
 def describe_left_out(film: Sequence[Path], others: Sequence[Path]) -> str:
-    """Return which pictures are left out, and why."""
+    """Return a note on the pictures left out."""
     more = f" and {len(others) - 1} more" if len(others) > 1 else ""
     return f"{others[0]}{more}: left out, as not called like the others, such as {film[0].name}"
 

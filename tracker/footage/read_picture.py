@@ -23,10 +23,10 @@ _NO_PAGE: Final = 1 | 4  # of its bits: a smaller copy of another page, a mask
 
 
 def read_row(paths: Iterable[Path], notes: list[str]) -> Iterator[Raw]:
-    """Read pictures one by one, each of the size and the depth of the first.
+    """Read pictures one by one; all must have the size and the bit depth of the first.
 
     Raises:
-        BadInput: a picture is damaged, or of another size or depth than the first.
+        BadInput: a picture is damaged, or of another size or bit depth than the first.
     """
     return _alike((str(path), read_picture(path, notes)) for path in paths)
 
@@ -35,8 +35,8 @@ def read_picture(path: Path, notes: list[str]) -> Raw:
     """Read one picture: (H, W) uint8, uint16 or float32, or (H, W, 3) uint8.
 
     Raises:
-        BadInput: it is damaged, of a kind that is not read, one of several in its file, or has pixels that
-            are no numbers.
+        BadInput: it is damaged, of an unsupported kind, one of several in its file, or has pixels that are
+            not finite.
     """
     with _opened(path) as image:
         if (pages := len(_pages_in(image))) > 1:
@@ -47,7 +47,7 @@ def read_picture(path: Path, notes: list[str]) -> Raw:
 
 
 def count_pages(path: Path) -> int:
-    """Count the pictures in a file; smaller copies and masks that a TIFF has of them are none.
+    """Count the pictures in a file, without a TIFF's thumbnails and masks.
 
     Raises:
         BadInput: it cannot be read.
@@ -57,10 +57,10 @@ def count_pages(path: Path) -> int:
 
 
 def read_pages(path: Path, notes: list[str]) -> Iterator[Raw]:
-    """Read the pictures in a file one by one, like those of a row.
+    """Read the pictures in a file one by one, with the checks of `read_row`.
 
     Raises:
-        BadInput: as for them.
+        BadInput: as in `read_row`.
     """
     return _alike(_each_page(path, notes))
 
@@ -89,7 +89,7 @@ def _alike(pictures: Iterable[tuple[str, Raw]]) -> Iterator[Raw]:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[Image.Image]:
-    """Open a picture, and tell on one line what is wrong with it."""
+    """Open a picture; errors describe the problem in one line."""
     try:
         with Image.open(path) as image:
             yield image
@@ -100,14 +100,14 @@ def _opened(path: Path) -> Iterator[Image.Image]:
 
 
 def _pages_in(image: Image.Image) -> list[int]:
-    """List the places of pictures in a file: of a TIFF, its pages; of others the first alone."""
+    """Return the indices of the pictures in a file: the pages of a TIFF; otherwise only the first."""
     if image.format != "TIFF":
         return [0]
     try:
         with warnings.catch_warnings():
             warnings.filterwarnings("error", "Corrupt EXIF data", UserWarning)
             kinds = [_kind_of(image, page) for page in range(int(getattr(image, "n_frames", 1)))]
-    except (UserWarning, TypeError, EOFError) as error:  # as Pillow has it where a file breaks off
+    except (UserWarning, TypeError, EOFError) as error:  # raised by Pillow for a truncated file
         raise OSError("breaks off between its pages") from error
     image.seek(0)
     return [page for page, kind in enumerate(kinds) if not kind & _NO_PAGE] or [0]

@@ -1,4 +1,4 @@
-"""What `seqinfo.ini` says, which lies beside the pictures of MOTChallenge's sequences."""
+"""Reader of `seqinfo.ini`, the description of MOTChallenge's sequences."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from peopleboy.tracker.frame import Odometry
 
 NAME: Final = "seqinfo.ini"
 RATES_HZ: Final = (0.1, 1000.0)
-"""Of pictures that anybody takes."""
+"""Range of plausible frame rates."""
 
 
 def find_info(footage: Path) -> Path | None:
-    """Look for the file beside the pictures, in their folder or the one above; None if there is none."""
+    """Return the file next to the pictures, in their folder or the one above, or None."""
     return next((home / NAME for home in beside(footage) if (home / NAME).is_file()), None)
 
 
 def rate_in(path: Path) -> float | None:
-    """Read how many pictures a second there are; None if it is not said.
+    """Return the frame rate; None if the file does not have it.
 
     Raises:
-        BadInput: the file cannot be read, or the rate is none.
+        BadInput: the file cannot be read, or the rate is invalid.
     """
     parser = ConfigParser(interpolation=None)
     try:
@@ -56,13 +56,13 @@ COLUMNS: Final = ("advance_m", "aside_m", "turn_deg")
 
 
 def load_odometry(path: Path, pictures: int) -> list[Odometry]:
-    """Read a CSV file whose first line is `COLUMNS`, then a line for each picture.
+    """Read a CSV file whose first line is `COLUMNS`, followed by a line for each picture.
 
-    Each line gives how the camera moved since the picture before; that of the first moves nobody.
+    Each line is the camera's motion since the previous picture; that of the first is ignored.
 
     Args:
         path: the file.
-        pictures: how many there are.
+        pictures: number of pictures.
 
     Raises:
         BadInput: the file cannot be read, has other columns or another length, or a number is not finite.

@@ -1,1 +1,1 @@
-"""Inference of the small learned networks, and the archive in which their weights are kept."""
+"""Inference of the small learned networks, and the archive of their weights."""

@@ -1,6 +1,6 @@
-"""Convolutions by matrix products; those of 3 x 3 at every pixel with less than half of the products.
+"""Convolutions by matrix products, with Winograd filtering for 3 x 3 kernels of stride 1.
 
-For the latter Winograd's minimal filtering F(2 x 2, 3 x 3) is used (Lavin and Gray, CVPR 2016, section 4.1).
+F(2 x 2, 3 x 3) takes less than half of the products (Lavin and Gray, CVPR 2016, section 4.1).
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ Planes = NDArray[np.float32]
 
 
 TILE: Final = 4
-"""Side of the tiles [px] that F(2 x 2, 3 x 3) takes, 2 px apart, which give 2 x 2 px each."""
+"""Side of the tiles [px] of F(2 x 2, 3 x 3); they are 2 px apart and give 2 x 2 px each."""
 
-_AT_HAND: Final = 2**18  # numbers that are worked with at once; more would be fetched from afar
+_AT_HAND: Final = 2**18  # numbers processed at once, so that they stay in the cache
 _INTO: Final = np.array([[1.0, 0.0, 0.0], [0.5, 0.5, 0.5], [0.5, -0.5, 0.5], [0.0, 0.0, 1.0]])
 
 
 class Buffer:
-    """Memory that is used again: a fresh megabyte costs more than what is written there."""
+    """Reusable memory: allocating a megabyte costs more than filling it."""
 
     def __init__(self) -> None:
         self._numbers = np.empty(0, np.float32)
@@ -39,7 +39,7 @@ class Buffer:
 
 
 class Workspace:
-    """Buffers of one convolution after another. An output is valid until the next but one is computed."""
+    """Buffers of consecutive convolutions. An output is valid until the next but one is computed."""
 
     def __init__(self) -> None:
         self._buffers: defaultdict[str, Buffer] = defaultdict(Buffer)
@@ -58,14 +58,14 @@ class Workspace:
 def convolve(
     planes: Planes, kernel: Planes, bias: Planes, side: int, stride: int, workspace: Workspace
 ) -> Planes:
-    """Convolve planes, and cut off what is below 0.
+    """Convolve planes, and apply a rectified linear unit.
 
     Args:
-        planes: (N, H, W, C); beyond their border is 0.
+        planes: (N, H, W, C), padded with 0.
         kernel: (side side C, K).
         bias: (K,).
         side: of the kernel [px], odd.
-        stride: pixels between places where it looks.
+        stride: step of the output [px].
         workspace: buffers.
 
     Returns:
@@ -83,20 +83,20 @@ def convolve(
 
 
 def _batches(count: int, size: int) -> Iterator[slice]:
-    """Take as many of those that need room for so many numbers each at once as a processor has at hand."""
+    """Return how many items with this many numbers each fit into the cache."""
     step = max(_AT_HAND // size, 1)
     return (slice(first, first + step) for first in range(0, count, step))
 
 
 def tile_kernel(kernel: Planes) -> Planes:
-    """Turn a kernel (9 C, K) into what is multiplied by tiles, (16, C, K)."""
+    """Transform a kernel (9 C, K) to the tile domain, (16, C, K)."""
     square = kernel.reshape(3, 3, -1, kernel.shape[1]).astype(np.float64)
     result = np.einsum("ai,bj,ijck->abck", _INTO, _INTO, square)
     return np.ascontiguousarray(result.reshape(TILE * TILE, *result.shape[2:]), np.float32)
 
 
 def convolve_tiles(planes: Planes, kernel: Planes, bias: Planes, workspace: Workspace) -> Planes:
-    """Do what `convolve` does with side 3 and stride 1, by a kernel (16, C, K) that is `tile_kernel`."""
+    """Convolve as `convolve` with side 3 and stride 1, with a kernel (16, C, K) from `tile_kernel`."""
     count, rows, columns, deep = planes.shape
     right = -(-columns // 2)
     each = -(-rows // 2) * right
@@ -110,12 +110,12 @@ def convolve_tiles(planes: Planes, kernel: Planes, bias: Planes, workspace: Work
     return given
 
 
-# Below, places are unsigned: the compiler copies many numbers at once where none can count from the end.
+# Indices are unsigned below, so that the compiler can vectorise the copies.
 
 
 @njit(cache=True, nogil=True)
 def _gather(planes: Planes, side: int, stride: int, seen: Planes) -> None:  # pragma: no cover
-    """Put what the kernel sees at each place into a row: `side` runs of numbers, one after the other."""
+    """Gather the inputs of the kernel at each position in a row: `side` contiguous runs."""
     count, rows, columns, _ = seen.shape
     _, high, wide, deep = planes.shape
     put, to, edge = seen.ravel(), np.uint64(0), side // 2
@@ -154,7 +154,7 @@ def _rectify(given: Planes, bias: Planes) -> None:  # pragma: no cover
 
 @njit(cache=True, nogil=True)
 def _into_tiles(planes: Planes, right: int, tiles: Planes) -> None:  # pragma: no cover
-    """Return B' d B of each tile d, one of 16 numbers after the other."""
+    """Return B' d B of each tile d, separately for each of its 16 numbers."""
     count, high, wide, deep = planes.shape
     each = tiles.shape[1] // count
     edged = np.zeros((TILE, TILE, deep), np.float32)
@@ -187,7 +187,7 @@ def _into_tiles(planes: Planes, right: int, tiles: Planes) -> None:  # pragma: n
 
 @njit(cache=True, nogil=True)
 def _out_of_tiles(products: Planes, bias: Planes, right: int, given: Planes) -> None:  # pragma: no cover
-    """Return A' m A of each tile's products m, with the bias, cut off below 0."""
+    """Return A' m A of each tile's products m, plus the bias, rectified."""
     count, high, wide, deep = given.shape
     each = products.shape[1] // count
     half = np.empty((2, TILE, deep), np.float32)

@@ -1,4 +1,4 @@
-"""Inference of dense networks and of small convolutional networks, with the same bytes on every processor."""
+"""Inference of dense and small convolutional networks, bit-identical on every processor."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from peopleboy.tracker.networks.weights_archive import SHIPPED, ArraySpec, Weigh
 Floats = NDArray[np.float32]
 
 CHANNELS: Final = 3
-"""Of a crop: grey, by how much it changed, and what lies inside the image."""
+"""Channels of a crop: grey, its change, and whether a pixel is inside the image."""
 
 
 def one_thread() -> AbstractContextManager[object]:
-    """Let NumPy multiply matrices in one thread for a while; small ones take no longer.
+    """Limit NumPy's matrix products to one thread; small ones take no longer.
 
-    With several threads the last digits depend on how many there are.
+    With several threads the last digits depend on their number.
     """
     if all(library.num_threads == 1 for library in _blas().lib_controllers):
         return nullcontext()
@@ -59,12 +59,12 @@ class DenseNetwork:
 
 
 class NetworkLayer(NamedTuple):
-    """A convolution.
+    """Shape of a convolution.
 
     Attributes:
         side: of its kernels [px].
-        stride: pixels between places where it looks.
-        planes: that it gives.
+        stride: step of the output [px].
+        planes: number of output channels.
     """
 
     side: int
@@ -73,7 +73,7 @@ class NetworkLayer(NamedTuple):
 
     @property
     def is_by_tiles(self) -> bool:
-        """Whether Winograd's filtering applies, which takes less than half of the products."""
+        """Whether Winograd filtering applies, which takes less than half of the products."""
         return self.side == 3 and self.stride == 1
 
 
@@ -82,7 +82,7 @@ class CropSize(NamedTuple):
 
     Attributes:
         rows, columns: of the crop [px].
-        heights: how many heights of the box all rows show.
+        heights: height of the crop in heights of the box.
     """
 
     rows: int
@@ -91,12 +91,12 @@ class CropSize(NamedTuple):
 
 
 class Architecture(NamedTuple):
-    """The layers of a `CropNetwork`.
+    """Layers of a `CropNetwork`.
 
     Attributes:
         crop: its input image.
-        features: how many numbers it gets beside each crop.
-        layers: its convolutions, one after another.
+        features: number of further inputs per crop.
+        layers: convolutions, in order.
         units: of the dense layer after them.
         outputs: of the last layer.
     """
@@ -120,23 +120,23 @@ class Architecture(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CropNetwork:
-    """A convolutional network on crops of an image; a subclass fixes architecture and name.
+    """A convolutional network on crops of an image; subclasses define architecture and name.
 
     Attributes:
-        weights: float32 by name, as `shapes` says.
-        about: what it was trained on, for the reader.
+        weights: float32 by name, with the shapes of `shapes`.
+        about: description of the training data, for readers of the file.
     """
 
     ARCHITECTURE: ClassVar[Architecture]
     MODEL: ClassVar[str]
-    """Its name for `peopleboy train`, and of its file."""
+    """Name for `peopleboy train`, and of the file."""
 
     weights: Mapping[str, Planes]
     about: Mapping[str, str] = field(default_factory=dict)
     _tile_kernels: Mapping[int, Planes] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Transform the kernels of those layers that work by tiles."""
+        """Transform the kernels of the Winograd layers."""
         kernels = {
             number: tile_kernel(self.weights[f"kernel{number}"])
             for number, layer in enumerate(self.ARCHITECTURE.layers)
@@ -154,8 +154,8 @@ class CropNetwork:
 
         Args:
             planes: the crops.
-            features: (N, F) numbers of which the network gets the last ones, as many as its architecture has.
-            workspace: buffers; None for new ones, which cost a quarter of the time.
+            features: (N, F) numbers; the network uses the last ones, as many as its architecture has.
+            workspace: buffers; None for new ones, which adds a quarter to the time.
         """
         weights, count = self.weights, self.ARCHITECTURE.features
         flat = np.empty((len(planes), len(weights["all"])), np.float32)
@@ -180,11 +180,11 @@ class CropNetwork:
     @classmethod
     @cache
     def shipped(cls) -> Self:
-        """Read the network that comes with the tracker."""
+        """Read the shipped network."""
         return cls.load(SHIPPED / f"{cls.MODEL}.npz")
 
     def save(self, path: Path) -> None:
-        """Write the network; weights have 11 bits in the file, which is half as large then."""
+        """Write the network; weights are rounded to 11 bits, which halves the file."""
         arrays = {name: array.astype(np.float16) for name, array in self.weights.items()}
         WeightsArchive(arrays, self.about).save(path)
 
@@ -193,7 +193,7 @@ class CropNetwork:
         """Read a network.
 
         Raises:
-            BadInput: a file that is missing, is none, or holds another network.
+            BadInput: the file is missing, invalid, or holds another network.
         """
         specs = {name: ArraySpec(shape, np.float16) for name, shape in cls.shapes().items()}
         archive = WeightsArchive.load(path, cls.MODEL, specs)

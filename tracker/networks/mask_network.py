@@ -1,8 +1,8 @@
-"""The network that separates people from background in the panorama: residual layers of dilated convolutions.
+"""Segmentation network for panoramas: residual layers of dilated convolutions.
 
-Units are kept with a border round the image, which is 0 above and below, and goes on over the seam: so a step
-to a neighbour is the same step in memory everywhere. Below the image there are as many rows more as make
-whole blocks.
+Units are stored with a border around the image, which is 0 above and below, and wraps over the seam, so that
+a step to a neighbour has a constant offset in memory. Rows are added below the image to complete the last
+block.
 """
 
 from __future__ import annotations
@@ -21,27 +21,27 @@ Linear = NDArray[np.float32]
 Places = NDArray[np.int64]
 
 BLOCK: Final = 4
-"""Side [px] of the squares that the network takes as one cell."""
+"""Side [px] of the squares that are one cell of the network."""
 DILATIONS: Final = (1, 2, 4)
-"""How many squares lie between the taps of each dilated layer."""
+"""Distance in squares between the taps of each dilated layer."""
 UNITS_TOGETHER, INPUTS_TOGETHER = 4, 6
-"""So many units are computed from so many inputs at a time: each number read from memory then serves as often
-as the processor can use it."""
+"""Numbers of units and inputs per step of computation: each number read from memory is used as often as the
+registers allow."""
 
 _BORDER: Final = max(DILATIONS)
 _HIGH: Final = 4
-"""Rows of a block. They lie a dilation apart, so that blocks lie in each other where that is more than 1."""
+"""Rows of a block. They are one dilation apart, so that blocks interleave for dilations above 1."""
 _BANDS: Final = _HIGH + 2
-"""Mixtures of rows from which a block is worked out."""
+"""Linear combinations of rows from which a block is computed."""
 _ROWS: Final = 8
-"""Rows that the first and the last layer work out together: what they add up then stays in the cache."""
+"""Rows that the first and the last layer compute together, so that the sums stay in the cache."""
 
 FEATURES: Final = 6
-"""Of each pixel: red, green, blue, difference from the background, the background's age and its doubt."""
+"""Inputs per pixel: red, green, blue, difference from the background, the background's age and its doubt."""
 INPUTS: Final = BLOCK * BLOCK * FEATURES
 OUTPUTS: Final = BLOCK * BLOCK
 TOGETHER: Final = math.lcm(UNITS_TOGETHER, INPUTS_TOGETHER)
-"""The number of units is a multiple of it."""
+"""Divisor of the number of units."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -53,9 +53,9 @@ class MaskNetwork:
     Attributes:
         first: (INPUTS, U) weights of a square's own pixels.
         rows: (R, U) bias of the first layer, by row of squares.
-        between: (L, 9, U, U) weights of the layers between, by neighbour from the upper left one on.
-        biases: (L, U) of those layers.
-        last: (U + INPUTS, OUTPUTS) weights of the last layer, which gets the square's own pixels again.
+        between: (L, 9, U, U) weights of the hidden layers, by neighbour from the upper left on.
+        biases: (L, U) of the hidden layers.
+        last: (U + INPUTS, OUTPUTS) weights of the last layer, which also sees the square's own pixels.
         bias: (OUTPUTS,) of the last layer.
     """
 
@@ -67,10 +67,10 @@ class MaskNetwork:
     bias: Linear
 
     def predict(self, squares: Linear) -> Linear:
-        """Return for each pixel (H, W) the probability that it is a person.
+        """Return for each pixel (H, W) the probability that it is on a person.
 
         Args:
-            squares: (INPUTS, H / BLOCK, W / BLOCK) features of each square, as `compare` gives them.
+            squares: (INPUTS, H / BLOCK, W / BLOCK) features of each square, from `compare`.
         """
         units = first_layer(squares, self.first, self.rows)
         for weights, bias, dilation in zip(self.between, self.biases, DILATIONS, strict=True):
@@ -101,9 +101,9 @@ def first_layer(squares: Linear, weights: Linear, biases: Linear) -> Linear:
 
 @njit(cache=True, fastmath={"contract"})
 def dilated_layer(units: Linear, rows: int, weights: Linear, biases: Linear, dilation: int) -> Linear:
-    """A layer between: to each unit is added what it makes of the nine squares round it.
+    """A hidden layer: each unit is increased by the rectified convolution of its nine squares.
 
-    Four rows of them take six multiplications for each weight of a column, not twelve.
+    Four rows take six multiplications per weight of a column instead of twelve.
 
     Source: A. Lavin, S. Gray, Fast algorithms for convolutional neural networks, CVPR 2016, F(4, 3).
     """
@@ -152,14 +152,14 @@ def last_layer(units: Linear, squares: Linear, weights: Linear, biases: Linear) 
 
 @njit(cache=True, fastmath={"contract"}, error_model="numpy")
 def _write_shares(line: Linear, a: Linear, b: Linear, bias: np.float32) -> None:
-    """Put probabilities of summed evidence into every BLOCK-th pixel."""
+    """Convert summed evidence to probabilities, in every BLOCK-th pixel."""
     for u in range(len(a)):
         line[u * BLOCK] = np.float32(1.0) / (np.float32(1.0) + exponential(-(a[u] + b[u] + bias)))
 
 
 @njit(cache=True, fastmath={"contract"})
 def _add_all(sums: Linear, count: int, inputs: Linear, start: int, weights: Linear, first: int) -> None:
-    """Add all inputs (K, ...), read from a place in each, by weights from the first row on, to all sums."""
+    """Add all inputs (K, ...), weighted by rows from the first on, to all sums."""
     at = np.empty(INPUTS_TOGETHER, np.int64)
     flat, line = inputs.reshape(-1), inputs.shape[1] * inputs.shape[2]
     for unit in range(0, sums.shape[0], UNITS_TOGETHER):
@@ -173,10 +173,10 @@ def _add_all(sums: Linear, count: int, inputs: Linear, start: int, weights: Line
 def _add(
     sums: Linear, unit: int, count: int, inputs: Linear, at: Places, weights: Linear, first: int
 ) -> None:
-    """Add six inputs of so many numbers, which begin at places (6,), to the sums of four units from one on.
+    """Add six inputs of a given length at positions (6,) to the sums of four units.
 
-    Their weights are the rows from the first on. Places are unsigned, as only then no step is checked for
-    being negative, and the compiler takes many of them at once.
+    Their weights are the rows from the first on. Indices are unsigned, as only then the compiler skips the
+    checks for negative ones and vectorises.
     """
     p, q, r, s, t, v = (
         weights[first], weights[first + 1], weights[first + 2],
@@ -202,7 +202,7 @@ def _add(
 
 @njit(cache=True, fastmath={"contract"})
 def _mixed_weights(weights: Linear) -> Linear:
-    """Mix the weights (9, U, U) of three rows to those of the bands: (BANDS, 3 U, U), by unit and column."""
+    """Combine weights (9, U, U) of three rows into those of bands: (BANDS, 3 U, U), by unit and column."""
     number = weights.shape[1]
     mixed = np.empty((_BANDS, 3 * number, number), np.float32)
     for unit in range(number):
@@ -223,7 +223,7 @@ def _mixed_weights(weights: Linear) -> Linear:
 
 @njit(cache=True, fastmath={"contract"})
 def _mixed_rows(units: Linear, dilation: int) -> Linear:
-    """Mix the rows of each block and of those beside it to bands (BANDS, U, ...) of one row a block."""
+    """Combine the rows of each block and its neighbours into bands (BANDS, U, ...) of one row per block."""
     number, high, wide = units.shape
     blocks = (high - 2 * _BORDER) // _HIGH
     bands = np.zeros((_BANDS, number, blocks * wide + 2 * _BORDER), np.float32)
@@ -250,7 +250,7 @@ def _mixed_rows(units: Linear, dilation: int) -> Linear:
 
 @njit(cache=True, fastmath={"contract"})
 def _unmix(sums: Linear, units: Linear, biases: Linear, dilation: int, grown: Linear) -> None:
-    """Turn what was made of the bands into rows, and add it to the units where it is positive."""
+    """Transform the bands back to rows, and add the rectified result to the units."""
     number, _, wide = units.shape
     zero = np.float32(0.0)
     for unit in range(number):
@@ -275,7 +275,7 @@ def _unmix(sums: Linear, units: Linear, biases: Linear, dilation: int, grown: Li
 
 @njit(cache=True, fastmath=False)
 def _first_row(block: int, dilation: int) -> int:
-    """Return in which row of the units a block begins."""
+    """Return the row of the units in which a block starts."""
     return _BORDER + block // dilation * _HIGH * dilation + block % dilation
 
 
@@ -287,7 +287,7 @@ def _bordered(number: int, rows: int, columns: int) -> Linear:
 
 @njit(cache=True, fastmath=False)
 def _close(units: Linear, rows: int) -> None:
-    """Empty the rows above and below the image, and carry those of the image on over the seam."""
+    """Zero the rows above and below the image, and wrap those of the image over the seam."""
     columns = units.shape[2] - 2 * _BORDER
     units[:, :_BORDER] = 0.0
     units[:, rows + _BORDER :] = 0.0

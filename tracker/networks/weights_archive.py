@@ -1,4 +1,4 @@
-"""The archive in which all learned weights are kept: named arrays, what they were trained on, and the camera.
+"""Archive of learned weights: named arrays, a description of the training data, and the camera.
 
 It is NumPy's `.npz` without pickles. The same content always gives the same bytes.
 """
@@ -20,11 +20,11 @@ from numpy.typing import DTypeLike, NDArray
 from peopleboy.bad_input import BadInput
 
 SHIPPED: Final = Path(__file__).parent / "weights"
-"""Folder of the weights that come with the trackers."""
+"""Folder of the shipped weights."""
 
 _ABOUT: Final = "about"
 _CAMERA: Final = "camera"
-# An encrypted member, or one that is compressed in an unknown way, makes zipfile raise RuntimeError.
+# zipfile raises RuntimeError for an encrypted member, or an unknown compression.
 _UNREADABLE: Final = (
     ValueError, KeyError, TypeError, AttributeError, EOFError, RuntimeError, SyntaxError, zipfile.BadZipFile,
     zlib.error,
@@ -33,10 +33,10 @@ _UNREADABLE: Final = (
 
 @contextmanager
 def open_archive(path: Path, command: str) -> Iterator[Mapping[str, Any]]:
-    """Open a NumPy archive, which a command makes, for what is read within.
+    """Open a NumPy archive for reading, with errors that name the command that makes it.
 
     Raises:
-        BadInput: a file that is missing, is none, or lacks what is read.
+        BadInput: the file is missing, invalid, or incomplete.
     """
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
@@ -49,12 +49,12 @@ def open_archive(path: Path, command: str) -> Iterator[Mapping[str, Any]]:
 
 
 class ArraySpec(NamedTuple):
-    """What an array of an archive must be.
+    """Specification of an array in an archive.
 
     Attributes:
-        shape: sizes; a name stands for any size of at least 1, the same wherever the name occurs.
+        shape: sizes; a name stands for any size of at least 1, equal wherever the name occurs.
         dtype: of its numbers.
-        may_be_infinite: whether numbers may be infinite; NaN is never allowed.
+        may_be_infinite: whether infinite values are allowed; NaN is never allowed.
     """
 
     shape: tuple[int | str, ...]
@@ -79,12 +79,12 @@ class ArraySpec(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WeightsArchive:
-    """The content of a file of weights.
+    """Content of a file of weights.
 
     Attributes:
         arrays: by name.
-        about: what they were trained on and how well they do, for the reader.
-        camera: the camera that they hold for; None for any.
+        about: description of the training data and the scores, for readers of the file.
+        camera: camera of the training images; None for any.
     """
 
     arrays: Mapping[str, NDArray[Any]]
@@ -92,11 +92,11 @@ class WeightsArchive:
     camera: Any = None
 
     def save(self, path: Path) -> None:
-        """Write the archive; a camera is plain data then."""
+        """Write the archive; the camera must be plain data."""
         texts = {_ABOUT: dict(self.about)} | ({_CAMERA: self.camera} if self.camera is not None else {})
         content: dict[str, Any] = {name: np.array(json.dumps(text)) for name, text in texts.items()}
         content |= self.arrays
-        with path.open("wb") as file:  # by a name alone, NumPy would add its ending
+        with path.open("wb") as file:  # given a name, NumPy would append its suffix
             np.savez_compressed(file, **content)
 
     @classmethod
@@ -107,16 +107,16 @@ class WeightsArchive:
         specs: Mapping[str, ArraySpec],
         parse_camera: Callable[[Any], Any] | None = None,
     ) -> WeightsArchive:
-        """Read an archive and check it.
+        """Read and check an archive.
 
         Args:
             path: of the file.
-            model: which `peopleboy train` writes such a file.
-            specs: what each array must be.
-            parse_camera: makes a camera of plain data; left out for weights that hold for any camera.
+            model: name in `peopleboy train`, for messages.
+            specs: specification of each array.
+            parse_camera: makes a camera from plain data; None for weights without a camera.
 
         Raises:
-            BadInput: a file that is missing, or holds other weights.
+            BadInput: the file is missing, or holds other weights.
         """
         hint = f"`peopleboy train {model}` makes one"
         with open_archive(path, f"peopleboy train {model}") as archive:

@@ -1,4 +1,4 @@
-"""How a depth image maps to metres."""
+"""Geometry of a depth image in metres."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibratio
 from peopleboy.tracker.frame import Floats
 
 Depth = NDArray[np.uint16]
-"""(H, W) [mm] along the optical axis, 0 where there is no reading."""
+"""(H, W) [mm] along the optical axis, 0 for no reading."""
 
 BASELINE_M = 0.075
-"""Between projector and camera of the sensor that the thesis used; it only sets the unit of disparities."""
+"""Baseline of the thesis's sensor; it only defines the unit of disparities."""
 
 
 @dataclass(frozen=True, slots=True)
 class DepthView:
-    """Geometry of a flat depth image.
+    """Geometry of a planar depth image.
 
     The optical frame is x right, y down, z forward [m].
 
     Attributes:
         focal_px: focal length [px].
         centre_u, centre_v: principal point [px].
-        calibration: where the camera sits on the robot.
+        calibration: pose of the camera on the robot.
     """
 
     focal_px: float
@@ -37,10 +37,10 @@ class DepthView:
 
     @classmethod
     def of(cls, calibration: Calibration | None, camera: str) -> DepthView:
-        """Read the geometry of a calibrated camera.
+        """Make the geometry of a calibrated camera.
 
         Raises:
-            BadInput: it has no calibration, or that of a camera whose image is not flat.
+            BadInput: the camera is not calibrated, or not planar.
         """
         if not isinstance(calibration, PinholeCalibration):
             raise BadInput(f"camera {camera!r}: the tracker wants a calibrated one with a flat image")
@@ -54,17 +54,17 @@ class DepthView:
 
     @property
     def height_m(self) -> float:
-        """Of the camera above the floor."""
+        """Height of the camera above the floor."""
         return self.calibration.position_m[2]
 
     @property
     def horizon_px(self) -> float:
-        """How far below the principal point the horizon lies in the image; negative for above."""
+        """Rows of the horizon below the principal point; negative above."""
         forward, down = self.calibration.robot_from_camera[2, 2], self.calibration.robot_from_camera[2, 1]
         return float(self.focal_px * forward / -down) if down else 0.0
 
     def on_floor(self, x_m: Floats, z_m: Floats) -> Floats:
-        """Return places (N, 2) on the floor, forward and left, below points at the horizon's height."""
+        """Return positions (N, 2) on the floor, forward and left, of points at the height of the horizon."""
         points = np.stack([x_m, np.zeros_like(x_m), z_m], axis=-1)
         pose = self.calibration.robot_from_camera
         return np.asarray(points @ pose[:2, :3].T + pose[:2, 3])

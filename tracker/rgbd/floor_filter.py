@@ -1,4 +1,4 @@
-"""A particle filter for a person's place on the floor (SA 4.6)."""
+"""Particle filter of a person's position on the floor (SA 4.6)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.rgbd.observation_model import Body, Glance, RgbdView, look_at
 from peopleboy.tracker.rgbd.rgbd_config import FloorFilterConfig
 
-_FRAME_S = 1.0 / 15.0  # for which the spreads are given
+_FRAME_S = 1.0 / 15.0  # frame time to which the spreads refer
 _BEST_SHARE = 0.05
 _HOLD_BELOW = 0.1
 
@@ -22,14 +22,14 @@ class FloorFilter:
     """P equally weighted particles of one person.
 
     Attributes:
-        state: (P, 4) x forward, y left [m] and their speeds [m/s] in the robot's frame (SA eq. 4.23).
+        state: (P, 4) x forward, y left [m] and velocities [m/s] in the robot frame (SA eq. 4.23).
     """
 
     state: Floats
 
     @classmethod
     def begin(cls, place_m: Floats, config: FloorFilterConfig, rng: np.random.Generator) -> FloorFilter:
-        """Spread particles about a place (2,)."""
+        """Draw particles around a position (2,)."""
         state = np.zeros((config.particles, 4))
         state[:, :2] = place_m + rng.normal(0.0, config.random_m, (config.particles, 2))
         state[:, 2:] = rng.normal(0.0, config.random_m_s, (config.particles, 2))
@@ -37,17 +37,17 @@ class FloorFilter:
 
     @property
     def place_m(self) -> Floats:
-        """(2,) mean place."""
+        """(2,) mean position."""
         return np.asarray(self.state[:, :2].mean(axis=0))
 
     def carried(self, motion: Pose2) -> FloorFilter:
-        """Return the same particles in the robot's frame after it moved."""
+        """Return the particles in the frame of the moved robot."""
         return FloorFilter(
             np.hstack([motion.points_to_local(self.state[:, :2]), motion.vectors_to_local(self.state[:, 2:])])
         )
 
     def predicted(self, dt_s: float, config: FloorFilterConfig, rng: np.random.Generator) -> FloorFilter:
-        """Let most particles walk on, and the others move at random (SA 4.6, as 3.7 to 3.10)."""
+        """Predict: most particles keep walking, the others move at random (SA 4.6, as 3.7 to 3.10)."""
         count = len(self.state)
         walks = np.arange(count) < round(config.forward_share * count)
         grown = math.sqrt(dt_s / _FRAME_S)
@@ -61,7 +61,7 @@ class FloorFilter:
     def weighed(
         self, view: RgbdView, body: Body, config: FloorFilterConfig, rng: np.random.Generator
     ) -> Update:
-        """Weigh particles by what is at their places (SA eq. 4.26 to 4.28), and draw new ones by that."""
+        """Weight particles by the images at their positions (SA eq. 4.26 to 4.28), and resample."""
         glance = look_at(view, self.state[:, :2], body, config.foreground_m)
         kernel = np.exp(-0.5 * (glance.miss_m / config.kernel_m) ** 2)
         count = max(1, round(_BEST_SHARE * len(kernel)))
@@ -82,14 +82,14 @@ class FloorFilter:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Update:
-    """What a look at the images makes of a filter.
+    """Result of an update.
 
     Attributes:
-        filter: with new particles.
-        place_m: (2,) weighted mean of the old ones.
+        filter: with the new particles.
+        place_m: (2,) weighted mean of the old particles.
         confidence: 0..1, weighted mean of similarity times kernel.
-        glance: what was at the places of the old ones.
-        is_held: whether nothing was there, so that the filter only predicted.
+        glance: readings at the positions of the old particles.
+        is_held: whether there were no readings, so that the filter only predicted.
     """
 
     filter: FloorFilter

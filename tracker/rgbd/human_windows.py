@@ -1,4 +1,4 @@
-"""Windows of colour and depth images that a detector of humans looks at, near and far."""
+"""Windows of colour and depth images that are classified as human or not, near and far."""
 
 from __future__ import annotations
 
@@ -23,33 +23,33 @@ _Borders = tuple[int, int, int, int]  # above, below, left, right
 
 
 class WindowRange(StrEnum):
-    """How far a person is: so near that the feet are cut off, or farther (SA 4.4.2)."""
+    """Range of a person: near, with the feet outside the image, or far (SA 4.4.2)."""
 
     NEAR = "near"
     FAR = "far"
 
 
 SIZES: Final = {WindowRange.NEAR: (64, 64), WindowRange.FAR: (64, 128)}
-"""Width and height [px] of the windows: of head and shoulders, and of a whole body."""
+"""Width and height [px] of the windows: head and shoulders, and whole body."""
 
 _SAFETY_M: Final = 0.1
-_BODY: Final = 104.0 / 128.0  # of a far window's height is body
+_BODY: Final = 104.0 / 128.0  # share of a far window's height that is the body
 _SHOULDERS_M: Final = 0.7  # side of a near window
-_ABOVE: Final = 0.12  # of a near window is above the head
-_RELIEF_M: Final = 0.6  # before and behind a body, that its window shows of the depth
+_ABOVE: Final = 0.12  # share of a near window above the head
+_RELIEF_M: Final = 0.6  # depth range of a window in front of and behind a body
 
 
 def range_of(z_m: float, floor: HeightLine, view: DepthView, rows: int) -> WindowRange:
-    """Return how far something is: far from where feet are in the image on (SA eq. 4.16)."""
+    """Return the range of a detection: far if its feet would be in the image (SA eq. 4.16)."""
     half_angle = math.atan((rows / 2.0 + view.horizon_px) / view.focal_px)
     farthest = floor.offset_m * math.tan(math.pi / 2.0 - half_angle) + _SAFETY_M
     return WindowRange.FAR if z_m > farthest else WindowRange.NEAR
 
 
 def window_of(found: PreDetection, kind: WindowRange, floor: HeightLine, view: DepthView) -> Box:
-    """Place a window [px] on what was found.
+    """Return the window [px] of a detection.
 
-    A far one reaches from the head to the floor, though legs may be hidden.
+    A far window reaches from the head to the floor, even if legs are occluded.
     """
     left, top, width, height = found.box
     middle = left + width / 2.0
@@ -63,18 +63,18 @@ def window_of(found: PreDetection, kind: WindowRange, floor: HeightLine, view: D
 
 
 def features(image: Image, window: Box, kind: WindowRange) -> Features:
-    """Describe a window of an RGB image by numbers (N,)."""
+    """Return the features (N,) of a window of an RGB image."""
     return hog(cut(image, window, kind), kind)
 
 
 def depth_features(depth: Depth, z_m: float, window: Box, kind: WindowRange) -> Features:
-    """Describe a window of a depth image by numbers (N,).
+    """Return the features (N,) of a window of a depth image.
 
-    They are histograms of oriented depths (Spinello & Arras, IROS 2011): those of gradients, of depth.
+    Histograms of oriented depths (Spinello and Arras, IROS 2011): histograms of gradients, of depth.
 
     Args:
-        depth: (H, W) [mm], 0 for unknown.
-        z_m: depth of what the window is about [m].
+        depth: (H, W) [mm], 0 for no reading.
+        z_m: depth of the window's object [m].
         window: [px].
         kind: of window.
     """
@@ -82,18 +82,18 @@ def depth_features(depth: Depth, z_m: float, window: Box, kind: WindowRange) -> 
 
 
 def hog(patch: Image, kind: WindowRange) -> Features:
-    """Return the histograms of oriented gradients (N,) of what was cut out."""
+    """Return the histograms of oriented gradients (N,) of a crop."""
     return np.asarray(hog_descriptor(SIZES[kind]).compute(patch), np.float32).ravel()
 
 
 def cut(image: Image, window: Box, kind: WindowRange) -> Image:
-    """Cut a window out of an image and bring it to its size; beyond the border it goes on as it ends."""
+    """Crop a window from an image and resize it; the border is replicated."""
     inside, borders = _inside(window, image.shape[:2])
     return _sized(image[inside], borders, kind)
 
 
 def cut_depth(depth: Depth, z_m: float, window: Box, kind: WindowRange) -> Image:
-    """Cut a window out of a depth image [mm] as grey: the farther the brighter; what is unknown is white."""
+    """Crop a window from a depth image [mm] as grey, brighter for farther; missing readings are white."""
     inside, borders = _inside(window, depth.shape[:2])
     inner = depth[inside]
     nearest_mm = 1000.0 * (z_m - _RELIEF_M)
@@ -102,7 +102,7 @@ def cut_depth(depth: Depth, z_m: float, window: Box, kind: WindowRange) -> Image
 
 
 def _inside(window: Box, shape: tuple[int, ...]) -> tuple[tuple[slice, slice], _Borders]:
-    """Return which rows and columns of an image a window has, and how many it lacks at each border."""
+    """Return the rows and columns of an image inside a window, and the missing ones at each border."""
     left, top, width, height = window
     first_u, first_v = math.floor(left), math.floor(top)
     last_u, last_v = max(math.ceil(left + width), first_u + 2), max(math.ceil(top + height), first_v + 2)
@@ -117,7 +117,7 @@ def _inside(window: Box, shape: tuple[int, ...]) -> tuple[tuple[slice, slice], _
 def _sized(inner: Image, borders: _Borders, kind: WindowRange) -> Image:
     if any(borders):
         inner = cv2.copyMakeBorder(inner, *borders, cv2.BORDER_REPLICATE).astype(np.uint8, copy=False)
-    # Mean of the pixels that fall together: as if blurred before it is made smaller.
+    # Area averaging, equivalent to a low pass before the reduction.
     smaller = inner.shape[0] >= SIZES[kind][1]
     way = cv2.INTER_AREA if smaller else cv2.INTER_LINEAR
     return np.asarray(cv2.resize(inner, SIZES[kind], interpolation=way), np.uint8)
@@ -125,12 +125,12 @@ def _sized(inner: Image, borders: _Borders, kind: WindowRange) -> Image:
 
 @lru_cache(maxsize=4)
 def hog_descriptor(size: tuple[int, int]) -> Any:
-    """Return OpenCV's HOG of windows of a width and height [px].
+    """Return OpenCV's HOG descriptor for windows of a width and height [px].
 
-    It has nine directions in cells of 8 px, and blocks of two by two cells.
+    Nine directions in cells of 8 px, and blocks of two by two cells.
 
     Raises:
-        BadInput: it is OpenCV 5, which has none.
+        BadInput: OpenCV 5 is installed, which has no HOG.
     """
     if not hasattr(cv2, "HOGDescriptor"):
         raise BadInput(

@@ -1,4 +1,4 @@
-"""One hypothesis: a person that the tracker believes in, or soon may."""
+"""Hypotheses: confirmed and tentative people of the RGB-D tracker."""
 
 from __future__ import annotations
 
@@ -16,18 +16,19 @@ class Hypothesis:
     """A person on the floor (SA eq. 4.17).
 
     Attributes:
-        id: number of a track; 0 while nobody is believed to be there.
-        place_m: (2,) forward, left in the robot's frame [m].
+        id: of the track; 0 until it is confirmed.
+        place_m: (2,) forward, left in the robot frame [m].
         velocity_m_s: (2,) smoothed.
-        covariance_m2: (2, 2) of its error.
-        body: what the person measures and looks like.
+        covariance_m2: (2, 2) of the position.
+        body: size and appearance.
         filter: its particles.
-        born_s, verified_s, seen_s: [s] when it was made, last verified, and last seen by detector or filter.
-        verifications: how often, up to the number that makes a person of it.
-        seen_through: frames in a row in which the camera saw what is behind.
+        born_s, verified_s, seen_s: [s] times of creation, last verification, and last detection or filter
+            match.
+        verifications: their number, up to the one needed for confirmation.
+        seen_through: consecutive frames in which the background was visible.
         confidence: 0..1.
-        status: whether the person is believed in, and how much of it is hidden.
-        occluder: id of who hides it; None if nobody does.
+        status: visibility of the person, and whether it is confirmed.
+        occluder: id of the occluding track, or None.
     """
 
     id: int = 0
@@ -46,19 +47,19 @@ class Hypothesis:
     occluder: int | None = None
 
 
-# What was found in a frame: on the floor, with its size, and whether it looks like a human.
+# Detections of a frame: on the floor, with a size, and classified as human or not.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Detection:
-    """Something of the size of a human.
+    """An object of human size.
 
     Attributes:
-        found: in the depth image.
-        place_m: (2,) forward, left in the robot's frame [m].
-        body: what it measures and looks like.
+        found: pre-detection in the depth image.
+        place_m: (2,) forward, left in the robot frame [m].
+        body: size and appearance.
         score: of its window, above 0 for a human.
-        is_verified: whether it looks like a human.
+        is_verified: whether it is classified as a human.
     """
 
     found: PreDetection

@@ -1,4 +1,4 @@
-"""Looking at places on the floor: what colours a body there would have, and how far away it is."""
+"""Observation model: colours and depth in the image at positions on the floor."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
 from peopleboy.tracker.track import Box
 
-# What a person looks like: a histogram of hue and saturation (SA 4.6).
+# Appearance of a person: a histogram of hue and saturation (SA 4.6).
 
 HUES: Final = 12
 SATURATIONS: Final = 6
@@ -26,15 +26,15 @@ BINS: Final = HUES * SATURATIONS + GREYS
 _LEAST_SATURATION: Final = 26
 _DARKEST: Final = 40
 _BRIGHTEST: Final = 250
-_BITS: Final = 5  # of each colour that decide about the bin
+_BITS: Final = 5  # most significant bits of each colour that select the bin
 
 
 @lru_cache(maxsize=1)
 def bin_of_colour() -> NDArray[np.uint8]:
-    """Tabulate the bin of each colour (32768,) of five bits a channel.
+    """Tabulate the bin of each colour (32768,) with five bits per channel.
 
     The source drops colours with too little or too much of hue or saturation; here they have bins by
-    brightness, without which black clothes have no histogram at all.
+    brightness, as otherwise black clothes have no histogram at all.
     """
     step = np.arange(1 << _BITS, dtype=np.uint8) * 8 + 4
     red, green, blue = np.meshgrid(step, step, step, indexing="ij")
@@ -67,10 +67,10 @@ Image = NDArray[np.uint8]
 
 COLUMNS: Final = 10
 ROWS: Final = 20
-_MIDDLE: Final = np.array([3, 7, 5, 15])  # columns from, to, rows from, to, whose depth is measured
+_MIDDLE: Final = np.array([3, 7, 5, 15])  # columns from, to, rows from, to, in which the depth is measured
 _LEAST_SAMPLES: Final = 20
 _NOWHERE_M: Final = 10.0
-_OFF_M: Final = 0.5  # from which on a reading belongs to something else
+_OFF_M: Final = 0.5  # depth difference from which a reading belongs to another object
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,7 +81,7 @@ class RgbdView:
         depth: (H, W) [mm].
         colour: (H, W, 3) RGB of the same pixels.
         geometry: how pixels map to metres.
-        body_m: [m] from the surface that the camera sees to the middle of a body.
+        body_m: [m] from the visible surface to the middle of a body.
     """
 
     depth: Depth
@@ -92,11 +92,11 @@ class RgbdView:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Body:
-    """What a person measures and looks like.
+    """Size and appearance of a person.
 
     Attributes:
         width_m: [m].
-        head_m, low_m: [m] above the floor, of the top and of the lowest part seen.
+        head_m, low_m: [m] heights above the floor of the top and of the lowest visible part.
         appearance: (BINS,) histogram.
     """
 
@@ -108,12 +108,12 @@ class Body:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Glance:
-    """What is at P places.
+    """Readings at P positions.
 
     Attributes:
-        similarity: (P,) of the colours there to a body's, 0..1.
-        miss_m: (P,) [m] from the place to where the middle of its box is measured.
-        nearer, beyond: (P,) share of readings that are more than half a metre before and behind it.
+        similarity: (P,) similarity of the colours to those of a body, 0..1.
+        miss_m: (P,) [m] distance from the position to the measured middle of its box.
+        nearer, beyond: (P,) share of readings more than half a metre in front of and behind it.
     """
 
     similarity: Floats
@@ -123,7 +123,7 @@ class Glance:
 
 
 def look_at(view: RgbdView, places_m: Floats, body: Body, foreground_m: float) -> Glance:
-    """Look at places (P, 2) in the robot's frame."""
+    """Evaluate the images at positions (P, 2) in the robot frame."""
     pose = view.geometry.calibration.robot_from_camera
     measured = _glances(
         view.depth,
@@ -141,7 +141,7 @@ def look_at(view: RgbdView, places_m: Floats, body: Body, foreground_m: float) -
 
 
 def box_at(geometry: DepthView, place_m: Floats, body: Body) -> Box:
-    """Return the box [px] of a body at a place (2,), which may reach outside the image."""
+    """Return the box [px] of a body at a position (2,), which may reach outside the image."""
     pose = geometry.calibration.robot_from_camera
     intrinsics = np.array([geometry.focal_px, geometry.centre_u, geometry.centre_v])
     left, top, width, height, _ = _box(
@@ -151,9 +151,9 @@ def box_at(geometry: DepthView, place_m: Floats, body: Body) -> Box:
 
 
 def colours_in(view: RgbdView, box: Box) -> Floats:
-    """Return the histogram (BINS,) of what stands out in a box (SA eq. 4.24).
+    """Return the histogram (BINS,) of the foreground in a box (SA eq. 4.24).
 
-    Its readings are parted into two by their depths; the nearer ones are taken.
+    Its readings are split into two clusters by depth; the nearer one is used.
     """
     return np.asarray(_foreground_colours(view.depth, view.colour, np.array(box), bin_of_colour()))
 
@@ -168,7 +168,7 @@ def _box(
     head_m: float,
     low_m: float,
 ) -> tuple[float, float, float, float, float]:
-    """Return left, top, width, height [px] and depth [m] of a body; depth 0 for behind the camera."""
+    """Return left, top, width, height [px] and depth [m] of a body; depth 0 behind the camera."""
     ends = np.empty((2, 3))
     for k in range(2):
         dx, dy, dz = place[0] - origin[0], place[1] - origin[1], (head_m if k == 0 else low_m) - origin[2]
@@ -224,7 +224,7 @@ def _glances(
 
 @njit(cache=True, nogil=True)
 def _sample(depth: Depth, left: float, top: float, width: float, height: float, samples: Floats) -> int:
-    """Fill in u, v, reading [m] and whether it is in the middle (N, 4) of a grid in a box; give N."""
+    """Write u, v, reading [m] and whether it is in the middle (N, 4) for a grid in a box; return N."""
     count = 0
     for row in range(ROWS):
         v = int(top + (row + 0.5) / ROWS * height + 0.5)
@@ -249,7 +249,7 @@ def _similarity(
     appearance: Floats,
     table: NDArray[np.uint8],
 ) -> float:
-    """Compare the colours of samples that are near enough; 0 for too few of them (SA eq. 4.25)."""
+    """Return the similarity of colours of samples at the right depth; 0 for too few (SA eq. 4.25)."""
     counts, total = np.zeros(BINS), 0
     for k in range(len(samples)):
         if math.isinf(foreground_m) or (samples[k, 2] > 0.0 and abs(off[k]) < foreground_m):
@@ -265,7 +265,7 @@ def _similarity(
 
 @njit(cache=True, nogil=True)
 def _miss(rotation: Floats, origin: Floats, place: Floats, x: float, z: float) -> float:
-    """Return the distance [m] on the floor of a place from a point of the optical frame."""
+    """Return the distance [m] on the floor between a position and a point of the optical frame."""
     across = rotation[0, 0] * x + rotation[0, 2] * z + origin[0] - place[0]
     aside = rotation[1, 0] * x + rotation[1, 2] * z + origin[1] - place[1]
     return math.hypot(across, aside)
@@ -296,7 +296,7 @@ def _foreground_colours(depth: Depth, colour: Image, box: Floats, table: NDArray
 
 @njit(cache=True, nogil=True)
 def _between_two(readings: Floats) -> float:
-    """Part readings [m] into two by their means; give the limit between them (SA 4.4.2)."""
+    """Split readings [m] into two clusters by their means; return the limit between them (SA 4.4.2)."""
     near, far = float(readings.min()), float(readings.max())
     for _ in range(10):
         limit = 0.5 * (near + far)

@@ -1,4 +1,4 @@
-"""Pre-detections: everything in a depth image that may be a human by its size."""
+"""Pre-detections: all objects of human size in a depth image."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ from peopleboy.tracker.rgbd.v_disparity import HeightLine, find_ceiling, find_fl
 from peopleboy.tracker.rgbd.walls import DepthWall, bands_mm, find_walls, tall_disparity, without
 from peopleboy.tracker.track import Box
 
-# Whether something has the size of a human.
+# Classification by size.
 
 
 @dataclass(frozen=True, slots=True)
 class HumanSize:
-    """Size of a human as a camera sees it, and how much it may differ (SA eq. 4.12 to 4.15).
+    """Expected size of a human, with standard deviations (SA eq. 4.12 to 4.15).
 
-    A camera sees the front of a body only, which is less than the body is deep.
+    A camera only sees the front of a body, so the depth extent is smaller than the body's.
 
     Attributes:
-        width_m, height_m, depth_m: [m] expected.
-        width_sd_m, height_sd_m, depth_sd_m: [m] by which they may be off.
-        is_cut: whether the height is expected as far as it can be in the image.
-        least: probability of who is taken for a human.
+        width_m, height_m, depth_m: [m] expected extents.
+        width_sd_m, height_sd_m, depth_sd_m: [m] standard deviations.
+        is_cut: whether the expected height is limited to the part inside the image.
+        least: least probability of a detection.
     """
 
     width_m: float = 0.45
@@ -51,13 +51,13 @@ class HumanSize:
     least: float = 0.1
 
     def probability(self, width_m: float, height_m: float, depth_m: float, visible_m: float) -> float:
-        """Rate a size, 1 for the expected one.
+        """Return the probability of a size, 1 for the expected size.
 
         Args:
-            width_m: of what is there.
-            height_m: likewise.
-            depth_m: likewise.
-            visible_m: [m] of the expected height that can be in the image.
+            width_m: measured width.
+            height_m: measured height.
+            depth_m: measured depth extent.
+            visible_m: [m] part of the expected height that fits into the image.
         """
         expected = visible_m if self.is_cut else self.height_m
         squares = (
@@ -71,25 +71,25 @@ class HumanSize:
 PRINTED_SIZE = HumanSize(
     width_m=0.7, height_m=1.65, depth_m=0.7, width_sd_m=0.35, height_sd_m=0.5, depth_sd_m=0.5, is_cut=False
 )
-"""SA 4.4.1; its standard deviations are not printed: narrower ones find hardly anybody."""
+"""SA 4.4.1; its standard deviations are not printed: narrower ones detect hardly anybody."""
 
 
-_MARGIN_M: Final = 0.08  # above the floor and below the ceiling that is theirs
-_TALL_M: Final = 2.1  # what reaches higher is no human
-_EMPTY_ROWS: Final = 4  # that a body may have
-_REACH_M: Final = 0.1  # SA 4.4.1: of an object's depth, that its readings may be off
+_MARGIN_M: Final = 0.08  # margin above the floor and below the ceiling
+_TALL_M: Final = 2.1  # greatest height of a human
+_EMPTY_ROWS: Final = 4  # rows without readings that a body may have
+_REACH_M: Final = 0.1  # SA 4.4.1: tolerance of the readings of an object's depth
 _REACH_STEPS: Final = 0.7  # the same in steps of the sensor, where these are coarser
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PreDetection:
-    """Something of the size of a human.
+    """An object of human size.
 
     Attributes:
         box: left, top, width, height [px].
-        x_m, z_m: its middle, to the right and along the optical axis [m].
+        x_m, z_m: position of its middle, to the right and along the optical axis [m].
         width_m, height_m, depth_m: its extents [m].
-        probability: by its size (SA eq. 4.15).
+        probability: of the size (SA eq. 4.15).
     """
 
     box: Box
@@ -103,13 +103,13 @@ class PreDetection:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Layout:
-    """A depth image sorted out.
+    """Structure of a depth image.
 
     Attributes:
-        floor, ceiling: their lines; the ceiling is None where none is in view.
-        walls: their lines; none where they are not looked for.
-        counts: (D, W) readings by depth and column between all of them.
-        detections: what has the size of a human, the nearest first.
+        floor, ceiling: their lines; the ceiling is None if it is not visible.
+        walls: their lines; empty if walls are not detected.
+        counts: (D, W) readings by depth and column between floor, ceiling and walls.
+        detections: objects of human size, the nearest first.
     """
 
     floor: HeightLine
@@ -121,7 +121,7 @@ class Layout:
 
 @dataclass(frozen=True, slots=True)
 class PreDetector:
-    """Finds what has the size of a human (SA 4.4.1).
+    """Detects objects of human size (SA 4.4.1).
 
     Attributes:
         size: of a human.
@@ -132,7 +132,7 @@ class PreDetector:
     config: UDepthConfig
 
     def __call__(self, depth: Depth, view: DepthView) -> Layout:
-        """Sort out a depth image (H, W) [mm]."""
+        """Process a depth image (H, W) [mm]."""
         counts = v_disparity(depth, view)
         floor = find_floor(counts, view) or HeightLine(view.horizon_px / view.focal_px, view.height_m)
         ceiling = find_ceiling(counts, view)
@@ -158,7 +158,7 @@ class PreDetector:
     def _without_walls(
         self, depth: Depth, first: Floats, floor: HeightLine, view: DepthView
     ) -> tuple[tuple[DepthWall, ...], Depth]:
-        """Find walls by what stands above people's heads; give the image (H, W) without them, too."""
+        """Detect walls by readings above people's heads; return the image (H, W) without them, too."""
         heads = floor.raised(_TALL_M).rows(depths_m(self.config.row_m), view)
         tall = tall_disparity(depth, first, heads, self.config.row_m, view)
         walls = find_walls(tall, view)
@@ -167,7 +167,7 @@ class PreDetector:
     def _rate(
         self, piece: DepthPiece, depth: Depth, first: Floats, last: Floats, floor: HeightLine, view: DepthView
     ) -> PreDetection | None:
-        """Find the rows of a piece (SA 4.4.1, step 5), and rate its size."""
+        """Return the rows of a piece (SA 4.4.1, step 5), and the probability of its size."""
         scale = piece.depth_m / view.focal_px
         reach = max(_REACH_M, _REACH_STEPS * STEP_1_M * piece.depth_m**2)
         row = min(int(piece.depth_m / self.config.row_m), len(first) - 1)
@@ -193,7 +193,7 @@ class PreDetector:
         )
 
     def _visible_m(self, floor: HeightLine, depth_m: float, rows: int, view: DepthView) -> float:
-        """Return how much of a human's height can be in the image at a depth [m]."""
+        """Return the part of a human's height that fits into the image at a depth [m]."""
         at = np.array([depth_m])
         foot = float(floor.rows(at, view)[0])
         head = float(floor.raised(self.size.height_m).rows(at, view)[0])
@@ -204,9 +204,9 @@ class PreDetector:
 def _rows_of(
     depth: Depth, columns: tuple[int, int], span_mm: tuple[float, float], rows: tuple[float, float]
 ) -> tuple[int, int]:
-    """Scan from the lowest row up for readings within a span of depth; give the longest run's first and last.
+    """Scan up from the lowest row for readings within a depth range; return the ends of the longest run.
 
-    The source takes the first run, which may be a speck of the floor before the feet.
+    The source uses the first run, which may be a speck of the floor in front of the feet.
     """
     top, bottom = 0, -1
     first, last = 0, -1

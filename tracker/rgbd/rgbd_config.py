@@ -1,4 +1,4 @@
-"""Settings of the RGB-D tracker: as its source prints it, and as it works better."""
+"""Settings of the RGB-D tracker: as printed in its source, and improved."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ class FloorFilterConfig:
     """Settings of the particle filter on the floor (SA 4.6).
 
     Attributes:
-        particles: number of them.
-        forward_share: share that walks on; the others move at random.
-        walk_m, walk_m_s: spread of place [m] and speed [m/s] of those that walk on, in a frame of 1/15 s.
-        random_m, random_m_s: the same of those that move at random.
-        kernel_m: [m] width of the kernel about the measured place (SA eq. 4.27).
-        sharpness: deviation of one minus the similarity that halves the weight's logarithm; 0 weighs by the
-            similarity itself, as printed.
-        foreground_m: [m] from a particle's depth, within which colours count; 0 for all in its box.
-        has_hold: whether a filter only predicts while nothing is where its particles are.
-        learning_rate: of the histogram (SA eq. 4.29).
+        particles: number of particles.
+        forward_share: share that keeps walking; the others move at random.
+        walk_m, walk_m_s: spread of position [m] and velocity [m/s] of walking particles in a frame of 1/15 s.
+        random_m, random_m_s: the same for particles that move at random.
+        kernel_m: [m] width of the kernel around the measured position (SA eq. 4.27).
+        sharpness: deviation of one minus the similarity that halves the weight's logarithm; 0 uses the
+            similarity itself as the weight, as printed.
+        foreground_m: [m] from a particle's depth, within which colours are used; 0 for all in its box.
+        has_hold: whether a filter only predicts while there are no readings at its particles.
+        learning_rate: update rate of the histogram (SA eq. 4.29).
     """
 
     particles: int = 150
@@ -45,19 +45,19 @@ class HypothesesConfig:
     """Settings of the management of hypotheses (SA 4.5).
 
     Attributes:
-        gate_m, gate_per_m: [m] distance of what belongs together, and by how much more it may be apart for
-            each square metre of squared depth.
-        gate_m_s: [m/s] by which the gate grows, up to twice, while a person is not seen.
-        births: verifications after which a person is believed in.
-        pre_share, verified_share, filter_share: of a measurement in the merged place (SA eq. 4.22).
+        gate_m, gate_per_m: [m] greatest distance of an association, and its growth with squared depth.
+        gate_m_s: [m/s] growth of the gate, up to twice, while a person is not observed.
+        births: verifications needed for confirmation.
+        pre_share, verified_share, filter_share: weights of measurements in the merged position (SA eq. 4.22).
         unverified_s: [s] without a verification after which a hypothesis is deleted.
-        missing_s: [s] for which a person is claimed who should be seen and is not.
-        outside_s: [s] the same for who is outside the image.
-        hidden_s: [s] the same for who is hidden or outside the image; claimed for `unverified_s` only.
-        has_see_through: whether a hypothesis is deleted when the camera sees through it.
-        appearance_weight: how much a different appearance counts in association, in gates.
-        uses_odometry: whether hypotheses are moved by the robot's own motion.
-        body_m: [m] from the surface that the camera sees to the middle of the body.
+        missing_s: [s] for which a visible but unobserved person is output.
+        outside_s: [s] the same for a person outside the image.
+        hidden_s: [s] without an observation after which an occluded or outside person is deleted; output
+            for `unverified_s` only.
+        has_see_through: whether a hypothesis is deleted when the background is visible at its position.
+        appearance_weight: cost of a different appearance in the association, in gates.
+        uses_odometry: whether hypotheses are moved by the robot's motion.
+        body_m: [m] from the visible surface to the middle of the body.
     """
 
     gate_m: float = 0.5
@@ -82,15 +82,15 @@ class RgbdConfig:
     """Settings of the whole tracker.
 
     Attributes:
-        size: of a human.
-        above: of the view from above.
-        filter: of the particle filters.
-        hypotheses: of their management.
-        has_verification: whether what is found must look like a human, too.
-        sees_depth: whether windows are judged by depth as well as by colour.
-        least_far_score, least_near_score: of a window that is taken for a human.
-        least_other_score: likewise of what is one by something else than its window, such as its warmth:
-            lamps are warm, too.
+        size: expected size of a human.
+        above: settings of the view from above.
+        filter: settings of the particle filters.
+        hypotheses: settings of their management.
+        has_verification: whether detections must also be classified as human.
+        sees_depth: whether windows are classified by depth as well as by colour.
+        least_far_score, least_near_score: least score of a human's window.
+        least_other_score: least score of a window whose object is human by other evidence, such as its
+            warmth: lamps are warm, too.
     """
 
     size: HumanSize = field(default_factory=HumanSize)
@@ -104,7 +104,7 @@ class RgbdConfig:
     least_other_score: float = -0.3
 
     def least_score(self, kind: WindowRange) -> float:
-        """Return above which score a window of a range is a human's."""
+        """Return the least score of a human's window of a range."""
         return self.least_far_score if kind is WindowRange.FAR else self.least_near_score
 
 
@@ -127,4 +127,4 @@ PRINTED: Final = RgbdConfig(
         body_m=0.0,
     ),
 )
-"""As the source prints it."""
+"""As printed in the source."""

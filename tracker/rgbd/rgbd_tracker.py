@@ -1,4 +1,4 @@
-"""People tracked by depth and colour on a moving robot (SA chapter 4)."""
+"""The tracker of people by depth and colour on a moving robot (SA chapter 4)."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from peopleboy.tracker.rgbd.track_management import Management, associate, occlu
 from peopleboy.tracker.rgbd.window_model import WindowModel
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
-# What the RGB-D tracker believes beyond its tracks.
+# Explanation of the RGB-D tracker.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RgbdExplanation:
-    """The newest frame as the tracker sees it.
+    """State of the tracker at its newest frame.
 
     Attributes:
-        layout: the depth image sorted out.
-        detections: what has the size of a human, and whether it looks like one.
-        hypotheses: all of them, those that nobody is believed to be at, too.
+        layout: structure of the depth image.
+        detections: objects of human size, classified as human or not.
+        hypotheses: all hypotheses, including tentative ones.
     """
 
     layout: Layout
@@ -44,13 +44,13 @@ _DOUBLE_M = 0.3
 
 
 class RgbdTracker:
-    """Tracks people by what has the size of a human in depth and looks like one in colour.
+    """Tracks people detected by size in depth and by appearance in colour.
 
     Args:
         config: settings.
-        model: classifies humans by their windows.
-        rng: draws particles.
-        is_human: classifies humans by something else than their windows; None for nothing else.
+        model: classifies windows as human.
+        rng: random generator of the particles.
+        is_human: classifies objects by further evidence; None for none.
     """
 
     def __init__(
@@ -72,27 +72,27 @@ class RgbdTracker:
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """The depth camera, which gives colour, too."""
+        """The depth camera, which also has colour."""
         return (DEPTH,)
 
     @property
     def explanation(self) -> RgbdExplanation | None:
-        """What it made of the newest frame; None before the first."""
+        """The state at the newest frame; None before the first."""
         return self._explanation
 
     def check_cameras(self, calibrations: Mapping[str, Calibration]) -> None:
-        """Refuse a depth camera that is none before there are images.
+        """Refuse an unusable depth camera before the first frame.
 
         Raises:
-            BadInput: it has no calibration, or its image is not flat.
+            BadInput: the camera is not calibrated, or not planar.
         """
         DepthView.of(calibrations.get(DEPTH), DEPTH)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Take in the next frame and tell who is where; people walk on while a slower camera takes no image.
+        """Process the next frame and return the tracks, predicted while a slower camera has no image.
 
         Raises:
-            BadInput: no depth image in the first frame, one without colour of its size, or no calibration.
+            BadInput: the first frame has no depth image, or colour of another size, or no calibration.
         """
         check_frame(frame)
         before = None if DEPTH in frame.images else self._seen
@@ -108,7 +108,7 @@ class RgbdTracker:
         return tuple(self._track(person, frame) for person in self._people if management.is_claimed(person))
 
     def _look(self, management: Management, frame: Frame) -> None:
-        """Take in a new image."""
+        """Process a new image."""
         view = management.view
         layout = self._detector(view.depth, view.geometry)
         detections = tuple(self._verified(found, layout, view, frame) for found in layout.detections)
@@ -125,7 +125,7 @@ class RgbdTracker:
         return RgbdView(depth, colour, geometry, self.config.hypotheses.body_m)
 
     def _verified(self, found: PreDetection, layout: Layout, view: RgbdView, frame: Frame) -> Detection:
-        """Look at the window of what was found (SA 4.4.2)."""
+        """Classify the window of a pre-detection (SA 4.4.2)."""
         geometry = view.geometry
         kind = range_of(found.z_m, layout.floor, geometry, len(view.depth))
         score = 0.0
@@ -151,7 +151,7 @@ class RgbdTracker:
     def _followed(
         self, detections: Sequence[Detection], management: Management, frame: Frame
     ) -> tuple[Hypothesis, ...]:
-        """Look for everybody who is known, then for newcomers."""
+        """Update all hypotheses, then initiate new ones."""
         looked = [
             management.looked_for(management.expected(person, frame.odometry)) for person in self._people
         ]
@@ -168,7 +168,7 @@ class RgbdTracker:
         return tuple(replace(one, occluder=occluder_of(one, everybody, management.view)) for one in everybody)
 
     def _named(self, people: Sequence[Hypothesis]) -> tuple[Hypothesis, ...]:
-        """Return numbers to those who were verified often enough."""
+        """Number the hypotheses with enough verifications."""
         named = []
         for person in people:
             if not person.id and person.verifications >= self.config.hypotheses.births:
@@ -192,14 +192,14 @@ class RgbdTracker:
 
 
 def _place(found: PreDetection, view: RgbdView) -> Floats:
-    """Return the place (2,) of a body's middle, which is behind the surface that is seen."""
+    """Return the position (2,) of a body's middle, which is behind the visible surface."""
     deeper = 1.0 + view.body_m / math.hypot(found.x_m, found.z_m)
     at = np.array([found.x_m * deeper]), np.array([found.z_m * deeper])
     return np.asarray(view.geometry.on_floor(*at)[0])
 
 
 def _boxes(person: Hypothesis, calibrations: Mapping[str, Calibration]) -> dict[str, Box]:
-    """Return the box of a person, from head to feet, in the image of each flat camera before which it is."""
+    """Return a person's box, from head to feet, in the image of each planar camera that faces the person."""
     body = replace(person.body, low_m=0.0)
     boxes = {}
     for name, calibration in calibrations.items():
@@ -211,7 +211,7 @@ def _boxes(person: Hypothesis, calibrations: Mapping[str, Calibration]) -> dict[
 
 
 def _without_doubles(people: Sequence[Hypothesis]) -> tuple[Hypothesis, ...]:
-    """Of two at one place keep who was verified last, or is known for longer."""
+    """Remove duplicates: of two at one position, the one verified last, or known longer, is kept."""
     kept: list[Hypothesis] = []
     for person in sorted(people, key=lambda one: (one.id == 0, -one.verified_s, one.id)):
         if all(np.hypot(*(person.place_m - other.place_m)) > _DOUBLE_M for other in kept):

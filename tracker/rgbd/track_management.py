@@ -1,4 +1,4 @@
-"""How hypotheses begin, go on, and end (SA 4.5)."""
+"""Initiation, update and deletion of hypotheses (SA 4.5)."""
 
 from __future__ import annotations
 
@@ -18,30 +18,30 @@ from peopleboy.tracker.rgbd.rgbd_config import HypothesesConfig, RgbdConfig
 from peopleboy.tracker.track import Status
 
 _CONFIDENT: Final = 0.3
-_GAIN: Final = 0.15  # of what the place was off in a frame that goes into the velocity
-_SLOWS_S: Final = 2.0  # in which a person who is not seen is thought to lose most of the velocity
+_GAIN: Final = 0.15  # share of a frame's innovation that goes into the velocity
+_SLOWS_S: Final = 2.0  # time constant with which an unobserved person slows down
 _SIZE_SHARE: Final = 0.2
-_SEEN_THROUGH: Final = 0.8  # share of readings behind, by which a person is gone
+_SEEN_THROUGH: Final = 0.8  # share of readings behind, from which a person is gone
 _SEEN_THROUGH_FRAMES: Final = 5
-_HIDDEN: Final = 0.5  # share of readings before a person who is hidden
+_HIDDEN: Final = 0.5  # share of readings in front, from which a person is occluded
 _PARTLY_HIDDEN: Final = 0.2
 _HIDDEN_ONES: Final = (Status.PARTLY_OCCLUDED, Status.TOTALLY_OCCLUDED)
 _TENTATIVE_S: Final = 0.4
 _FLOOR_SD_M: Final = 0.035  # of one frame: gait, not the sensor
 _DEPTH_SD: Final = 0.0014  # [m/m2] of the sensor
-_DRIFT_M2_S: Final = 0.15  # by which the place of who is not seen becomes unsure
+_DRIFT_M2_S: Final = 0.15  # growth of an unobserved position's variance
 
 
 @dataclass(frozen=True, slots=True)
 class Management:
-    """What one frame does to all hypotheses.
+    """Updates of all hypotheses with one frame.
 
     Attributes:
         config: settings.
-        view: what the sensor gives.
+        view: sensor readings.
         time_s: [s].
         dt_s: [s] since the last frame.
-        rng: draws particles.
+        rng: random generator of the particles.
     """
 
     config: RgbdConfig
@@ -51,7 +51,7 @@ class Management:
     rng: np.random.Generator
 
     def expected(self, person: Hypothesis, odometry: Odometry | None) -> Hypothesis:
-        """Move a hypothesis by the robot's motion and its own."""
+        """Predict a hypothesis by the robot's motion and its own."""
         filtered, place, covariance = person.filter, person.place_m, person.covariance_m2
         velocity = person.velocity_m_s
         if odometry is not None and self.config.hypotheses.uses_odometry:
@@ -65,12 +65,12 @@ class Management:
         return replace(person, filter=filtered, place_m=place, velocity_m_s=velocity, covariance_m2=grown)
 
     def looked_for(self, person: Hypothesis) -> tuple[Hypothesis, Update]:
-        """Let a person's filter look at the images."""
+        """Update a person's filter with the images."""
         update = person.filter.weighed(self.view, person.body, self.config.filter, self.rng)
         return replace(person, filter=update.filter), update
 
     def found(self, person: Hypothesis, update: Update, detection: Detection | None) -> Hypothesis:
-        """Merge what was measured into a hypothesis (SA eq. 4.22)."""
+        """Merge measurements into a hypothesis (SA eq. 4.22)."""
         rules = self.config.hypotheses
         expected = person.place_m
         is_confident = not update.is_held and update.confidence > _CONFIDENT
@@ -82,7 +82,7 @@ class Management:
         return self._judged(self._walking(person, expected, is_seen=is_seen), update, is_seen=is_seen)
 
     def born(self, detection: Detection) -> Hypothesis:
-        """Begin a hypothesis about what looks like a human."""
+        """Initiate a hypothesis from a verified detection."""
         return Hypothesis(
             place_m=detection.place_m,
             velocity_m_s=np.zeros(2),
@@ -105,7 +105,7 @@ class Management:
         return self.time_s - person.verified_s > (rules.hidden_s if is_excused else rules.unverified_s)
 
     def is_claimed(self, person: Hypothesis) -> bool:
-        """Return whether a person is said to be there: believed in, and seen not long ago."""
+        """Return whether a person is output: confirmed, and observed recently."""
         rules = self.config.hypotheses
         if self._is_outside(person):
             limit_s = rules.outside_s
@@ -133,7 +133,7 @@ class Management:
         )
 
     def _walking(self, person: Hypothesis, expected: Floats, *, is_seen: bool) -> Hypothesis:
-        """Learn how a person walks from how far off the expected place was; who is not seen slows down."""
+        """Update the velocity from the innovation; an unobserved person slows down."""
         if is_seen:
             off = (person.place_m - expected) / max(self.dt_s, 1e-3)
             return replace(person, velocity_m_s=person.velocity_m_s + _GAIN * off, seen_s=self.time_s)
@@ -145,7 +145,7 @@ class Management:
         return FloorFilter.begin(detection.place_m, self.config.filter, self.rng)
 
     def _learned(self, person: Hypothesis, detection: Detection, *, is_confident: bool) -> Body:
-        """Take on size and looks, slowly (SA eq. 4.29)."""
+        """Update size and appearance, slowly (SA eq. 4.29)."""
         old, new = person.body, detection.body
         rate = self.config.filter.learning_rate if is_confident and detection.is_verified else 0.0
         return Body(
@@ -156,7 +156,7 @@ class Management:
         )
 
     def _judged(self, person: Hypothesis, update: Update, *, is_seen: bool) -> Hypothesis:
-        """Return how well a person is seen, and whether the camera sees what is behind."""
+        """Return the visibility of a person, and whether the background is visible."""
         at = look_at(self.view, person.place_m[None], person.body, 0.0)
         nearer, beyond = float(at.nearer[0]), float(at.beyond[0])
         through = person.seen_through + 1 if not is_seen and beyond > _SEEN_THROUGH else 0
@@ -172,7 +172,7 @@ class Management:
         return replace(person, seen_through=through, status=status, confidence=min(confidence, 1.0))
 
     def _error_m2(self, detection: Detection) -> Floats:
-        """Return the covariance (2, 2) of a detection's place: the sensor's along the ray, and the gait's."""
+        """Return the covariance (2, 2) of a detection's position: sensor noise along the ray, and gait."""
         ray = detection.place_m / max(float(np.hypot(*detection.place_m)), 1e-6)
         along = (_DEPTH_SD * detection.found.z_m**2) ** 2
         return np.eye(2) * _FLOOR_SD_M**2 + np.outer(ray, ray) * along
@@ -183,7 +183,7 @@ def _merged(old: Floats, new: Floats, share: float) -> Floats:
 
 
 def occluder_of(person: Hypothesis, others: Sequence[Hypothesis], view: RgbdView) -> int | None:
-    """Name who of those that are nearer stands most before a person."""
+    """Return the id of the nearer person who covers a person most."""
     if person.status not in _HIDDEN_ONES:
         return None
     left, _, width, _ = box_at(view.geometry, person.place_m, person.body)
@@ -198,7 +198,7 @@ def occluder_of(person: Hypothesis, others: Sequence[Hypothesis], view: RgbdView
     return best
 
 
-# Which detection belongs to which track.
+# Association of detections with tracks.
 
 _NEVER = 1e6
 _BETWEEN_FRAMES_S = 0.1
@@ -207,15 +207,15 @@ _BETWEEN_FRAMES_S = 0.1
 def associate(
     people: Sequence[Hypothesis], detections: Sequence[Detection], time_s: float, config: HypothesesConfig
 ) -> dict[int, int]:
-    """Match people and detections, each with at most one, so that distances are least in all (SA 4.5).
+    """Match people and detections one to one, at least total distance (SA 4.5).
 
-    Who looks otherwise counts as farther. Nobody is matched beyond the gate, which is wider far away and
-    for who was not seen for long.
+    A different appearance adds to the distance. The gate grows with depth, and with the time since the last
+    observation.
 
     Args:
-        people: N, as they are expected.
+        people: N predicted people.
         detections: M.
-        time_s: now [s].
+        time_s: current time [s].
         config: settings.
 
     Returns:
@@ -230,7 +230,7 @@ def associate(
             gate = _gate_m(person, detection, time_s, config)
             if apart < gate:
                 unlike = 1.0 - similarity(person.body.appearance, detection.body.appearance)
-                # Whoever is believed in goes first.
+                # Confirmed people go first.
                 doubt = 0.0 if person.id else 0.5
                 cost[row, column] = apart / gate + config.appearance_weight * unlike + doubt
     rows, columns = linear_sum_assignment(cost)

@@ -1,4 +1,4 @@
-"""What stands out of the floor, seen from above: columns by depth, and the connected pieces of them."""
+"""View from above: readings by depth and column, and their connected components."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ Ints = NDArray[np.int32]
 
 NEAREST_M: Final = 0.5
 FARTHEST_M: Final = 10.0
-STEP_1_M: Final = 0.00287  # between two depths that the sensor can tell apart at 1 m; grows with the square
+STEP_1_M: Final = 0.00287  # depth step of the sensor at 1 m; grows with the square
 _LEAST_PX: Final = 10  # SA 4.4.1: cells with more readings are kept
 _LEAST_MASS: Final = 100
-# What is farther may be the near fringe of a wall that the sensor does not reach; hardly so without walls.
+# What is farther may be the near fringe of a wall out of the sensor's range; unlikely without walls.
 _FRINGE_M: Final = 9.7
 _FRINGE_WITHOUT_WALLS_M: Final = 9.9
 # SA 4.4.1: gaps of 2, 4, 6 or 10 rows are bridged; where each begins is not printed.
@@ -30,11 +30,11 @@ _GAPS: Final = np.array([2, 4, 6, 10])
 
 @dataclass(frozen=True, slots=True)
 class DepthPiece:
-    """One connected piece of the view from above.
+    """One connected component of the view from above.
 
     Attributes:
         left, right: first and last column [px], without the outermost of its readings.
-        near_m, far_m: first and last depth [m] likewise.
+        near_m, far_m: first and last depth [m], likewise trimmed.
         depth_m: mean of its readings.
         mass: number of them.
     """
@@ -53,12 +53,12 @@ class UDepthConfig:
 
     Attributes:
         row_m: [m] of depth in a row.
-        has_connector: whether gaps in depth are bridged, the wider the farther.
-        bridged_steps: [steps of the sensor] that a bridged gap reaches at least; beyond 8 m the printed gaps
-            are narrower than one, and everything falls apart.
-        trimmed: share of a piece's readings left out at either end of its extents.
-        has_walls: whether walls are found as planes and left out, so that who walks beside one is apart.
-        wall_m: [m] square to a wall within which readings are its own.
+        has_connector: whether gaps in depth are bridged, wider ones farther away.
+        bridged_steps: [steps of the sensor] least length of a bridged gap; beyond 8 m the printed gaps are
+            narrower than one step, and components fall apart.
+        trimmed: share of a component's readings left out at either end of its extents.
+        has_walls: whether walls are detected as planes and removed, so that people next to one stay separate.
+        wall_m: [m] perpendicular distance from a wall within which readings belong to it.
     """
 
     row_m: float = 0.02
@@ -74,8 +74,8 @@ def u_depth(depth: Depth, first_row: Floats, last_row: Floats, row_m: float) -> 
 
     Args:
         depth: (H, W) [mm].
-        first_row: (D,) [px] first image row that counts at each depth, below the ceiling.
-        last_row: (D,) [px] last one, above the floor.
+        first_row: (D,) [px] first image row below the ceiling at each depth.
+        last_row: (D,) [px] last image row above the floor.
         row_m: [m] of depth in a row.
     """
     limits = [np.clip(rows, -1.0, depth.shape[0]) for rows in (first_row, last_row)]
@@ -88,7 +88,7 @@ def depths_m(row_m: float) -> Floats:
 
 
 def find_pieces(counts: Ints, config: UDepthConfig) -> tuple[DepthPiece, ...]:
-    """Find the connected pieces, the nearest first."""
+    """Return the connected components, the nearest first."""
     kept = (counts > _LEAST_PX).astype(np.uint8)
     if config.has_connector:
         _connect(kept, gaps(config))
@@ -106,7 +106,7 @@ def _piece(row: list[float], row_m: float) -> DepthPiece:
 
 
 def gaps(config: UDepthConfig) -> Ints:
-    """Return the rows (D,) that a gap behind each row may have."""
+    """Return the gaps (D,) in rows that are bridged behind each row."""
     depth_m = depths_m(config.row_m)
     printed = _GAPS[np.searchsorted(_ZONES_M, depth_m)]
     steps = np.round(config.bridged_steps * STEP_1_M * depth_m**2 / config.row_m)
@@ -143,7 +143,7 @@ def _connect(kept: NDArray[np.uint8], gap: Ints) -> None:
 
 @njit(cache=True, nogil=True)
 def _extents(counts: Ints, labels: Ints, boxes: Ints, number: int, trimmed: float) -> Floats:
-    """Return left, right, near, far, mean row + 0.5 and mass (N, 6) of the pieces."""
+    """Return left, right, near, far, mean row + 0.5 and mass (N, 6) of the components."""
     found = np.zeros((number - 1, 6))
     for label in range(1, number):
         left, top, width, height = boxes[label, :4]
@@ -165,7 +165,7 @@ def _extents(counts: Ints, labels: Ints, boxes: Ints, number: int, trimmed: floa
 
 @njit(cache=True, nogil=True)
 def _trim(mass: Floats, least: float) -> tuple[int, int]:
-    """Return the first and last place of what is left when so much is taken off either end."""
+    """Return the first and last position after trimming a share at either end."""
     first, last, seen = 0, len(mass) - 1, mass[0]
     while seen <= least and first < last:
         first += 1

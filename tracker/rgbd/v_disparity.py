@@ -1,4 +1,4 @@
-"""Floor and ceiling as oblique lines in the v-disparity image."""
+"""Detection of floor and ceiling as oblique lines in the v-disparity image."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ Counts = NDArray[np.int32]
 
 BIN_PX: Final = 0.25
 _BINS: Final = 512
-_MOST: Final = 80  # readings of a cell that count, lest a wall outweighs the floor
+_MOST: Final = 80  # limit of the readings of a cell, lest a wall outweighs the floor
 _LEAST_VOTES: Final = 400.0
-_ROWS_PER_BIN: Final = BIN_PX / BASELINE_M  # by which a line falls, for each metre below the camera
+_ROWS_PER_BIN: Final = BIN_PX / BASELINE_M  # slope of a line for each metre below the camera
 _SHIFT_PX: Final = 16.0
-_FLOOR_M: Final = (0.3, 2.4)  # of the camera above it
+_FLOOR_M: Final = (0.3, 2.4)  # range of the camera's height above the floor
 _CEILING_M: Final = (-3.2, -0.7)
 
 
 @dataclass(frozen=True, slots=True)
 class HeightLine:
-    """A limit of height that is linear in depth: y = slope z + offset_m (SA eq. 4.10), y pointing down.
+    """A horizontal plane whose height is linear in depth: y = slope z + offset_m (SA eq. 4.10), y down.
 
     Attributes:
-        slope: [m/m] by which it falls with depth.
+        slope: [m/m] descent with depth.
         offset_m: [m] below the camera at depth 0, negative for above.
     """
 
@@ -38,11 +38,11 @@ class HeightLine:
     offset_m: float
 
     def rows(self, depth_m: Floats, view: DepthView) -> Floats:
-        """Return the image rows [px] of the limit at depths [m]."""
+        """Return the image rows [px] of the plane at depths [m]."""
         return np.asarray(view.centre_v + view.focal_px * (self.slope + self.offset_m / depth_m))
 
     def raised(self, height_m: float) -> HeightLine:
-        """Return the limit so much higher."""
+        """Return the plane raised by a height."""
         return HeightLine(self.slope, self.offset_m - height_m)
 
 
@@ -52,17 +52,17 @@ def v_disparity(depth: Depth, view: DepthView) -> Counts:
 
 
 def find_floor(counts: Counts, view: DepthView) -> HeightLine | None:
-    """Find the line of the floor by a Hough vote over height and horizon; None where there is none."""
+    """Return the line of the floor by a Hough vote over height and horizon, or None."""
     return _strongest(counts, view, *_FLOOR_M)
 
 
 def find_ceiling(counts: Counts, view: DepthView) -> HeightLine | None:
-    """Find the line of the ceiling likewise."""
+    """Return the line of the ceiling by the same vote, or None."""
     return _strongest(counts, view, *_CEILING_M)
 
 
 def _strongest(counts: Counts, view: DepthView, lowest_m: float, highest_m: float) -> HeightLine | None:
-    """Take the line that most readings are on; its slope is the horizon's shift in focal lengths (4.11)."""
+    """Return the line with the most votes; its slope is the horizon's shift in focal lengths (4.11)."""
     horizon = view.centre_v + view.horizon_px
     heights = np.arange(lowest_m, highest_m, 0.04)
     rows = horizon + np.arange(-_SHIFT_PX, _SHIFT_PX + 1.0, 2.0)
@@ -74,7 +74,7 @@ def _strongest(counts: Counts, view: DepthView, lowest_m: float, highest_m: floa
 
 
 def _refined(counts: Counts, row: float, height_m: float, view: DepthView) -> HeightLine:
-    """Vote again near a line, on every row, for finer steps."""
+    """Repeat the vote near a line, on every row, in finer steps."""
     rows, heights = row + np.arange(-3.0, 3.25, 0.5), height_m + np.arange(-0.06, 0.065, 0.01)
     votes = _hough(counts, rows, heights * _ROWS_PER_BIN, 1)
     best, nearest = np.unravel_index(int(np.argmax(votes)), votes.shape)
@@ -83,7 +83,7 @@ def _refined(counts: Counts, row: float, height_m: float, view: DepthView) -> He
 
 @lru_cache(maxsize=8)
 def _bin_of_mm(disparity_px_m: float) -> NDArray[np.int16]:
-    """Tabulate the bin of the disparity of each depth [mm]; -1 for none."""
+    """Tabulate the disparity bin of each depth [mm]; -1 for none."""
     depth_m = np.arange(1 << 16) / 1000.0
     with np.errstate(divide="ignore"):
         bins = np.round(disparity_px_m / depth_m / BIN_PX)
@@ -104,7 +104,7 @@ def _histogram(depth: Depth, bin_of_mm: NDArray[np.int16]) -> Counts:
 
 @njit(cache=True, nogil=True)
 def _hough(counts: Counts, horizons: Floats, rows_per_bin: Floats, stride: int) -> Floats:
-    """Vote (heights, horizons) for lines through a horizon's row that fall by so many rows a bin."""
+    """Vote (heights, horizons) for lines through a horizon row with a slope in rows per bin."""
     rows = counts.shape[0]
     votes = np.zeros((len(rows_per_bin), len(horizons)))
     for h in range(len(rows_per_bin)):

@@ -1,4 +1,4 @@
-"""Walls as straight lines in the u-disparity image, taken out of the depth image as the floor is."""
+"""Detection of walls as straight lines in the u-disparity image, and their removal from the depth image."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.rgbd.depth_view import Depth, DepthView
 from peopleboy.tracker.rgbd.u_depth import FARTHEST_M, NEAREST_M, STEP_1_M
 
-_EVERY_U: Final = 4  # columns of which one is looked at
+_EVERY_U: Final = 4  # only every so many columns are used
 _EVERY_V: Final = 2
-_LEAST_READINGS: Final = 4  # of a column, for it to show something tall
-_OFF_PX: Final = 0.2  # disparity by which a column may be off its wall
-_LEAST_COLUMNS: Final = 10  # of those that are looked at
+_LEAST_READINGS: Final = 4  # in a column, to indicate a tall object
+_OFF_PX: Final = 0.2  # tolerance of a column's disparity
+_LEAST_COLUMNS: Final = 10  # of the used columns
 _LEAST_M: Final = 0.8  # length of a wall
 _MOST_WALLS: Final = 6
-_MOST_SCATTER_PX: Final = 0.12  # half of what eight tenths of a column's readings span
-_SPANS: Final = (6, 16, 40)  # between the two columns through which a line is tried
-_CORNER_PX: Final = 12  # by which a wall goes on beyond the columns that are surely its own
-_BEHIND_M: Final = FARTHEST_M + 1.0  # the near fringe of what is farther is not in reach
-_STEPS: Final = 1.1  # of the sensor, by which readings of a wall may be off, too
+_MOST_SCATTER_PX: Final = 0.12  # half of the range of eight tenths of a column's readings
+_SPANS: Final = (6, 16, 40)  # distances between the two columns of a line hypothesis
+_CORNER_PX: Final = 12  # extension of a wall beyond its certain columns
+_BEHIND_M: Final = FARTHEST_M + 1.0  # the near fringe of farther objects is out of reach
+_STEPS: Final = 1.1  # tolerance of a wall's readings in steps of the sensor
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,7 +35,7 @@ class DepthWall:
     Attributes:
         slope: disparity by column [px/px].
         offset_px: disparity at the principal point [px].
-        left, right: first and last column in which it shows above people's heads [px].
+        left, right: first and last column in which it is visible above people's heads [px].
     """
 
     slope: float
@@ -53,22 +53,22 @@ class DepthWall:
         return np.asarray(view.disparity_px_m / disparity)
 
     def square_px(self, view: DepthView) -> float:
-        """Return the disparity [px] that it had if the camera were turned to it."""
+        """Return the disparity [px] of the plane for a camera that faces it."""
         return float(np.hypot(self.slope * view.focal_px, self.offset_px))
 
 
 def tall_disparity(
     depth: Depth, first_row: Floats, last_row: Floats, row_m: float, view: DepthView
 ) -> Floats:
-    """Return the disparity (W, 2) [px] of what stands above people's heads, NaN where nothing does.
+    """Return the disparity (W, 2) [px] of objects above people's heads, NaN for none.
 
-    The first is the middle one, the second half of what eight tenths of the readings span. Only every fourth
-    column of the image is looked at.
+    The first is the median, the second half of the range of eight tenths of the readings. Only every fourth
+    column of the image is used.
 
     Args:
         depth: (H, W) [mm].
-        first_row: (D,) [px] first image row that counts at each depth, below the ceiling.
-        last_row: (D,) [px] last one, above people's heads.
+        first_row: (D,) [px] first image row below the ceiling at each depth.
+        last_row: (D,) [px] last image row above people's heads.
         row_m: [m] of depth in a row.
         view: of the camera.
     """
@@ -77,9 +77,9 @@ def tall_disparity(
 
 
 def find_walls(tall: Floats, view: DepthView) -> tuple[DepthWall, ...]:
-    """Find the lines that most columns (W, 2) of disparities are on, the longest first.
+    """Return the lines through most columns (W, 2) of disparities, the longest first.
 
-    There are none where readings scatter too much, as they would leave pieces of a human's size.
+    Returns none if readings scatter too much, as removing them would leave fragments of human size.
     """
     columns = np.flatnonzero(np.isfinite(tall[:, 0]))
     walls: list[DepthWall] = []
@@ -100,15 +100,15 @@ def find_walls(tall: Floats, view: DepthView) -> tuple[DepthWall, ...]:
 def bands_mm(
     walls: tuple[DepthWall, ...], tall: Floats, off_m: float, view: DepthView
 ) -> tuple[NDArray[np.uint16], NDArray[np.uint16]]:
-    """Return the nearest and the farthest depth (K, W) [mm] of each wall by column; 0 and 0 where it is not.
+    """Return the nearest and the farthest depth (K, W) [mm] of each wall by column; 0 and 0 outside it.
 
-    It is in the columns in which it shows above people's heads, a little beyond them, as corners are frayed,
-    and in those next to them in which nothing tall is seen.
+    A wall extends over the columns in which it is visible above people's heads, slightly beyond them, as
+    corners are frayed, and over adjacent columns without tall objects.
 
     Args:
-        walls: what was found.
-        tall: (W, 2) [px] disparities in which they were found.
-        off_m: [m] square to a wall, by which what belongs to it may be off.
+        walls: detected walls.
+        tall: (W, 2) [px] disparities from which they were detected.
+        off_m: [m] tolerance perpendicular to a wall.
         view: of the camera.
     """
     limits = np.zeros((2, len(walls), len(tall)))
@@ -140,7 +140,7 @@ def _strongest(u: Floats, disparity: Floats) -> NDArray[np.bool_]:
 
 @njit(cache=True, nogil=True)
 def without(depth: Depth, near_mm: NDArray[np.uint16], far_mm: NDArray[np.uint16]) -> Depth:
-    """Leave out the readings (H, W) that lie within any of each column's limits (K, W)."""
+    """Remove the readings (H, W) within any of each column's limits (K, W)."""
     kept = depth.copy()
     for k in range(len(near_mm)):
         near, far = near_mm[k], far_mm[k]
@@ -153,7 +153,7 @@ def without(depth: Depth, near_mm: NDArray[np.uint16], far_mm: NDArray[np.uint16
 
 @njit(cache=True, nogil=True)
 def _try_lines(u: Floats, disparity: Floats, spans: NDArray[np.int64]) -> tuple[float, float]:
-    """Try lines through pairs of columns; give slope and offset of the one that most are on."""
+    """Return slope and offset of the line through two columns that most columns support."""
     most, best = -1, (0.0, 0.0)
     for span in spans:
         for first in range(0, len(u) - span, 2):

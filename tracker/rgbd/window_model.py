@@ -1,4 +1,4 @@
-"""Linear support vector machines that tell humans by their windows, and their file."""
+"""Linear support vector machines that classify windows as human, and their file."""
 
 from __future__ import annotations
 
@@ -27,24 +27,24 @@ MODEL: Final = "windows"
 
 
 def file_name(*, sees_depth: bool) -> str:
-    """Return the name of the file of a model."""
+    """Return the file name of a model."""
     return "windows-colour-and-depth.npz" if sees_depth else "windows-colour.npz"
 
 
 def feature_length(kind: WindowRange) -> int:
-    """Return how many numbers describe a window of one image: 36 for each block of 2 x 2 cells of 8 px."""
+    """Return the number of features of a window of one image: 36 for each block of 2 x 2 cells of 8 px."""
     width, height = SIZES[kind]
     return (width // 8 - 1) * (height // 8 - 1) * 36
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WindowModel:
-    """One linear machine for near windows and one for far ones.
+    """One linear classifier for near windows and one for far ones.
 
     Attributes:
         weights: float32 (features + 1,) by range, the bias last; the features are those of colour, or of
-            colour and then of depth.
-        about: what they were learned from, for the reader.
+            colour followed by depth.
+        about: description of the training data, for readers of the file.
     """
 
     weights: Mapping[WindowRange, Features]
@@ -52,16 +52,16 @@ class WindowModel:
 
     @property
     def sees_depth(self) -> bool:
-        """Whether it looks at depth, too."""
+        """Whether it uses depth, too."""
         return len(self.weights[WindowRange.NEAR]) > feature_length(WindowRange.NEAR) + 1
 
     def look(self, colour: Image, depth: Depth, z_m: float, window: Box, kind: WindowRange) -> float:
-        """Rate a window of an image: above 0 for a human.
+        """Return the score of a window of an image: above 0 for a human.
 
         Args:
             colour: (H, W, 3) RGB.
             depth: (H, W) [mm] of the same pixels.
-            z_m: depth of what the window is about [m].
+            z_m: depth of the window's object [m].
             window: [px].
             kind: of window.
         """
@@ -71,7 +71,7 @@ class WindowModel:
         return self.score(seen, kind)
 
     def score(self, features: Features, kind: WindowRange) -> float:
-        """Rate the features of a window: above 0 for a human, in distances from the margin."""
+        """Return the score of a window's features: above 0 for a human, in distances from the margin."""
         weights = self.weights[kind]
         return float(features @ weights[:-1] + weights[-1])
 
@@ -81,10 +81,10 @@ class WindowModel:
 
     @classmethod
     def load(cls, path: Path, *, sees_depth: bool) -> WindowModel:
-        """Read machines for colour alone, or for colour and depth.
+        """Read a model for colour alone, or for colour and depth.
 
         Raises:
-            BadInput: a file that is missing, is none, or holds machines for other windows.
+            BadInput: the file is missing, invalid, or holds a model for other windows.
         """
         images = 1 + sees_depth
         specs = {str(kind): ArraySpec((images * feature_length(kind) + 1,)) for kind in WindowRange}
@@ -94,12 +94,12 @@ class WindowModel:
 
 @lru_cache(maxsize=2)
 def shipped_windows(*, sees_depth: bool) -> WindowModel:
-    """Read the model that comes with the tracker, for colour alone or with depth."""
+    """Read the shipped model, for colour alone or with depth."""
     return WindowModel.load(SHIPPED / file_name(sees_depth=sees_depth), sees_depth=sees_depth)
 
 
 def people_detector() -> WindowModel:
-    """Take OpenCV's people detector for what is far, and the shipped one of colour for what is near."""
+    """Return OpenCV's people detector for far windows, with the shipped colour model for near ones."""
     far = np.asarray(hog_descriptor(SIZES[WindowRange.FAR]).getDefaultPeopleDetector(), np.float32)
     near = shipped_windows(sees_depth=False).weights[WindowRange.NEAR]
     return WindowModel({WindowRange.NEAR: near, WindowRange.FAR: far})

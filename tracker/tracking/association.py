@@ -130,11 +130,11 @@ class DescribedDetections:
     """M detections.
 
     Attributes:
+        boxes: (M, 4) [px].
         scores: (M,) log-odds.
         trees: (M,) log-odds by the detector's trees alone.
         pattern: (M, 72) thermal pattern; 0 for boxes located by their templates.
         colours: (M, 512) of clothes; 0 for boxes located by their templates and where colours are unknown.
-        colours: (M, 512) of clothes; 0 of those, too, and where nobody knows.
     """
 
     boxes: Floats
