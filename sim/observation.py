@@ -1,4 +1,4 @@
-"""What the robot senses at one instant; the truth is never in it. Images are made on demand."""
+"""Observations: sensor readings at one instant, without ground truth. Images are rendered on demand."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -14,12 +14,12 @@ from peopleboy.notebook import names_of, png_of
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Senses:
-    """What the robot senses at one instant without its eyes.
+    """Readings of the robot's sensors at one instant, cameras aside.
 
     Attributes:
         time_s: [s] since the start.
         sonar_m: (16,) [m].
-        odometry: pose that the wheels' encoders add up to, world frame, exact at the start.
+        odometry: pose integrated from the wheel encoders, world frame, exact at the start.
         wheel_speeds_m_s: rim speeds [m/s] of the left and right wheel.
     """
 
@@ -31,17 +31,17 @@ class Senses:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Observation(Senses):
-    """All the robot's senses at one instant.
+    """Readings of all the robot's sensors at one instant.
 
     Attributes:
-        images: of the cameras that take one at this instant, by the camera's name; each is made when it is
-            first asked for, which must be before the next step or observation. A thermal camera, such as
+        images: images of the cameras that take one at this instant, by name; each is rendered on first
+            access, which must be before the next step or observation. A thermal camera, such as
             `thermal`, gives (H, W) uint8 grey, by its gain, usually linear over 24..36 degC; as `thermal_c`
-            (H, W) float32 [degC], the same before it is encoded; as `thermal_scene` (H, W) uint8, for people
-            to look at; a colour camera, such as `colour`, (H, W, 3) uint8 sRGB;
-            a depth camera, such as `depth`, (H, W) uint16 [mm] along the optical axis, 0 where none is read,
+            (H, W) float32 [degC], the same before it is encoded; as `thermal_scene` (H, W) uint8, for
+            display; a colour camera, such as `colour`, (H, W, 3) uint8 sRGB;
+            a depth camera, such as `depth`, (H, W) uint16 [mm] along the optical axis, 0 for no reading,
             and as `depth_colour` (H, W, 3) uint8 sRGB of the same pixels.
-        calibrations: of the robot's cameras, by name: where each sits, and where its pixels look.
+        calibrations: calibrations of the robot's cameras by name: mounting pose and ray of each pixel.
     """
 
     images: Mapping[str, NDArray[Any]]
@@ -59,12 +59,12 @@ V = TypeVar("V")
 
 
 class OnDemand(Mapping[str, V]):
-    """A mapping whose names are known, and whose values are made when first asked for, and then kept.
+    """A mapping with known names, whose values are computed on first access and then kept.
 
     Args:
-        names: in their order.
-        make: gives the value of a name.
-        made: values that are there already.
+        names: the names in order.
+        make: computes the value of a name.
+        made: values that exist already.
     """
 
     def __init__(

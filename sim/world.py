@@ -1,4 +1,4 @@
-"""The simulated world: it takes velocity commands and gives observations, with the truth beside them."""
+"""The simulated world: velocity commands in, observations and ground truth out."""
 
 from collections.abc import Collection, Mapping
 from functools import partial
@@ -35,26 +35,26 @@ from peopleboy.sim.truth.truth import BORDER, Box, Truth
 from peopleboy.sim.truth.truth_maker import TruthMaker
 from peopleboy.sim.world_config import WorldConfig
 
-_STANDS_OUT_K = 5.0  # from the surroundings: what differs by more is seen in mirrors
-_MOST_PEOPLE = 64  # a view's cover has a bit for each
+_STANDS_OUT_K = 5.0  # difference from the surroundings above which objects are drawn in mirrors
+_MOST_PEOPLE = 64  # a view's cover has one bit per person
 
 
 class World:
     """A world with a robot, people and cameras; use it as a context manager.
 
-    `observe` returns what the robot senses now; `truth` what is true at the same instant; `step` moves the
-    world on by one control step. The same configuration gives the same bytes in every process.
+    `observe` returns what the robot senses now, `truth` the ground truth of the same instant; `step` advances
+    the world by one control step. The same configuration gives the same bytes in every process.
 
     Attributes:
-        config: as given.
+        config: the settings.
         crowd: all people.
-        robot: that `step` drives.
-        physics: where robot, people and things are, and what they hit.
-        table, materials, rig: all that cameras see, how its parts look, and the robot's cameras; there
-            must be images.
+        robot: the robot, which `step` drives.
+        physics: poses and contacts of robot, people and things.
+        table, materials, rig: visible shapes, materials of their parts, and the robot's cameras; only in a
+            world with images.
 
     Raises:
-        BadInput: names clash, or something cannot be built.
+        BadInput: names clash, or a part of the world cannot be built.
     """
 
     def __init__(self, config: WorldConfig) -> None:
@@ -79,14 +79,14 @@ class World:
         self.close()
 
     def close(self) -> None:
-        """Free the physics world; what was not read until now cannot be read any more."""
+        """Free the physics world; images and truth that were not read before are lost."""
         if self.config.renderer != BLIND:
             self.rig.forget()
         self.physics.close()
 
     @property
     def cameras(self) -> Mapping[str, CameraConfig]:
-        """What the robot carries, by name."""
+        """Settings of the robot's cameras by name."""
         return self.config.robot.cameras
 
     @property
@@ -95,12 +95,12 @@ class World:
         return self.config.renderer != BLIND
 
     def await_images(self) -> tuple[str, ...]:
-        """Names of the cameras whose images of this instant are made elsewhere; there must be images."""
+        """Return the cameras whose images of this instant are rendered elsewhere; needs a renderer."""
         return self.rig.expect(self._tick)
 
     @property
     def touching(self) -> tuple[str, ...]:
-        """Names of what the robot touches, the floor aside."""
+        """Names of the bodies that the robot touches, the floor aside."""
         return tuple(sorted(self._touching)) if self._touching else ()
 
     @property
@@ -111,11 +111,11 @@ class World:
     def observe(self) -> Observation:
         """Read every sensor once.
 
-        The images are those of this instant, and are made when they are asked for. Call it once a control
-        step: each call draws fresh noise.
+        The images are of this instant and are rendered on first access. Call it once per control step: each
+        call draws new noise.
 
         Raises:
-            BadInput: this is a world without images.
+            BadInput: the world has no images.
         """
         self._check_sight()
         senses = self.sense()
@@ -129,11 +129,11 @@ class World:
         )
 
     def take_images(self) -> Mapping[str, NDArray[Any]]:
-        """Return the images of this instant, as `observe` does; there must be images."""
+        """Return the images of this instant, as `observe` does; needs a renderer."""
         return self.rig.read(self._tick)
 
     def sense(self) -> Senses:
-        """Read every sensor but the cameras once; instead of `observe`, where nobody needs the images."""
+        """Read every sensor except the cameras once; use it instead of `observe` if you need no images."""
         return Senses(
             time_s=self.time_s,
             sonar_m=self.robot.sonar(),
@@ -142,11 +142,11 @@ class World:
         )
 
     def scene(self) -> ImageFreeTruth:
-        """Return what is true at this instant as far as no image is needed for it."""
+        """Return the ground truth of this instant that needs no image."""
         return self.scenes().truths()[0]
 
     def scenes(self) -> Scenes:
-        """Return what `scene` does as arrays, of one world."""
+        """Return the truth of `scene` as arrays, for one world."""
         pose, world_from_robot = self.robot.pose(), self.robot.world_from_robot()
         robot = np.array([pose.x, pose.y, pose.heading])
         worlds, people = np.zeros(1, SCENE), self._bystanders(robot, world_from_robot)
@@ -155,7 +155,7 @@ class World:
         return Scenes(worlds, people, (self.crowd.names,), (self.touching,))
 
     def _bystanders(self, robot: Matrix, world_from_robot: Matrix) -> Records:
-        """(Q,) records BYSTANDER of all who are present, by the robot's pose (3,) [m, m, rad] and (4, 4)."""
+        """Return (Q,) records BYSTANDER of present people; the robot's pose is (3,) [m, m, rad], (4, 4)."""
         present = [k for k, person in enumerate(self.crowd.people) if person.present]
         found = self._known_people[present]
         for row, k in zip(found, present, strict=True):
@@ -173,14 +173,14 @@ class World:
         return found
 
     def truth(self, camera: str = "thermal") -> Truth:
-        """Return all that is true at this instant, boxes and masks in the image of a camera.
+        """Return the ground truth of this instant, with boxes and masks in the image of a camera.
 
         Raises:
-            BadInput: there is no camera of that name, or this is a world without images.
+            BadInput: there is no camera of that name, or the world has no images.
         """
         if camera not in self.config.robot.cameras:
             known = ", ".join(self.config.robot.cameras)
-            raise BadInput(f"camera {camera!r}: there is none of that name; choose from {known}")
+            raise BadInput(f"unknown camera {camera!r}; choose from {known}")
         seen = self._see(self.config.robot.cameras[camera])
         return self._truth_maker.make(
             time_s=self.time_s,
@@ -191,32 +191,32 @@ class World:
         )
 
     def box(self, person: int) -> Box | None:
-        """Tell a person's truth box in the thermal image, as `truth` does among much else that takes longer.
+        """Return a person's truth box in the thermal image, faster than by `truth`.
 
         Args:
             person: number, from 1 in the scenario's order.
 
         Returns:
-            left, top, width, height [px]; None while the person is away, or not before the camera.
+            left, top, width, height [px]; None while the person is absent or not in front of the camera.
 
         Raises:
-            BadInput: this is a world without images.
+            BadInput: the world has no images.
         """
         self._check_sight()
         return self._truth_maker.box(person, self._see(self.config.robot.cameras["thermal"]))
 
     def truths(self) -> Mapping[str, Truth]:
-        """Return the truth by camera that takes an image now: that of `thermal`, the rest when asked for.
+        """Return the truth for each camera that takes an image now; all but `thermal` on first access.
 
         Raises:
-            BadInput: this is a world without images; or, when one is asked for, the instant is over.
+            BadInput: the world has no images; or, on access, the instant is over.
         """
         self._check_sight()
         at_once = {"thermal": self.truth()}
         return OnDemand(self.rig.due(self._tick), partial(self._truth_at, self._tick), at_once)
 
     def robot_state(self) -> PlanarState:
-        """Return where the robot is, how it moves, and how wide it is, as people see it."""
+        """Return the robot's position, velocity, heading and radius, as people perceive it."""
         pose, (speed, _) = self.robot.pose(), self.robot.velocity()
         heading = np.array([np.cos(pose.heading), np.sin(pose.heading)])
         place = np.array([pose.x, pose.y])
@@ -225,9 +225,9 @@ class World:
         )
 
     def step(self, linear_m_s: float, angular_rad_s: float, *, is_emergency: bool = False) -> None:
-        """Drive the robot by a velocity command for one control step; people and light move on too.
+        """Drive the robot by a velocity command for one control step, and advance people and light.
 
-        In an emergency the robot loses its speeds at higher rates.
+        In an emergency the robot brakes at higher rates.
 
         Raises:
             BadInput: the command is not finite.
@@ -244,7 +244,7 @@ class World:
         self.end_step(touched)
 
     def begin_step(self, linear_m_s: float, angular_rad_s: float, *, is_emergency: bool = False) -> None:
-        """Take a command and let people walk on, whom physics still has where they were; see `step`.
+        """Apply a command and advance people, whose bodies in the physics world follow later; see `step`.
 
         Raises:
             BadInput: the command is not finite.
@@ -253,11 +253,11 @@ class World:
         self.crowd.step(self.time_s, 1.0 / self.config.control_hz, self.robot_state())
 
     def end_step(self, touched: Collection[str], *, is_settled: bool = False) -> None:
-        """Take over what physics made of the step.
+        """Finish a step after physics.
 
         Args:
             touched: names of the bodies that the robot touched.
-            is_settled: whether nobody comes or goes, and all people and things are where they are now.
+            is_settled: whether no person enters or leaves, and all bodies are at their final poses already.
         """
         self._tick += 1
         self._touching = {name.split("/")[0] for name in touched} - {"floor"} if touched else set()
@@ -285,7 +285,7 @@ class World:
         self._settle()
 
     def _open_eyes(self, materials: dict[str, Material]) -> None:
-        """Prepare for images: what is to be seen, and how each part looks, by body name."""
+        """Prepare for images: visible shapes and the appearance of each part, by body name."""
         config, physics = self.config, self.physics
         keys = physics.parts()
         part_materials = [
@@ -306,13 +306,13 @@ class World:
         self.rig = Rig(config.robot.cameras, config.control_hz, config.seed, self._camera_view)
 
     def _settle(self) -> None:
-        """Take over the poses of a new instant; what was seen before is forgotten."""
+        """Take over the poses of a new instant and clear cached views."""
         self._handling.show(self.time_s)
         self.crowd.show(self.robot.gap_to)
         self._forget()
 
     def _forget(self) -> None:
-        """Forget what was seen at the last instant."""
+        """Clear the cached views of the last instant."""
         if self.config.renderer == BLIND:
             return
         self._scene_now: Scene | None = None
@@ -321,7 +321,7 @@ class World:
 
     @property
     def _scene(self) -> Scene:
-        """All that is to be seen at this instant, put together when first asked for."""
+        """Return the scene of this instant, computed on first access."""
         if self._scene_now is None:
             self._scene_now = Scene(
                 renderer=self.config.renderer,
@@ -335,18 +335,18 @@ class World:
 
     def _check_sight(self) -> None:
         if self.config.renderer == BLIND:
-            raise BadInput("renderer 'none': there are no images in this world; choose raycast or bullet")
+            raise BadInput("renderer 'none': this world has no images; choose raycast or bullet")
 
     def _truth_at(self, tick: int, camera: str) -> Truth:
         if tick != self._tick:
-            raise BadInput(f"camera {camera!r}: the truth of an instant that is over cannot be told any more")
+            raise BadInput(f"camera {camera!r}: the truth of an earlier instant is no longer available")
         return self.truth(camera)
 
     def _see(self, config: CameraConfig) -> RenderPass:
-        """Render one camera's view, once an instant.
+        """Render one camera's view, at most once per instant.
 
         Raises:
-            BadInput: this is a world without images.
+            BadInput: the world has no images.
         """
         self._check_sight()
         renderer, camera = kind_of(config).renderer, config.camera
@@ -356,7 +356,7 @@ class World:
         return self._seen[renderer, camera]
 
     def _camera_view(self, config: CameraConfig) -> CameraView:
-        """Return a sensor what it sees, and all that forms its images from that."""
+        """Return a sensor's view with everything that image formation needs."""
         seen = self._see(config)
         return CameraView(
             view=seen.view,
@@ -372,14 +372,14 @@ class World:
         )
 
     def _full_detail(self, seen: RenderPass) -> FullDetail | None:
-        """What makes images of full detail, for cameras that can have it."""
+        """Return the extras for images of full detail, for cameras that support it."""
         if self.config.detail == "plain" or not isinstance(seen.camera, Pinhole):
             return None
         return FullDetail(seen, seen.camera, self._is_shiny, self._is_mirrored)
 
 
 def light_level(place: Place, time_s: float) -> float:
-    """Return the level of a place's light at a time: that of the last switch so far, full before any."""
+    """Return the level of a place's light at a time: that of the last switch, or full before any."""
     return [1.0, *(level for start, level in place.light if start <= time_s + 1e-9)][-1]
 
 
@@ -387,31 +387,31 @@ def _open_physics(config: WorldConfig) -> Physics:
     """Open an empty world.
 
     Raises:
-        BadInput: PyBullet is asked for and not installed.
+        BadInput: PyBullet is requested and not installed.
     """
     if config.physics == "kinematic":
         return Kinematic(physics_hz=config.physics_hz)
-    from peopleboy.sim.physics.bullet import Bullet  # here, as the other one does without PyBullet
+    from peopleboy.sim.physics.bullet import Bullet  # imported here, as kinematic physics needs no PyBullet
 
     return Bullet(physics_hz=config.physics_hz)
 
 
 def _check_names(config: WorldConfig) -> None:
-    """Refuse people whose names the truth could not tell from other names, and more than it has room for."""
+    """Refuse people with ambiguous names, and more people than the truth supports."""
     names = [person.name for person in config.people]
     things = {fixture.name.split("/")[0] for fixture in config.place.fixtures}
     for k, name in enumerate(names):
         if "/" in name or name in {ROBOT, BORDER, *things, *names[:k]}:
-            raise BadInput(f"person {name!r}: the name is taken or has a '/' in it; choose another")
+            raise BadInput(f"person {name!r}: the name is taken or contains '/'; choose another")
     for mover in config.place.movers:
         for by in {action.by for action in mover.actions} - {None, *names}:
-            raise BadInput(f"thing {mover.name!r}: {by!r} is to move it, but there is nobody of that name")
+            raise BadInput(f"thing {mover.name!r}: moved by unknown person {by!r}")
     if len(names) > _MOST_PEOPLE:
-        raise BadInput(f"{len(names)} people are too many: a world holds {_MOST_PEOPLE}")
+        raise BadInput(f"{len(names)} people are too many; the maximum is {_MOST_PEOPLE}")
 
 
 def _add_fixtures(physics: Physics, place: Place) -> dict[str, Material]:
-    """Put everything that stands still into the physics world; returns the appearance by body name."""
+    """Add everything static to the physics world; return the appearance by body name."""
     materials = {}
     for fixture in place.fixtures:
         position, orientation = fixture.position, fixture.orientation
@@ -430,5 +430,5 @@ def _add_fixtures(physics: Physics, place: Place) -> dict[str, Material]:
             )
             materials[fixture.name] = fixture.material
         else:
-            raise BadInput(f"fixture {fixture.name!r}: needs either a part, or a URDF with a material")
+            raise BadInput(f"fixture {fixture.name!r} needs either a part or a URDF with a material")
     return materials

@@ -1,4 +1,4 @@
-"""Every setting of a world: what stands in it, who walks through it, and what the robot carries."""
+"""The settings of a world: place, people and robot."""
 
 from dataclasses import dataclass, field
 
@@ -10,7 +10,7 @@ from peopleboy.sim.places.place import Place
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Detail
 
-CONTROL_HZ = 15  # [Hz] of commands and images, if nothing else is said
+CONTROL_HZ = 15  # [Hz] default rate of commands and images
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,18 +19,18 @@ class WorldConfig:
 
     Attributes:
         place: walls, floor and things.
-        people: who walks through it.
+        people: the people in it.
         robot: the robot and its sensors.
-        seed: of every random stream in the world.
+        seed: seed of every random stream in the world.
         physics_hz: [Hz] steps of the physics engine.
         control_hz: [Hz] commands and images.
         renderer: "raycast" or "bullet"; "none" for a world without images, which is several times faster.
         physics: "bullet", PyBullet's dynamics; or "kinematic", rolling without slip, which needs no PyBullet.
-        detail: "plain", or "full" for what makes images harder: how finely people and surfaces are drawn.
+        detail: "plain", or "full" for finely drawn people and surfaces, which make images harder.
 
     Raises:
-        BadInput: a control step is not a whole number of physics steps, or an image not one of control
-            steps; or the seed is negative; or there is no such physics, or it has not that renderer.
+        BadInput: a control step is not a whole number of physics steps, or an image period not one of
+            control steps; the seed is negative; physics is unknown or lacks that renderer.
     """
 
     place: Place
@@ -44,7 +44,7 @@ class WorldConfig:
     detail: Detail = "plain"
 
     def __post_init__(self) -> None:
-        """Refuse rates that do not divide, and seeds that are none."""
+        """Refuse rates that do not divide each other, and invalid seeds."""
         if self.control_hz <= 0 or self.physics_hz % self.control_hz:
             raise BadInput(
                 f"control rate {self.control_hz} Hz must divide the physics rate {self.physics_hz} Hz: "
@@ -54,8 +54,8 @@ class WorldConfig:
             with found_in("cameras", name):
                 check_rate(camera.rate_hz, self.control_hz)
         if self.physics not in PHYSICS:
-            raise BadInput(f"physics {self.physics!r}: there is no such; choose from {', '.join(PHYSICS)}")
+            raise BadInput(f"unknown physics {self.physics!r}; choose from {', '.join(PHYSICS)}")
         if self.renderer == "bullet" and self.physics != "bullet":
-            raise BadInput(f"renderer 'bullet': draws with PyBullet, not with {self.physics}; choose raycast")
+            raise BadInput(f"renderer 'bullet' needs physics bullet, not {self.physics}; choose raycast")
         if self.seed < 0:
             raise BadInput(f"seed {self.seed} must be 0 or more")

@@ -1,4 +1,4 @@
-"""The settings of the cameras: where each sits, how often it takes an image, and how that is formed."""
+"""The settings of the cameras: their mounting, frame rates, and image formation."""
 
 import math
 from collections.abc import Mapping
@@ -17,10 +17,10 @@ from peopleboy.sim.geometry.pinhole import CameraGeometry, Pinhole
 COLOUR_BASELINE_M = 0.06
 COLOUR_ZOOM = 1.2
 
-DEPTH_BASELINE_M: Final = 0.075  # from the projector of a structured-light sensor to its camera
-_DEPTH_ROWS = 480  # that such a sensor has, however many of them an image has
+DEPTH_BASELINE_M: Final = 0.075  # distance from the projector of a structured-light sensor to its camera
+_DEPTH_ROWS = 480  # rows of such a sensor, whatever the size of its image
 
-FARTHEST_M: Final = 65.0  # that 16 bits of millimetres hold
+FARTHEST_M: Final = 65.0  # largest depth in 16 bits of millimetres
 
 DepthSensorName = Literal["kinect", "tof"]
 GainName = Literal["fixed", "percentile", "plateau"]
@@ -42,7 +42,7 @@ def _depth_camera() -> Pinhole:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CameraConfig:
-    """One camera of the robot; each kind adds what forms its images.
+    """One camera of the robot; each kind adds the settings of its image formation.
 
     `kind` is its name in `peopleboy.sim.cameras.kinds.KINDS`, `camera` its geometry.
     """
@@ -62,24 +62,24 @@ class CameraConfig:
 
     @property
     def remembers(self) -> bool:
-        """Whether images depend on those before, so that it must take each, also if nobody asks for it."""
+        """Whether an image depends on earlier ones, so that every image must be rendered."""
         return False
 
     def resized(self, width: int, height: int) -> Self:
-        """The same camera with images of another size [px], of the same height of view."""
+        """Return the camera with another image size [px] and the same vertical field of view."""
         return replace(self, camera=replace(self.camera, width=width, height=height))
 
     def noisier(self, factor: float) -> Self:  # noqa: ARG002
-        """The same camera with so many times the noise; one without any stays as it is."""
+        """Return the camera with its noise multiplied by a factor; without noise it is unchanged."""
         return self
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThermalConfig(CameraConfig):
-    """A thermal camera; the one named `thermal` is the tracker's input.
+    """A thermal camera; the tracker uses the one named `thermal`.
 
     Raises:
-        BadInput: no such gain, an empty span, or a shutter that never opens.
+        BadInput: the gain is unknown, the span is empty, or the shutter never opens.
     """
 
     kind: ClassVar[str] = "thermal"
@@ -89,25 +89,21 @@ class ThermalConfig(CameraConfig):
     gain: Annotated[
         GainName,
         Field(
-            description="how 8-bit grey comes from temperature: `fixed`, linear over `lowest_c` to "
+            description="mapping from temperature to 8-bit grey: `fixed`, linear over `lowest_c` to "
             "`highest_c`; `percentile`, linear over the span of the image; `plateau`, its histogram "
-            "equalised as far as a plateau allows"
+            "equalised up to a plateau"
         ),
     ] = "fixed"
     # The span of a fixed gain: T ch. 3.
-    lowest_c: Annotated[
-        float, Field(ge=-40.0, le=160.0, description="for gain `fixed`: temperature of black")
-    ] = 24.0
-    highest_c: Annotated[
-        float, Field(ge=-40.0, le=160.0, description="for gain `fixed`: temperature of white")
-    ] = 36.0
+    lowest_c: Annotated[float, Field(ge=-40.0, le=160.0, description="gain `fixed`: value of black")] = 24.0
+    highest_c: Annotated[float, Field(ge=-40.0, le=160.0, description="gain `fixed`: value of white")] = 36.0
     gain_follows_s: Annotated[
         float,
         Field(
             ge=0.0,
             le=60.0,
-            description="time constant with which an automatic gain follows the images; 0 for at once; a "
-            "span grows at once",
+            description="time constant of an automatic gain; 0 adapts at once; growth of the span is always "
+            "immediate",
         ),
     ] = 1.0
     tail_percent: Annotated[
@@ -115,7 +111,7 @@ class ThermalConfig(CameraConfig):
         Field(
             ge=0.0,
             le=0.45,
-            description="share of the pixels that may lie outside an automatic gain's span, at either end",
+            description="share of the pixels outside the span of an automatic gain, at each end",
         ),
     ] = 0.3
     least_span_k: Annotated[
@@ -126,19 +122,23 @@ class ThermalConfig(CameraConfig):
         Field(
             ge=0.01,
             le=100.0,
-            description="of gain `plateau`: share of the pixels that 0.05 K count for at most; 100 equalises "
+            description="gain `plateau`: largest share of the pixels that counts per 0.05 K; 100 equalises "
             "fully",
         ),
     ] = 0.5
     linear_share: Annotated[
-        Share, Field(description="for gain `plateau`: share of the grey values that are linear over the span")
+        Share, Field(description="gain `plateau`: share of the greys that is linear over the span")
     ] = 0.3
-    blur_px: Annotated[float, Field(ge=0.0, le=20.0, description="optical blur, standard deviation")] = 0.7
-    netd_k: Annotated[float, Field(ge=0.0, le=5.0, description="temporal noise, standard deviation")] = 0.08
+    blur_px: Annotated[
+        float, Field(ge=0.0, le=20.0, description="standard deviation of the optical blur")
+    ] = 0.7
+    netd_k: Annotated[
+        float, Field(ge=0.0, le=5.0, description="standard deviation of temporal noise, new in every image")
+    ] = 0.08
     fixed_pattern_k: Annotated[
-        float, Field(ge=0.0, le=5.0, description="fixed-pattern noise, standard deviation")
+        float, Field(ge=0.0, le=5.0, description="standard deviation of fixed offsets between pixels")
     ] = 0.03
-    dead_pixels: Annotated[Share, Field(description="share of dead pixels, which have a constant value")] = (
+    dead_pixels: Annotated[Share, Field(description="share of dead pixels, which always read one value")] = (
         0.0001
     )
     column_noise_k: Annotated[
@@ -146,19 +146,19 @@ class ThermalConfig(CameraConfig):
         Field(
             ge=0.0,
             le=5.0,
-            description="column noise, constant until the next calibration, standard deviation",
+            description="standard deviation of offsets between columns, constant until the next calibration",
         ),
     ] = 0.0
     vignetting_k: Annotated[
-        float, Field(ge=0.0, le=10.0, description="how much warmer the corners appear than the centre")
+        float, Field(ge=0.0, le=10.0, description="apparent excess temperature of the corners")
     ] = 0.0
     offset_drift_k_per_min: Annotated[
         float,
         Field(
             ge=0.0,
             le=20.0,
-            description="how fast all of the image drifts away after a calibration, a standard deviation; "
-            "its patches by half of that, its pixels by a tenth",
+            description="standard deviation of the drift rate of the whole image after a calibration; "
+            "patches drift by half of that, single pixels by a tenth",
         ),
     ] = 0.0
     shutter_every_s: Annotated[
@@ -166,30 +166,30 @@ class ThermalConfig(CameraConfig):
         Field(
             ge=0.0,
             le=3600.0,
-            description="time from one calibration, before a shutter, to the next; 0 for none",
+            description="time between shutter calibrations; 0 for none",
         ),
     ] = 0.0
     shutter_lasts_s: Annotated[
-        float, Field(ge=0.0, le=5.0, description="duration of the frozen image during a calibration")
+        float, Field(ge=0.0, le=5.0, description="duration of a calibration, which freezes the image")
     ] = 0.4
     sharpening: Annotated[
         float,
         Field(
             ge=0.0,
             le=5.0,
-            description="how much of what blur would take away is added in 8 bits; halos come with it",
+            description="amount of unsharp masking before 8-bit encoding; it causes halos",
         ),
     ] = 0.0
-    sharpening_px: Annotated[float, Field(gt=0.0, le=20.0, description="standard deviation of that blur")] = (
-        1.5
-    )
+    sharpening_px: Annotated[
+        float, Field(gt=0.0, le=20.0, description="standard deviation of the blur of that mask")
+    ] = 1.5
     coring_k: Annotated[
         float,
         Field(
             ge=0.0,
             le=5.0,
-            description="details of 8 bits that differ by less from what is about them are taken for noise "
-            "and evened out",
+            description="coring: details that differ by less from their surroundings are treated as noise "
+            "and smoothed",
         ),
     ] = 0.0
     jpeg_quality: Annotated[
@@ -197,15 +197,15 @@ class ThermalConfig(CameraConfig):
         Field(
             ge=1,
             le=100,
-            description="JPEG quality of the 8-bit image; no compression by default",
+            description="JPEG quality of the 8-bit image; default no compression",
         ),
     ] = None
 
     def __post_init__(self) -> None:
-        """Refuse what no camera does."""
+        """Refuse an unknown gain, an empty span, and a shutter that never opens."""
         if self.gain not in get_args(GainName):
             known = ", ".join(get_args(GainName))
-            raise BadInput(f"no such gain: {self.gain!r}; choose from {known}", key=("gain",))
+            raise BadInput(f"unknown gain {self.gain!r}; choose from {known}", key=("gain",))
         if not self.lowest_c < self.highest_c:
             raise BadInput(
                 f"{self.highest_c} must be more than lowest_c, {self.lowest_c}", key=("highest_c",)
@@ -218,18 +218,18 @@ class ThermalConfig(CameraConfig):
 
     @property
     def remembers(self) -> bool:
-        """Whether an automatic gain follows the images, or a shutter stops them."""
+        """Whether the gain is automatic or there is a shutter, so that an image depends on earlier ones."""
         return self.shutter_every_s > 0.0 or (self.gain != "fixed" and self.gain_follows_s > 0.0)
 
     @property
     def is_simple(self) -> bool:
-        """Whether an image is its scene, its noise and a fixed gain, and nothing else."""
+        """Whether an image consists only of the scene, noise and a fixed gain."""
         changes = self.offset_drift_k_per_min, self.column_noise_k, self.shutter_every_s, self.sharpening
         has_changes = any(value > 0.0 for value in (*changes, self.coring_k))
         return self.gain == "fixed" and self.jpeg_quality is None and not has_changes
 
     def resized(self, width: int, height: int) -> Self:
-        """The same camera with images of another size [px], of the same height of view and as sharp."""
+        """Return the camera with another image size [px], the same vertical field of view and sharpness."""
         camera, larger = replace(self.camera, width=width, height=height), height / self.camera.height
         return replace(
             self,
@@ -239,7 +239,7 @@ class ThermalConfig(CameraConfig):
         )
 
     def noisier(self, factor: float) -> Self:
-        """The same camera with so many times the noise, temporal and fixed."""
+        """Return the camera with temporal and fixed noise multiplied by a factor."""
         return replace(
             self,
             netd_k=factor * self.netd_k,
@@ -250,7 +250,7 @@ class ThermalConfig(CameraConfig):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LightConfig(CameraConfig):
-    """A camera that sees light, and its image formation."""
+    """A camera for visible light, and its image formation."""
 
     exposure_s: Exposure = 0.015
     gain: Annotated[
@@ -258,24 +258,24 @@ class LightConfig(CameraConfig):
         Field(
             gt=0.0,
             le=10.0,
-            description="fraction of full scale of a white surface facing the light in full light",
+            description="value of a white surface facing the light in full light, as a share of full scale",
         ),
     ] = 0.95
     read_noise: Annotated[
-        Share, Field(description="standard deviation of the noise of a black pixel, fraction of full scale")
+        Share, Field(description="standard deviation of the noise of a black pixel, as a share of full scale")
     ] = 0.004
     shot_noise: Annotated[
-        Share, Field(description="standard deviation of the noise of a white pixel, fraction of full scale")
+        Share, Field(description="standard deviation of the noise of a white pixel, as a share of full scale")
     ] = 0.012
 
     def noisier(self, factor: float) -> Self:
-        """The same camera with so many times the noise."""
+        """Return the camera with its noise multiplied by a factor."""
         return replace(self, read_noise=factor * self.read_noise, shot_noise=factor * self.shot_noise)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ColourConfig(LightConfig):
-    """A colour camera; the one named `colour` is the tracker's input."""
+    """A colour camera; the tracker uses the one named `colour`."""
 
     kind: ClassVar[str] = "colour"
 
@@ -284,7 +284,7 @@ class ColourConfig(LightConfig):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PanoramaConfig(LightConfig):
-    """A colour camera with a 360-degree view by a mirror above the robot's axis; its image is unrolled."""
+    """A panoramic colour camera with a mirror over the robot's axis; its image is unrolled."""
 
     kind: ClassVar[str] = "panorama"
 
@@ -292,19 +292,19 @@ class PanoramaConfig(LightConfig):
     raw: Annotated[
         bool,
         Field(
-            description="whether the image is unrolled from the round one that the lens sees, coarse where "
-            "it looks down steeply, and that one is kept, too; otherwise each pixel is seen by itself"
+            description="whether the image is unrolled from the round image of the lens, which is coarse at "
+            "steep angles and is kept, too; otherwise each pixel is rendered directly"
         ),
     ] = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DepthConfig(LightConfig):
-    """A depth camera with colour through the same lens.
+    """A depth camera, with colour through the same lens.
 
     Raises:
-        BadInput: no such sensor, one that knows no amplitude, a negative scale, or no depths that it can
-            measure.
+        BadInput: the sensor is unknown or has no amplitude, the scale is negative, or the range of depths is
+            empty.
     """
 
     kind: ClassVar[str] = "depth"
@@ -313,9 +313,8 @@ class DepthConfig(LightConfig):
     sensor: Annotated[
         DepthSensorName,
         Field(
-            description="how it measures: `kinect` by a pattern of light, with noise and steps in disparity, "
-            "shadows, frayed edges and holes; `tof` by the time that light takes, with depths between two "
-            "surfaces at edges"
+            description="measuring principle: `kinect` by structured light, with noise, quantised disparity, "
+            "shadows, frayed edges and holes; `tof` by time of flight, with mixed depths at edges"
         ),
     ] = "kinect"
     scale: Annotated[
@@ -323,25 +322,33 @@ class DepthConfig(LightConfig):
         Field(
             ge=0.0,
             le=100.0,
-            description="factor on the depth noise; 0 gives exact depth, with holes beyond the range only",
+            description="factor on the depth noise; 0 gives exact depth, with holes only beyond its range",
         ),
     ] = 1.0
-    nearest_m: Annotated[float, Field(ge=0.0, le=FARTHEST_M, description="smallest measured depth")] = 0.5
-    farthest_m: Annotated[float, Field(gt=0.0, le=FARTHEST_M, description="largest measured depth")] = 10.0
-    colour: Annotated[bool, Field(description="whether it gives colour for each depth pixel")] = True
+    nearest_m: Annotated[float, Field(ge=0.0, le=FARTHEST_M, description="least depth that it measures")] = (
+        0.5
+    )
+    farthest_m: Annotated[
+        float, Field(gt=0.0, le=FARTHEST_M, description="greatest depth that it measures")
+    ] = 10.0
+    colour: Annotated[bool, Field(description="whether it also gives colour, registered with the depth")] = (
+        True
+    )
     amplitude: Annotated[
         bool,
-        Field(description="for sensor `tof`: whether it also gives the amplitude of the returned light"),
+        Field(description="sensor `tof`: whether it also gives the amplitude of the returned light"),
     ] = False
-    offset_m: Annotated[float, Field(ge=0.0, le=0.1, description="largest constant error of a pixel")] = 0.0
+    offset_m: Annotated[
+        float, Field(ge=0.0, le=0.1, description="largest fixed error of a pixel, the same in all images")
+    ] = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse what no sensor does."""
+        """Refuse an unknown sensor, amplitude without `tof`, a negative scale, and an empty range."""
         if self.sensor not in get_args(DepthSensorName):
             known = ", ".join(get_args(DepthSensorName))
-            raise BadInput(f"no such sensor: {self.sensor!r}; choose from {known}", key=("sensor",))
+            raise BadInput(f"unknown sensor {self.sensor!r}; choose from {known}", key=("sensor",))
         if self.amplitude and self.sensor != "tof":
-            raise BadInput(f"only a sensor 'tof' gives it, not {self.sensor!r}", key=("amplitude",))
+            raise BadInput(f"only sensor 'tof' has an amplitude, not {self.sensor!r}", key=("amplitude",))
         if not 0.0 <= self.scale < math.inf:
             raise BadInput(f"{self.scale} must be 0 or more, and finite", key=("scale",))
         if not 0.0 <= self.nearest_m < self.farthest_m <= FARTHEST_M:
@@ -352,16 +359,16 @@ class DepthConfig(LightConfig):
 
     @property
     def disparity_px_m(self) -> float:
-        """Disparity [px] of what is 1 m away, in pixels of the sensor, which has 480 rows."""
+        """Disparity [px] at a depth of 1 m, in pixels of the sensor, which has 480 rows."""
         return self.camera.focal_px * _DEPTH_ROWS / self.camera.height * DEPTH_BASELINE_M
 
     def noisier(self, factor: float) -> Self:
-        """The same camera with so many times the noise, of depth and of colour."""
+        """Return the camera with the noise of depth and colour multiplied by a factor."""
         brighter = LightConfig.noisier(self, factor)
         return replace(brighter, scale=factor * self.scale)
 
 
 def calibrations_of(cameras: Mapping[str, CameraConfig]) -> Mapping[str, Calibration]:
-    """Return the calibration of each camera by its name; cameras whose geometry has none are left out."""
+    """Return the calibration of each camera by its name, without cameras whose geometry has none."""
     found = {name: config.camera.calibration for name, config in cameras.items()}
     return {name: calibration for name, calibration in found.items() if calibration is not None}

@@ -1,4 +1,4 @@
-"""How sensors measure depth: by a pattern of light or by its time of flight, with their noise and holes."""
+"""Depth sensors: structured light and time of flight, with their noise and holes."""
 
 import math
 from dataclasses import replace
@@ -24,27 +24,27 @@ from peopleboy.sim.rendering.view import View
 Metres = NDArray[np.float32]
 Amplitude = NDArray[np.uint16]
 
-# Depth images, in millimetres: how they are stored, their points, and how people are shown them.
+# Depth images in millimetres: storage, points, and display.
 
 _BRIGHT_AMPLITUDE = 2500.0
 
 Millimetres = NDArray[np.uint16]
 
-_BRIGHT_M, _DARK_M, _DARK = 1.0, 12.0, 50  # how near is brightest, how far is darkest, and how bright that is
+_BRIGHT_M, _DARK_M, _DARK = 1.0, 12.0, 50  # [m] brightest and darkest depth, and the latter's brightness
 
 
 def to_millimetres(depth_m: Metres, config: DepthConfig) -> Millimetres:
-    """Encode (H, W) depths [m]: 0 for those outside the sensor's range, and for NaN and infinity."""
+    """Encode (H, W) depths [m] in millimetres; 0 outside the sensor's range, and for NaN and infinity."""
     is_read = (depth_m >= config.nearest_m) & (depth_m <= config.farthest_m)
     return np.where(is_read, np.rint(1000.0 * np.where(is_read, depth_m, 0.0)), 0.0).astype(np.uint16)
 
 
 def points_of(depth: Millimetres, camera: Pinhole, every: int) -> tuple[Metres, NDArray[np.int64]]:
-    """Find the points that every so-manieth pixel of every so-manieth row of a depth image stands for.
+    """Return the points of a depth image, from every n-th pixel of every n-th row.
 
     Returns:
-        (N, 3) [m] in the optical frame, x right, y down, z forward; and (N, 2) the row and the column of
-        each. Pixels where nothing is read have none.
+        (N, 3) [m] in the optical frame, x right, y down, z forward; and (N, 2) row and column of each.
+        Pixels without a reading have no point.
     """
     first = every // 2
     pixels = first + every * np.argwhere(depth[first::every, first::every])
@@ -54,22 +54,22 @@ def points_of(depth: Millimetres, camera: Pinhole, every: int) -> tuple[Metres, 
 
 
 def show_depth(depth: Millimetres) -> NDArray[np.uint8]:
-    """Turn an (H, W) depth image into an RGB one: the nearer the brighter, and black where nothing is read.
+    """Convert an (H, W) depth image to RGB: near is bright, far is dark, no reading is black.
 
-    A colour means a depth, whatever the sensor's range: brightest up to 1 m, darkest from 12 m on, and
-    as the logarithm goes between them.
+    A colour always means the same depth, whatever the sensor's range: brightest up to 1 m, darkest from 12 m
+    on, logarithmic in between.
     """
     return _SHADES[depth]
 
 
 def show_amplitude(amplitude: NDArray[np.uint16]) -> NDArray[np.uint8]:
-    """Turn an (H, W) amplitude image into a grey one: the root, white from that of a white wall at 2 m on."""
+    """Convert an (H, W) amplitude image to grey: its root, with a white wall at 2 m or nearer as white."""
     share = np.minimum(amplitude / np.float32(_BRIGHT_AMPLITUDE), 1.0)
     return np.rint(255.0 * np.sqrt(share)).astype(np.uint8)
 
 
 def _shades() -> NDArray[np.uint8]:
-    """(65536, 3) RGB of each depth [mm]."""
+    """Return the (65536, 3) RGB colour of each depth [mm]."""
     depth_m = np.maximum(np.arange(65536), 1) / 1000.0
     share = np.clip(np.log(depth_m / _BRIGHT_M) / math.log(_DARK_M / _BRIGHT_M), 0.0, 1.0)
     levels = np.rint(255.0 - (255.0 - _DARK) * share).astype(np.uint8)
@@ -84,16 +84,16 @@ _SHADES = _shades()
 # Structured light. Noise and steps of its disparity: Khoshelham & Oude Elberink 2012, Sensors 12:1437.
 DISPARITY_SD_PX: Final = 0.062
 DISPARITY_STEP_PX: Final = 0.125
-_PATCH_PX = 8  # over which half of the noise's variance is alike
-_REACH = 1.05  # of shadows, in disparities
-_SLACK_PX = 0.5  # within which light still falls beside an edge
+_PATCH_PX = 8  # size of patches that share half of the noise's variance
+_REACH = 1.05  # factor on the disparity range of shadows
+_SLACK_PX = 0.5  # light still reaches this far beside an edge
 
 # Time of flight.
-TOF_SD_M: Final = 0.005  # at 2 m, of a surface that is half white
-_FINER = 2  # rays of a pixel, in a row and in a column
+TOF_SD_M: Final = 0.005  # at 2 m, for a surface of reflectance 0.5
+_FINER = 2  # rays per pixel, along rows and columns
 _BLACKEST = 0.02
-AMPLITUDE_AT_1_M: Final = 10_000.0  # of a white surface; it falls with the square of the depth
-# Of one that makes the noise of depth what it is: c / (4 pi f) [m] a share of amplitude, at 15 MHz.
+AMPLITUDE_AT_1_M: Final = 10_000.0  # for a white surface; it falls with the square of the depth
+# Depth noise per relative amplitude noise: c / (4 pi f) [m] at 15 MHz.
 _METRES_A_SHARE = 299_792_458.0 / (4.0 * math.pi * 15e6)
 AMPLITUDE_SD: Final = AMPLITUDE_AT_1_M * TOF_SD_M * 0.5 / 2.0**2 / _METRES_A_SHARE
 
@@ -104,12 +104,12 @@ def hole_share(depth_m: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _hole_levels() -> NDArray[np.float32]:
-    """(1025,) level below which smooth noise makes a hole, by depths from 0 to 10 m."""
+    """Return (1025,) levels of smooth noise below which there is a hole, for depths from 0 to 10 m."""
     return np.asarray(ndtri(hole_share(np.linspace(0.0, 10.0, 1025))), np.float32)
 
 
 def _edge_moves() -> NDArray[np.int8]:
-    """(256,) [px] equally likely whole steps, of a Gaussian with a standard deviation of 0.6 px."""
+    """Return (256,) [px] equally likely integer steps of a Gaussian with a standard deviation of 0.6 px."""
     return np.asarray(np.rint(0.6 * ndtri((np.arange(256) + 0.5) / 256)), np.int8)
 
 
@@ -119,9 +119,9 @@ _LEVELS, _MOVES = _hole_levels(), _edge_moves()
 def structured_light(view: View, config: DepthConfig, rng: np.random.Generator) -> Millimetres:
     """Measure depth by the disparity of a projected pattern.
 
-    Noise and steps are in disparity, so that both grow with the square of the depth. Nothing is read where
-    the projector's light does not fall, which is to the right of what is near, and in patches, the more the
-    farther. Edges are frayed: at some pixels the surface beside them is read.
+    Noise and quantisation are in disparity, so that both grow with the square of the depth. There is no
+    reading where the projector's light does not fall, to the right of near objects, and in patches that grow
+    in number with depth. Edges are frayed: some pixels read the surface beside them.
 
     Source: Khoshelham & Oude Elberink 2012.
     """
@@ -135,7 +135,7 @@ def structured_light(view: View, config: DepthConfig, rng: np.random.Generator) 
 
 
 def skip_structured_light(camera: Pinhole, rng: np.random.Generator) -> None:
-    """Leave the generator as `structured_light` would."""
+    """Advance the generator as `structured_light` would."""
     shape = camera.height, camera.width
     skip_gaussian(shape, rng)
     skip_smooth_gaussian(shape, _PATCH_PX, rng)
@@ -152,7 +152,7 @@ def _draw(
 
 
 def _draw_moves(height: int, width: int, rng: np.random.Generator) -> NDArray[np.uint8]:
-    """(H, W, 2) random bytes."""
+    """Return (H, W, 2) random bytes."""
     words = rng.integers(0, 2**64, -(-height * width // 4), dtype=np.uint64)
     return words.astype("<u8", copy=False).view(np.uint8)[: 2 * height * width].reshape(height, width, 2)
 
@@ -198,15 +198,15 @@ def _from_disparity(
 
 
 def time_of_flight(fine: CameraView, config: DepthConfig, rng: np.random.Generator) -> Millimetres:
-    """Measure depth by how long light takes.
+    """Measure depth by time of flight.
 
     Noise grows with the square of the depth and the darkness of the surface. A pixel whose rays meet several
-    surfaces reads a depth between them, the nearer to one the more light that sends back.
+    surfaces reads a depth between them, weighted by the light that each returns.
 
     Args:
-        fine: what a camera of `rays_of` sees.
-        config: of the camera.
-        rng: of the noise.
+        fine: the view of a camera of `rays_of`.
+        config: settings of the camera.
+        rng: random generator of the noise.
     """
     camera, view = config.camera, fine.view
     matrices = part_from_pixel(rays_of(camera), fine.world_from_camera, fine.world_from_part)
@@ -216,10 +216,10 @@ def time_of_flight(fine: CameraView, config: DepthConfig, rng: np.random.Generat
 
 
 def amplitude_of(fine: CameraView, config: DepthConfig, rng: np.random.Generator) -> Amplitude:
-    """Measure how much of a time-of-flight sensor's own light comes back: grey that darkens with distance.
+    """Measure the returned light of a time-of-flight sensor, which falls with distance.
 
-    Arguments as of `time_of_flight`. Its noise is that of the depth: an error of the amplitude by a share
-    is one of the phase by as many radians, of which each is c / (4 pi f) of depth.
+    Arguments as of `time_of_flight`. Its noise corresponds to that of the depth: a relative error of the
+    amplitude is a phase error of as many radians, and each radian is c / (4 pi f) of depth.
 
     Returns:
         (H, W) uint16: 10000 for a white surface 1 m away.
@@ -232,7 +232,7 @@ def amplitude_of(fine: CameraView, config: DepthConfig, rng: np.random.Generator
 
 
 def draw_offsets(config: DepthConfig, rng: np.random.Generator) -> NDArray[np.int32]:
-    """(H, W) [mm] errors of pixels that stay, all equally likely up to the largest."""
+    """Return (H, W) [mm] fixed errors of pixels, uniform up to the largest."""
     largest = 1000.0 * config.offset_m
     return np.rint(rng.uniform(-largest, largest, (config.camera.height, config.camera.width))).astype(
         np.int32
@@ -240,7 +240,7 @@ def draw_offsets(config: DepthConfig, rng: np.random.Generator) -> NDArray[np.in
 
 
 def add_offsets(depth: Millimetres, offsets: NDArray[np.int32]) -> Millimetres:
-    """Add the errors that stay, where there is depth."""
+    """Add the fixed errors where there is a depth reading."""
     return np.where(depth > 0, np.clip(depth + offsets, 1, 65535), 0).astype(np.uint16)
 
 
@@ -269,7 +269,7 @@ def _light_of_rays(
 
 
 def rays_of(camera: Pinhole) -> Pinhole:
-    """The camera whose pixels are the rays that a pixel of time of flight takes the mean of."""
+    """Return the finer camera whose pixels are the rays that a time-of-flight pixel averages."""
     return replace(camera, width=_FINER * camera.width, height=_FINER * camera.height)
 
 

@@ -1,4 +1,4 @@
-"""The kinds of cameras: all that the rest of the project asks of one."""
+"""The kinds of cameras, the interface to the rest of the project."""
 
 import math
 import re
@@ -35,7 +35,7 @@ from peopleboy.sim.observation import OnDemand
 from peopleboy.sim.rendering.panoramic_renderer import PanoramicRenderer
 from peopleboy.sim.rendering.renderer import PINHOLE_RENDERER, Renderer
 
-# Depth cameras that there are, by name.
+# Real depth cameras, by name.
 
 _KINECT: Final = DepthConfig(camera=Pinhole(width=320, height=240, vertical_fov_rad=math.radians(43.0)))
 
@@ -57,11 +57,11 @@ DEPTH_PRESETS: Final[dict[str, DepthConfig]] = {
 }
 
 
-# Thermal cameras that there are, by name.
+# Real thermal cameras, by name.
 
-# As sold for cars and drones: a microbolometer behind a shutter and a fast lens, whose electronics even out
-# noise over time and in space, fill in dead pixels, and sharpen what is left, and with a gain that a low
-# plateau and its largest slope keep from making noise of walls.
+# As sold for cars and drones: a microbolometer behind a shutter and a fast lens, whose electronics reduce
+# temporal and spatial noise, fill in dead pixels and sharpen the rest; a low plateau and a limit on the slope
+# keep the gain from amplifying noise on walls.
 _UNCOOLED: Final = ThermalConfig(
     blur_px=0.8,
     gain="plateau",
@@ -82,13 +82,13 @@ _UNCOOLED: Final = ThermalConfig(
 
 THERMAL_PRESETS: Final[dict[str, ThermalConfig]] = {
     "uncooled": _UNCOOLED,
-    # The same recorded by way of a cheap film.
+    # The same, recorded as low-quality JPEG.
     "uncooled_film": replace(_UNCOOLED, jpeg_quality=75),
 }
 
 
 SCENE: Final = "_scene"
-"""Suffix of the image by which people are shown what a thermal camera sees."""
+"""Suffix of a thermal camera's image for display to people."""
 
 Stored = NDArray[np.uint8] | NDArray[np.uint16]
 
@@ -99,16 +99,16 @@ def _as_it_is(image: Image) -> Image:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Layer:
-    """One of the images that a camera gives at an instant.
+    """One of the images that a camera gives per frame.
 
     Attributes:
-        what: it holds, in words.
-        suffix: of its name, behind that of the camera.
-        folder: suffix of the folder that its files lie in, behind the name of the camera.
-        encode: gives what a PNG file can hold of it, without loss: (H, W) of 8 or 16 bits, or (H, W, 3) RGB.
-        show: gives what people are shown of it: (H, W) grey or (H, W, 3) RGB, of 8 bits.
-        source: suffix of the image that it is made from; None for one that the sensor gives itself.
-        make: gives it from that.
+        what: description of its content.
+        suffix: suffix of its name, after the name of the camera.
+        folder: suffix of the folder of its files, after the name of the camera.
+        encode: converts it without loss for a PNG file: (H, W) of 8 or 16 bits, or (H, W, 3) RGB.
+        show: converts it for display to people: (H, W) grey or (H, W, 3) RGB, of 8 bits.
+        source: suffix of the image that it is made from; None if the sensor gives it directly.
+        make: makes it from that image.
     """
 
     what: str = "8-bit, as the robot sees it"
@@ -121,7 +121,7 @@ class Layer:
 
 
 def _thermal_images(config: ThermalConfig) -> tuple[Layer, ...]:
-    """Grey as the robot sees it; temperatures; and a grey for people, made when a person asks for it."""
+    """Return the layers of a thermal camera: the robot's grey, temperatures, and grey for display."""
     if config.gain == "fixed":
         what = f"8-bit, {config.lowest_c:g}..{config.highest_c:g} degC, as the robot sees it"
     else:
@@ -130,7 +130,7 @@ def _thermal_images(config: ThermalConfig) -> tuple[Layer, ...]:
         Layer(what=what),
         Layer(what="16-bit, hundredths of a kelvin", suffix="_c", folder="16", encode=encode_16bit),
         Layer(
-            what="8-bit, greys shared out so that people see the whole scene, made from the temperatures",
+            what="8-bit, for display: greys equalised over the whole scene, made from the temperatures",
             suffix=SCENE,
             folder=SCENE,
             source="_c",
@@ -140,14 +140,14 @@ def _thermal_images(config: ThermalConfig) -> tuple[Layer, ...]:
 
 
 def _round_image(config: PanoramaConfig) -> tuple[Layer, ...]:
-    what = "8-bit colour, the round image that a panorama is unrolled from"
+    what = "8-bit colour, the round image from which the panorama is unrolled"
     return (Layer(what=what, suffix="_raw", folder="_raw"),) if config.raw else ()
 
 
 def _beside_depth(config: DepthConfig) -> tuple[Layer, ...]:
-    colour = Layer(what="8-bit colour, of the same pixels as the depth", suffix="_colour", folder="_colour")
+    colour = Layer(what="8-bit colour, registered with the depth", suffix="_colour", folder="_colour")
     amplitude = Layer(
-        what="16-bit, strength of the sensor's own light, 10000 for white 1 m away",
+        what="16-bit, amplitude of the sensor's own light, 10000 for white 1 m away",
         suffix="_amplitude",
         folder="_amplitude",
         show=show_amplitude,
@@ -160,18 +160,18 @@ class CameraKind:
     """A kind of camera.
 
     Attributes:
-        config: class of its settings, from which its keys in scenario files come.
-        what: it sees, in words.
-        presets: settings by name that may stand in for the usual ones.
-        presets_are: what each of them is like.
-        sensor: opens a camera by settings, name and seed; the name is that of its streams of noise, too.
-        renderer: draws what it sees, and outlines the boxes of the truth; by default that of a pinhole.
-        layers: its images; the first of all, without suffixes, is what controllers are shown.
-        more_layers: what cameras of some settings give besides.
-        shown: suffix of the image that people are shown.
-        channels: of that first image: 1 for (H, W), 3 for (H, W, 3) RGB.
-        dtype, unit: of that first image.
-        has_boxes: whether a box round a person makes sense in it.
+        config: class of its settings, which defines its keys in scenario files.
+        what: description of what it measures.
+        presets: named settings that can replace the defaults.
+        presets_are: description of the presets.
+        sensor: opens a camera from settings, name and seed; the name also selects its noise streams.
+        renderer: draws its view and the outlines for the truth's boxes; by default that of a pinhole.
+        layers: its images; the first one, without suffixes, is the observation of controllers.
+        more_layers: further images that depend on the settings.
+        shown: suffix of the image for display to people.
+        channels: channels of the first image: 1 for (H, W), 3 for (H, W, 3) RGB.
+        dtype, unit: type and unit of the first image.
+        has_boxes: whether bounding boxes of people make sense in it.
     """
 
     config: type[CameraConfig]
@@ -192,10 +192,10 @@ class CameraKind:
 KINDS: Final[dict[str, CameraKind]] = {
     "thermal": CameraKind(
         config=ThermalConfig,
-        what="temperature, in 8 bits and in hundredths of a kelvin",
+        what="thermal images, in 8 bits and in hundredths of a kelvin",
         presets=THERMAL_PRESETS,
-        presets_are="`uncooled`, with a plateau gain, sharpened edges, columns, warm corners, drift and a "
-        "shutter; `uncooled_film`, that by way of JPEG",
+        presets_are="`uncooled`, with a plateau gain, sharpened edges, column noise, warm corners, drift and "
+        "a shutter; `uncooled_film`, the same with JPEG compression",
         sensor=ThermalSensor,
         layers=(),
         more_layers=_thermal_images,
@@ -219,12 +219,12 @@ KINDS: Final[dict[str, CameraKind]] = {
     ),
     "depth": CameraKind(
         config=DepthConfig,
-        what="depth and colour",
+        what="depth and visible light",
         presets=DEPTH_PRESETS,
         presets_are="`tof`, 176x144 by time of flight, pitched down by 12 degrees, with amplitude instead of "
-        "colour; `kinect`, 320x240; `kinect_rough`, that with four times the noise",
+        "colour; `kinect`, 320x240; `kinect_rough`, the same with four times the noise",
         sensor=DepthSensor,
-        layers=(Layer(what="16-bit, depth in millimetres, 0 where none is read", show=show_depth),),
+        layers=(Layer(what="16-bit, depth in millimetres, 0 for no reading", show=show_depth),),
         more_layers=_beside_depth,
         dtype=np.uint16,
         unit="mm",
@@ -233,14 +233,14 @@ KINDS: Final[dict[str, CameraKind]] = {
 
 
 def configure_camera(given: Mapping[str, Any], control_hz: int) -> CameraConfig:
-    """Return the settings of a camera: those of its preset or usual for its kind, but for what is given.
+    """Return the settings of a camera: given values over those of its preset or its kind's defaults.
 
     Args:
-        given: `kind`, and perhaps `preset`; values by the keys of the settings and of the geometry.
+        given: `kind`, optionally `preset`, and values by the keys of the settings and of the geometry.
         control_hz: [Hz] the control rate, which the camera's own must divide.
 
     Raises:
-        BadInput: with the key of a value that does not fit the others.
+        BadInput: a value does not fit the others; with its key.
     """
     kind = KINDS[given["kind"]]
     usual = kind.presets[given["preset"]] if "preset" in given else kind.config()
@@ -249,13 +249,13 @@ def configure_camera(given: Mapping[str, Any], control_hz: int) -> CameraConfig:
 
 
 def kind_of(config: CameraConfig) -> CameraKind:
-    """Find the kind of a camera by its settings.
+    """Return the kind of a camera by its settings.
 
     Raises:
-        BadInput: there is none of that name.
+        BadInput: the kind is unknown.
     """
     if config.kind not in KINDS:
-        raise BadInput(f"camera kind {config.kind!r}: there is none; choose from {', '.join(KINDS)}")
+        raise BadInput(f"unknown camera kind {config.kind!r}; choose from {', '.join(KINDS)}")
     return KINDS[config.kind]
 
 
@@ -263,29 +263,29 @@ def flat_geometry(cameras: Mapping[str, CameraConfig], name: str) -> Pinhole:
     """Return the geometry of a camera whose image must be flat.
 
     Raises:
-        BadInput: there is none of that name, or it is no pinhole camera.
+        BadInput: the camera is missing or is not a pinhole camera.
     """
     geometry = cameras[name].camera if name in cameras else None
     if not isinstance(geometry, Pinhole):
-        raise BadInput(f"camera {name!r}: there must be one of that name, with the image of a pinhole")
+        raise BadInput(f"camera {name!r}: a pinhole camera of that name is required")
     return geometry
 
 
 def layers_of(config: CameraConfig) -> tuple[Layer, ...]:
-    """Return which images a camera of these settings gives at an instant."""
+    """Return the layers of the images that a camera with these settings gives per frame."""
     kind = kind_of(config)
     return (*kind.layers, *kind.more_layers(config))
 
 
 def shown_to_people(images: Mapping[str, Image], name: str, config: CameraConfig) -> NDArray[np.uint8]:
-    """Return what people are shown of a camera's images: (H, W) grey or (H, W, 3) RGB, of 8 bits."""
+    """Return a camera's image for display to people: (H, W) grey or (H, W, 3) RGB, of 8 bits."""
     suffix = kind_of(config).shown
     layer = next(layer for layer in layers_of(config) if layer.suffix == suffix)
     return layer.show(images[f"{name}{suffix}"])
 
 
 def name_images(name: str, config: CameraConfig, taken: Sequence[Image]) -> Mapping[str, Image]:
-    """Name the images that a sensor gives, and beside them those made from them when first asked for."""
+    """Return a sensor's images by name, with derived ones that are made on first access."""
     layers = {f"{name}{layer.suffix}": layer for layer in layers_of(config)}
     own = [image for image, layer in layers.items() if layer.source is None]
     given = dict(zip(own, taken, strict=True))
@@ -293,19 +293,19 @@ def name_images(name: str, config: CameraConfig, taken: Sequence[Image]) -> Mapp
 
 
 def image_names(name: str, config: CameraConfig) -> tuple[str, ...]:
-    """Name the images that a camera gives, such as thermal and thermal_c."""
+    """Return the names of a camera's images, such as thermal and thermal_c."""
     return tuple(f"{name}{layer.suffix}" for layer in layers_of(config))
 
 
 def image_folders(cameras: Mapping[str, CameraConfig]) -> Iterator[tuple[str, str, Layer]]:
-    """Yield folder, name and layer of every image that cameras give."""
+    """Yield folder, name and layer of every image of the cameras."""
     for name, config in cameras.items():
         for layer in layers_of(config):
             yield f"{name}{layer.folder}", f"{name}{layer.suffix}", layer
 
 
 def with_boxes(cameras: Mapping[str, CameraConfig]) -> tuple[str, ...]:
-    """Name the cameras in whose images boxes make sense."""
+    """Return the names of the cameras in whose images bounding boxes make sense."""
     return tuple(name for name, config in cameras.items() if kind_of(config).has_boxes)
 
 
@@ -313,7 +313,7 @@ def check_rate(rate_hz: int | None, control_hz: int) -> None:
     """Refuse a camera's rate that does not divide the control rate.
 
     Raises:
-        BadInput: about the key rate_hz.
+        BadInput: the rate does not divide the control rate; with the key rate_hz.
     """
     if rate_hz is not None and (rate_hz < 1 or control_hz % rate_hz):
         fits = [str(rate) for rate in range(1, control_hz + 1) if control_hz % rate == 0]
@@ -324,30 +324,30 @@ def check_rate(rate_hz: int | None, control_hz: int) -> None:
 
 
 def check_cameras(cameras: Mapping[str, CameraConfig]) -> None:
-    """Refuse cameras that are not distinguished by the names of their images and folders.
+    """Refuse cameras whose images or folders have the same names, and rigs without a thermal camera.
 
     Raises:
-        BadInput: a name is none or taken, or there is no thermal camera.
+        BadInput: a name is invalid or taken, or there is no thermal camera.
     """
     if not isinstance(cameras.get("thermal"), ThermalConfig):
-        raise BadInput("cameras: there must be one of the name and kind 'thermal', by which people count")
+        raise BadInput("cameras: a camera of name and kind 'thermal' is required to count people")
     for name in cameras:
         if re.fullmatch("[a-z][a-z0-9_]{0,39}", name) is None:
-            raise BadInput(f"camera {name!r}: is not a name: use small letters, digits and _, a letter first")
+            raise BadInput(f"camera {name!r}: invalid name; use small letters, digits and _, a letter first")
     folders, images = zip(*((folder, image) for folder, image, _ in image_folders(cameras)), strict=True)
     for names in (folders, images):
         for taken in (name for name in cameras if names.count(name) > 1):
-            raise BadInput(f"camera {taken!r}: another camera gives images of that name; choose another")
+            raise BadInput(f"camera {taken!r}: another camera has images of that name; choose another")
 
 
-# From pixels of one camera to pixels of the other, for things at one depth.
+# Map from pixels of one camera to pixels of another, for objects at one depth.
 
 
 def affine_between(thermal: Pinhole, colour: Pinhole, depth_m: float) -> Matrix:
-    """Find the (2, 3) map of thermal pixels u, v, 1 to colour pixels, for things at a depth.
+    """Return the (2, 3) map of thermal pixels u, v, 1 to colour pixels, for objects at a depth.
 
-    The depth is that along the thermal camera's axis. The map is exact where the optical axes are parallel,
-    as they are by default; where they are not, it is the best fit, in least squares, over the thermal image.
+    The depth is along the thermal camera's axis. The map is exact where the optical axes are parallel,
+    as they are by default; otherwise it is the least-squares fit over the thermal image.
 
     Source: thesis, equation 6.1, which fixes the map by hand; here it follows from the cameras.
 
@@ -364,24 +364,24 @@ def affine_between(thermal: Pinhole, colour: Pinhole, depth_m: float) -> Matrix:
     seen = colour.project(transform(colour_from_thermal, points))
     if not np.isfinite(seen).all():
         raise BadInput(f"the colour camera does not see the plane {depth_m} m before the thermal camera")
-    # Least squares, as projections: columns and rows of a grid about its middle are orthogonal.
+    # Least squares reduce to projections: columns and rows of a centred grid are orthogonal.
     middle, away = pixels.mean(axis=0), pixels - pixels.mean(axis=0)
     slopes = [(away[:, axis, None] * seen).sum(axis=0) / np.square(away[:, axis]).sum() for axis in (0, 1)]
     offset = seen.mean(axis=0) - slopes[0] * middle[0] - slopes[1] * middle[1]
     return np.stack([*slopes, offset], axis=1)
 
 
-# Where things of the thermal image are in the colour image.
+# Positions of thermal pixels in the colour image.
 
-# A track has no depth: its box is mapped as if the person were so far away.
+# [m] a track has no depth: its box is mapped for a person at this distance
 _TYPICAL_DEPTH_M: Final = 4.0
 
 
 def colour_from_thermal(cameras: Mapping[str, CameraConfig]) -> Matrix:
-    """Find the (2, 3) map of pixels of `thermal` to those of `colour`, for people at a typical distance.
+    """Return the (2, 3) map of pixels of `thermal` to those of `colour`, for people at a typical distance.
 
     Raises:
-        BadInput: one is missing or not flat, or the colour camera does not see what the thermal one sees.
+        BadInput: a camera is missing or not a pinhole, or their fields of view do not overlap.
     """
     thermal, colour = (flat_geometry(cameras, name) for name in ("thermal", "colour"))
     return affine_between(thermal, colour, _TYPICAL_DEPTH_M)

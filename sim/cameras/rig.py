@@ -1,4 +1,4 @@
-"""All cameras of a robot at work: which are due at an instant, and images that are made when asked for."""
+"""All cameras of a robot: which are due at an instant, and images that are rendered on demand."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -14,15 +14,15 @@ from peopleboy.sim.observation import OnDemand
 class Rig:
     """Takes the images of a robot's cameras.
 
-    A camera's noise is its own, and that of an image that nobody asks for goes by; a camera that remembers
-    takes all of its images at once. What an image holds depends therefore neither on the other cameras nor
-    on which images were asked for before.
+    Each camera has its own noise streams, and the noise of unread images is skipped; a camera whose images
+    depend on earlier ones renders every image at once. The content of an image therefore depends neither on
+    the other cameras nor on which images were read before.
 
     Args:
-        cameras: settings by name.
-        control_hz: [Hz] of instants.
-        seed: of all noise.
-        look: gives what a camera of some settings sees now.
+        cameras: settings of the cameras by name.
+        control_hz: [Hz] control rate.
+        seed: seed of all noise.
+        look: returns the current view of a camera with the given settings.
     """
 
     def __init__(
@@ -39,16 +39,16 @@ class Rig:
         self._reading = 0
 
     def due(self, tick: int) -> tuple[str, ...]:
-        """Name the cameras that take an image at an instant, counted in control steps."""
+        """Return the names of the cameras that take an image at an instant, counted in control steps."""
         return tuple(name for name, every in self._every.items() if tick % every == 0)
 
     def read(self, tick: int) -> Mapping[str, Image]:
-        """Return the images of the cameras that are due, each made when first asked for, until the next call.
+        """Return the images of the cameras that are due, rendered on first access until the next call.
 
-        One of a camera that remembers is made now.
+        Cameras whose images depend on earlier ones render at once.
 
         Raises:
-            BadInput: when one is asked for later.
+            BadInput: an image is read after the next call.
         """
         due = self.expect(tick)
         shots = OnDemand(due, partial(self._shoot, self._reading))
@@ -59,7 +59,7 @@ class Rig:
         return OnDemand(owner, lambda image: shots[owner[image]][image])
 
     def expect(self, tick: int) -> tuple[str, ...]:
-        """Name the cameras that are due, of which a person may take the image until the next call."""
+        """Return the names of the due cameras, whose sensors can be taken over until the next call."""
         self.forget()
         due = self.due(tick)
         for name in due:
@@ -67,7 +67,7 @@ class Rig:
         return due
 
     def take_over(self, name: str) -> Sensor:
-        """Return the sensor of a camera to who takes its image of this instant now."""
+        """Return the sensor of a camera, for a caller that renders its image of this instant."""
         sensor = self._sensors[name]
         for _ in range(self._unread[name] - 1):
             sensor.skip()
@@ -75,13 +75,13 @@ class Rig:
         return sensor
 
     def forget(self) -> None:
-        """Let nobody ask any more for images of the last reading."""
+        """Invalidate the images of the last reading."""
         self._reading += 1
 
     def _shoot(self, reading: int, name: str) -> Mapping[str, Image]:
         if reading != self._reading:
             raise BadInput(
-                f"camera {name!r}: the image of an instant that is over was not asked for while it lasted; "
+                f"camera {name!r}: the image of an earlier instant was not read in time; "
                 "read it before the next step or observation"
             )
         config = self._cameras[name]

@@ -1,4 +1,4 @@
-"""Cameras at work: from what one sees at an instant to its images, noise included."""
+"""Sensors: from a camera's view at an instant to its images, including noise."""
 
 from dataclasses import replace
 from typing import Any, Protocol
@@ -29,24 +29,24 @@ Image = NDArray[Any]
 
 
 class Sensor(Protocol):
-    """One camera with its own streams of noise."""
+    """One camera with its own noise streams."""
 
     def take(self, seen: CameraView) -> tuple[Image, ...]:
         """Take the images of an instant, one for each layer of the camera's kind."""
         ...
 
     def skip(self) -> None:
-        """Let the noise of an image go by that nobody has asked for."""
+        """Skip the noise of an image that is not read."""
         ...
 
 
 class ThermalSensor:
-    """Gives 8-bit grey, and the same in float32 [degC] before it is encoded.
+    """Thermal camera: 8-bit grey, and float32 [degC] before the encoding.
 
-    While the shutter is closed, it gives the last images again. Drift and shutter go by the time.
+    While the shutter is closed it repeats the last images. Drift and shutter depend on time.
 
     Attributes:
-        detector: what it does wrong in the same way all through a run.
+        detector: its fixed errors throughout a run.
     """
 
     def __init__(self, config: ThermalConfig, name: str, seed: int) -> None:
@@ -58,7 +58,7 @@ class ThermalSensor:
         self._last: tuple[Image, ...] = ()
 
     def draw_noise(self) -> NDArray[np.uint64]:
-        """Random words of the noise of one image."""
+        """Return random words for the noise of one image."""
         return random_words(self.detector.dead.shape, self._noise)
 
     def take(self, seen: CameraView) -> tuple[Image, ...]:
@@ -69,11 +69,11 @@ class ThermalSensor:
         return self._last
 
     def skip(self) -> None:
-        """Let the noise of an image go by."""
+        """Skip the noise of an image."""
         skip_gaussian(self.detector.dead.shape, self._noise)
 
     def _read_out(self, seen: CameraView) -> NDArray[np.float32]:
-        """Return what the detector makes of the scene [degC]."""
+        """Return the scene with the detector's errors [degC]."""
         config = self._config
         apparent = surface_image(seen, config)
         return detect(apparent, self.detector, config, self._noise, self._drift.offset_k(seen.time_s))
@@ -85,14 +85,14 @@ class ThermalSensor:
 
 
 class ColourSensor:
-    """Gives 8-bit sRGB."""
+    """Colour camera: 8-bit sRGB."""
 
     def __init__(self, config: ColourConfig, name: str, seed: int) -> None:
         self._config = config
         self._noise = stream(seed, f"{name}.noise")
 
     def draw_noise(self) -> NDArray[np.uint64]:
-        """Random words of the noise of one image."""
+        """Return random words for the noise of one image."""
         camera = self._config.camera
         return random_words((camera.height, camera.width, 3), self._noise)
 
@@ -101,12 +101,12 @@ class ColourSensor:
         return (expose(colour_image(seen, self._config), self._config, self._noise),)
 
     def skip(self) -> None:
-        """Let the noise of an image go by."""
+        """Skip the noise of an image."""
         skip_gaussian((self._config.camera.height, self._config.camera.width, 3), self._noise)
 
 
 class PanoramaSensor:
-    """Gives an 8-bit sRGB panorama; on request it is unrolled from the lens's round image, given as well."""
+    """Panoramic camera: an 8-bit sRGB panorama, optionally unrolled from the lens's round image."""
 
     def __init__(self, config: PanoramaConfig, name: str, seed: int) -> None:
         self._config = config
@@ -123,14 +123,14 @@ class PanoramaSensor:
         return unroll(raw, camera), raw
 
     def skip(self) -> None:
-        """Let the noise of an image go by."""
+        """Skip the noise of an image."""
         height = self._config.camera.height
         size = (2 * height, 2 * height) if self._config.raw else (height, self._config.camera.width)
         skip_gaussian((*size, 3), self._noise)
 
 
 class DepthSensor:
-    """Gives depth in millimetres; on request 8-bit sRGB, and amplitude, of the same pixels."""
+    """Depth camera: depth in millimetres, optionally 8-bit sRGB and amplitude of the same pixels."""
 
     def __init__(self, config: DepthConfig, name: str, seed: int) -> None:
         self._config = config
@@ -150,7 +150,7 @@ class DepthSensor:
         )
 
     def skip(self) -> None:
-        """Let the noise of an image go by."""
+        """Skip the noise of an image."""
         config, shape = self._config, (self._config.camera.height, self._config.camera.width)
         if config.scale > 0.0 and config.sensor == "kinect":
             skip_structured_light(config.camera, self._noise)
@@ -162,7 +162,7 @@ class DepthSensor:
             skip_gaussian(shape, self._amplitude_noise)
 
     def _measure(self, seen: CameraView) -> tuple[Image, Image | None]:
-        """Depth, and amplitude if it is wanted."""
+        """Return depth, and amplitude if it is enabled."""
         config, is_exact = self._config, self._config.scale == 0.0
         if config.sensor == "kinect" and not is_exact:
             return structured_light(seen.view, config, self._noise), None

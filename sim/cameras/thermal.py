@@ -1,8 +1,8 @@
-"""The thermal image: from surface temperatures to the grey picture that a robot gets.
+"""The thermal image: from surface temperatures to the robot's grey image.
 
 Temperature of each surface point -> band radiance, with emissivity and mirrored surroundings -> optics and
 rotation blur -> apparent temperature -> detector noise -> 16 bit at 10 mK.
-Grey of 8 bits is what `electronics.gain` makes of it.
+`electronics.Gain` makes 8-bit grey of it.
 """
 
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.materials import TEXEL_STEP
 
-_CONTRAST = 2.0  # [W / (m2 sr)] about three kelvin: behind the blur fainter edges show no stairs
+_CONTRAST = 2.0  # [W / (m2 sr)] about three kelvin: the blur hides the aliasing of fainter edges
 LOWEST_C, HIGHEST_C, _STEP_K = -40.0, 160.0, 0.05
 
 
@@ -51,7 +51,7 @@ def band_radiance(temperature_c: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _tables() -> tuple[NDArray[np.float64], NDArray[np.float64], float, float]:
-    """Return radiance by temperature, temperature by radiance, and the span of that radiance."""
+    """Return tables of radiance over temperature and temperature over radiance, and the radiance's span."""
     temperature = np.arange(LOWEST_C, HIGHEST_C + _STEP_K, _STEP_K)
     radiance = band_radiance(temperature)
     grid = np.linspace(radiance[0], radiance[-1], 16384)
@@ -65,7 +65,7 @@ _MIDDLE_C, _HALF_K = (LOWEST_C + HIGHEST_C) / 2.0, (HIGHEST_C - LOWEST_C) / 2.0
 
 
 def _polynomial() -> list[np.float32]:
-    """Coefficients of radiance by the temperature, as -1..1 between the coldest and the hottest."""
+    """Return coefficients of radiance over the temperature, scaled to -1..1 from coldest to hottest."""
     x = np.linspace(-1.0, 1.0, len(RADIANCE))
     fitted = np.polynomial.Chebyshev.fit(x, RADIANCE, 6).convert(kind=np.polynomial.Polynomial)
     return [np.float32(value) for value in fitted.coef]
@@ -76,7 +76,7 @@ _B0, _B1, _B2, _B3, _B4, _B5, _B6 = _polynomial()
 
 @lru_cache(maxsize=16)
 def mirrored(surroundings_c: float) -> float:
-    """Band radiance of the surroundings, the same in every image of a run."""
+    """Return the band radiance of the surroundings, the same in every image of a run."""
     return float(band_radiance(np.array([surroundings_c]))[0])
 
 
@@ -95,7 +95,7 @@ def _look_up(table: NDArray[np.float64], low: float, high: float, value: float) 
 
 @njit(cache=True, fastmath=True, forceinline=True)
 def _vary_run(warmer_k: NDArray[np.float32], run: PixelRun, materials: MaterialTable) -> None:
-    """Add what variation and pattern of a part add [K] to pixels of it among (W,)."""
+    """Add the variation and pattern of a part [K] to its pixels in a row (W,)."""
     first, end, p, v, depths, matrices = run
     thermal, phase = materials.thermal, materials.phase
     kind, period = materials.kind, materials.period
@@ -161,7 +161,7 @@ def radiance_image(
     surroundings: float,
     span: tuple[float, float],
 ) -> NDArray[np.float32]:
-    """Form the image (H, W) of radiance of a `View`, whose parts look as a `MaterialTable` says.
+    """Form the radiance image (H, W) of a `View` with the materials of a `MaterialTable`.
 
     The matrices are those of `part_from_pixel`; the table has the radiance over a span [degC], evenly; the
     surroundings are given by their radiance.
@@ -226,7 +226,7 @@ def _radiate_plain_row(
 
 @njit(cache=True, fastmath=True)
 def to_apparent_c(radiance: NDArray[np.float32], table: NDArray[np.float64], low: float, high: float) -> None:
-    """Replace radiance by the temperature of a black body that gives as much, in place."""
+    """Replace radiance by the temperature of a black body of that radiance, in place."""
     flat = radiance.reshape(-1)
     for i in range(flat.shape[0]):
         flat[i] = _look_up(table, low, high, float(flat[i]))
@@ -234,12 +234,12 @@ def to_apparent_c(radiance: NDArray[np.float32], table: NDArray[np.float64], low
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Detector:
-    """What one detector does wrong in the same way all through a run.
+    """Fixed errors of one detector throughout a run.
 
     Attributes:
         offset_k: (H, W) [K] fixed-pattern offsets.
         dead: (H, W) whether a pixel is dead.
-        dead_c: [degC] what a dead pixel reads.
+        dead_c: [degC] reading of a dead pixel.
     """
 
     offset_k: NDArray[np.float32]
@@ -248,7 +248,7 @@ class Detector:
 
 
 def make_detector(config: ThermalConfig, rng: np.random.Generator) -> Detector:
-    """Draw the detector of one run."""
+    """Draw the fixed errors of the detector of one run."""
     shape = (config.camera.height, config.camera.width)
     offset = rng.standard_normal(shape, np.float32) * np.float32(config.fixed_pattern_k)
     if config.vignetting_k > 0.0:
@@ -257,13 +257,13 @@ def make_detector(config: ThermalConfig, rng: np.random.Generator) -> Detector:
 
 
 def _corners(config: ThermalConfig) -> NDArray[np.float32]:
-    """(H, W) [K] what the lens's warm housing adds, which rises with the square of the way to the corners."""
+    """Return (H, W) [K] the effect of the warm lens housing, quadratic in the distance to the corners."""
     v, u = (np.linspace(-1.0, 1.0, size) for size in (config.camera.height, config.camera.width))
     return np.asarray(config.vignetting_k * (v[:, None] ** 2 + u**2) / 2.0, np.float32)
 
 
 def surface_image(seen: CameraView, config: ThermalConfig) -> NDArray[np.float32]:
-    """Form the noise-free image (H, W) of apparent temperature [degC], by a camera and its optics.
+    """Form the noise-free image (H, W) of apparent temperature [degC] of a camera and its optics.
 
     A surface of emissivity e at temperature T sends e B(T) + (1 - e) B(surroundings), B being the radiance of
     a black body; blur acts on that radiance. In a world of one temperature the image has one value.

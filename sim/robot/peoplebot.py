@@ -1,4 +1,4 @@
-"""The robot: wheels that drive it, encoders that count, and a ring of sonars."""
+"""The robot: differential drive, wheel encoders, and a ring of sonars."""
 
 import math
 from typing import NamedTuple
@@ -29,7 +29,7 @@ _MOTOR_TORQUE_NM = 4.0
 
 
 def limit_command(linear: float, angular: float, limits: DriveConfig) -> tuple[float, float]:
-    """Clip a velocity command [m/s, rad/s] to what the robot can do."""
+    """Clip a velocity command [m/s, rad/s] to the robot's limits."""
     return (
         min(max(linear, -limits.max_linear_m_s), limits.max_linear_m_s),
         min(max(angular, -limits.max_angular_rad_s), limits.max_angular_rad_s),
@@ -37,12 +37,12 @@ def limit_command(linear: float, angular: float, limits: DriveConfig) -> tuple[f
 
 
 class Gears(NamedTuple):
-    """What a robot's wheels are to do and have done; with worlds first, those of many robots.
+    """State of a robot's drive; with a leading axis of worlds, of many robots.
 
     Attributes:
-        command, target: (2,) [m/s, rad/s] speeds now, and those to be reached.
-        rise: (2,) [m/s2, rad/s2] at which they are.
-        turned: (2,) [rad] wheel angles as the odometry knows them.
+        command, target: (2,) [m/s, rad/s] current and target speeds.
+        rise: (2,) [m/s2, rad/s2] rates at which they approach the target.
+        turned: (2,) [rad] wheel angles at the last odometry update.
         odometry: (3,) x, y [m], heading [rad].
     """
 
@@ -56,12 +56,12 @@ class Gears(NamedTuple):
 class PeopleBot:
     """A differential-drive robot moved by its wheels alone.
 
-    Its wheels turn at controlled speeds and its acceleration is limited; grip, bumps and walls are left to
-    the physics engine. Odometry integrates what the encoders count, noise included, from the start pose.
+    Its wheels turn at controlled speeds and its acceleration is limited; grip, bumps and walls are simulated
+    by the physics engine. Odometry integrates the noisy encoder counts from the start pose.
 
     Attributes:
-        gears: what its wheels are to do and have done.
-        limits: what it can do.
+        gears: state of its drive.
+        limits: its limits of speed and acceleration.
         ring: its sonars.
     """
 
@@ -87,9 +87,9 @@ class PeopleBot:
         self.gears.turned[:] = self._wheel_angles()
 
     def command(self, linear: float, angular: float, *, is_emergency: bool = False) -> None:
-        """Ask for a velocity [m/s, rad/s], clipped to the robot's limits; it is approached, not jumped to.
+        """Set the target velocity [m/s, rad/s], clipped to the robot's limits; acceleration is limited.
 
-        In an emergency the speeds fall at their own, higher rates.
+        In an emergency the speeds fall at higher rates.
 
         Raises:
             BadInput: the command is not finite.
@@ -106,22 +106,22 @@ class PeopleBot:
             self._turn_wheels()
 
     def update_odometry(self) -> None:
-        """Integrate what the wheel encoders counted since the last call, with their noise."""
+        """Integrate the noisy counts of the wheel encoders since the last call."""
         noise = np.empty(2)
         self.draw_noise(noise)
         count_travel(self.gears, self._wheel_angles(), noise * self.limits.encoder_noise_m)
 
     def draw_noise(self, noise: NDArray[np.float64]) -> None:
-        """Fill (2,) with standard normal noise, of which the encoders' is made in the next control step."""
+        """Fill (2,) with standard normal noise for the encoders in the next control step."""
         self._encoder_noise.standard_normal(out=noise)
 
     def rebind(self, gears: Gears) -> None:
-        """Keep all that in other arrays from now on, which hold the same already."""
+        """Use other arrays for the state from now on; they must hold the same values already."""
         self.gears = gears
 
     @property
     def odometry(self) -> Pose2:
-        """Pose that the wheels' encoders add up to, world frame, exact at the start."""
+        """Pose integrated from the wheel encoders, world frame, exact at the start."""
         return Pose2(*self.gears.odometry.tolist())
 
     def sonar(self) -> NDArray[np.float64]:
@@ -129,7 +129,7 @@ class PeopleBot:
         return self.ring.read(self.world_from_robot())
 
     def wheel_speeds(self) -> tuple[float, float]:
-        """Rim speeds [m/s] of the left and the right wheel, as they turn."""
+        """Measured rim speeds [m/s] of the left and the right wheel."""
         _, speeds = self._physics.joint_states(NAME, _JOINTS)
         return float(speeds[0] * WHEEL_RADIUS_M), float(speeds[1] * WHEEL_RADIUS_M)
 
@@ -143,7 +143,7 @@ class PeopleBot:
         return Pose2(float(matrix[0, 3]), float(matrix[1, 3]), math.atan2(matrix[1, 0], matrix[0, 0]))
 
     def gap_to(self, x: float, y: float) -> float:
-        """Distance [m] on the floor between its outline and a point, world frame; 0 inside."""
+        """Return the distance [m] on the floor between its outline and a point, world frame; 0 inside."""
         return outline_gap(self.pose(), (x, y))
 
     def velocity(self) -> tuple[float, float]:
@@ -156,7 +156,7 @@ class PeopleBot:
         return self._physics.touching(NAME)
 
     def _turn_wheels(self) -> None:
-        """Set the motors to the speeds that give the present command."""
+        """Set the motor speeds for the current command."""
         speeds = [speed / WHEEL_RADIUS_M for speed in wheel_speeds(*self.gears.command.tolist())]
         self._physics.set_joint_speeds(NAME, dict(zip(_JOINTS, speeds, strict=True)), _MOTOR_TORQUE_NM)
 
@@ -167,7 +167,7 @@ class PeopleBot:
 
 @njit(cache=True, nogil=True)
 def approach_target(gears: Gears, dt_s: float) -> bool:
-    """Move the speeds of one robot towards those to be reached, and return whether they have changed."""
+    """Move the speeds of one robot towards their targets, and return whether they have changed."""
     command, target, rise = gears.command, gears.target, gears.rise
     if command[0] == target[0] and command[1] == target[1]:
         return False
@@ -182,9 +182,9 @@ def count_travel(gears: Gears, angles: NDArray[np.float64], noise_m: NDArray[np.
     """Integrate the odometry of one robot.
 
     Args:
-        gears: of the robot.
-        angles: (2,) [rad] of its wheels now.
-        noise_m: (2,) [m/sqrt(m)] of its encoders.
+        gears: state of the robot's drive.
+        angles: (2,) [rad] current angles of its wheels.
+        noise_m: (2,) [m/sqrt(m)] noise of its encoders.
     """
     rims = np.empty(2)
     for k in range(2):

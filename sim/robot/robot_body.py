@@ -13,8 +13,8 @@ URDF = Path(__file__).with_name("peoplebot.urdf")
 
 WHEEL_RADIUS_M = 0.0825
 WHEEL_DISTANCE_M = 0.333
-RADIUS_M = 0.355  # of the circle about the middle between the wheels in which the robot turns on the spot
-# The body's rear and front ends and its half width [m], about the same middle.
+RADIUS_M = 0.355  # radius about the point between the wheels that the robot needs to turn on the spot
+# The body's rear and front ends and its half width [m], relative to the same point.
 _REAR_M, _FRONT_M, _HALF_WIDTH_M = -0.30, 0.21, 0.19
 
 
@@ -25,7 +25,7 @@ def wheel_speeds(linear: float, angular: float) -> tuple[float, float]:
 
 
 def outline_gap(pose: Pose2, point_m: tuple[float, float]) -> float:
-    """Distance [m] on the floor between the outline of a robot at a pose and a point; 0 inside."""
+    """Return the distance [m] on the floor between a robot's outline at a pose and a point; 0 inside."""
     ahead, aside = pose.to_local(point_m)
     return math.hypot(max(_REAR_M - ahead, ahead - _FRONT_M, 0.0), max(abs(aside) - _HALF_WIDTH_M, 0.0))
 

@@ -1,4 +1,4 @@
-"""The settings of the robot: its start, its drive, its sonars, and the cameras that it carries."""
+"""The settings of the robot: start pose, drive, sonars and cameras."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -17,7 +17,7 @@ V = TypeVar("V")
 
 
 class Named(Mapping[str, V]):
-    """Values by name, in their order; unlike a `MappingProxyType` it can be sent to other processes."""
+    """Immutable mapping of named values, in order; unlike a `MappingProxyType` it can be pickled."""
 
     __slots__ = ("_values",)
 
@@ -49,16 +49,14 @@ class SonarConfig:
 
     nearest_m: Annotated[float, Field(ge=0.0, description="shortest distance that a sonar reads")] = 0.15
     farthest_m: Annotated[
-        float, Field(gt=0.0, description="longest distance; a sonar with nothing in its range reads this one")
+        float, Field(gt=0.0, description="longest distance, and the reading without an object in range")
     ] = 5.0
     cone_rad: Annotated[
         float, IN_DEGREES, Field(gt=0.0, le=90.0, description="full opening angle of a sonar's beam")
     ] = math.radians(15.0)
     noise_m: Annotated[float, Field(ge=0.0, description="standard deviation of a reading")] = 0.01
-    drop_out: Annotated[Share, Field(description="share of readings that are lost and read farthest_m")] = (
-        0.01
-    )
-    height_m: Annotated[float, Field(ge=0.0, description="of the ring above the floor")] = 0.25
+    drop_out: Annotated[Share, Field(description="share of lost readings, which read farthest_m")] = 0.01
+    height_m: Annotated[float, Field(ge=0.0, description="height of the ring above the floor")] = 0.25
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,7 +73,7 @@ class DriveConfig:
     angular_acceleration_rad_s2: Annotated[
         float, Field(gt=0.0, description="rate at which the turn rate changes [rad/s2]")
     ] = math.radians(200.0)
-    # The robot is tall and has its castor behind: it lifts its tail when it brakes harder than this.
+    # The robot is tall and has its castor at the rear: harder braking lifts its rear.
     emergency_m_s2: Annotated[
         float, Field(gt=0.0, description="rate at which the forward speed falls in an emergency stop [m/s2]")
     ] = 2.2
@@ -86,14 +84,14 @@ class DriveConfig:
         float,
         Field(
             ge=0.0,
-            description="standard deviation of the distance that a wheel's encoder counts on 1 m; it grows "
+            description="standard deviation of the distance measured by a wheel encoder per 1 m; it grows "
             "with the square root of the distance",
         ),
     ] = 0.002
 
     @property
     def limits(self) -> tuple[float, float]:
-        """[m/s, rad/s] of the two speeds."""
+        """[m/s, rad/s] limits of the two speeds."""
         return self.max_linear_m_s, self.max_angular_rad_s
 
     @property
@@ -109,16 +107,16 @@ class DriveConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotConfig:
-    """The robot: start position and what it carries.
+    """The robot: its start pose, drive and sensors.
 
     Raises:
-        BadInput: the cameras are not distinguished, or there is no thermal one.
+        BadInput: cameras have clashing names, or there is no thermal camera.
     """
 
     at_m: Annotated[Point, Field(description="start position")] = (0.0, 0.0)
-    heading_rad: Annotated[float, IN_DEGREES, Field(ge=-720.0, le=720.0, description="start orientation")] = (
-        0.0
-    )
+    heading_rad: Annotated[
+        float, IN_DEGREES, Field(ge=-720.0, le=720.0, description="heading at the start")
+    ] = 0.0
     drive: DriveConfig = field(default_factory=DriveConfig)
     sonar: SonarConfig = field(default_factory=SonarConfig)
     # In this order; one of them is the thermal camera `thermal`.
@@ -127,6 +125,6 @@ class RobotConfig:
     )
 
     def __post_init__(self) -> None:
-        """Refuse cameras that clash, and keep them from being changed."""
+        """Refuse cameras with clashing names, and make the mapping immutable."""
         check_cameras(self.cameras)
         object.__setattr__(self, "cameras", Named(self.cameras))

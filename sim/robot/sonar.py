@@ -13,17 +13,17 @@ from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, SONAR_POSITION_M
 from peopleboy.sim.robot.robot_config import SonarConfig
 
 CastRays: TypeAlias = Callable[[Matrix, Matrix], Matrix]
-"""Takes starts and ends (G, R, 3) [m] of rays, gives the shares (G, R) of their ways at which they hit."""
+"""Maps starts and ends (G, R, 3) [m] of rays to the fractions (G, R) of their lengths at which they hit."""
 
 _SONARS = len(SONAR_ANGLE_RAD)
 # Rings of rays about a cone's axis: share of its half angle, and number of rays.
 _RINGS = ((0.0, 1), (0.5, 6), (1.0, 8))
-# Rays end this far above the floor, which throws sound away from a sonar and is not heard itself.
+# Rays end this far above the floor, which reflects sound away from a sonar and gives no echo.
 _CLEAR_OF_FLOOR_M = 0.03
 
 
 def cone_rays(cone_rad: float) -> NDArray[np.float64]:
-    """(16, 15, 3) unit vectors, robot frame, that fill each sonar's cone: its axis, and two rings around."""
+    """Return (16, 15, 3) unit vectors, robot frame, that fill each sonar's cone: axis and two rings."""
     around = [(share, math.tau * k / count) for share, count in _RINGS for k in range(count)]
     off, turn = np.array(around).T * [[cone_rad / 2.0], [1.0]]
     ahead, left, up = np.cos(off), np.sin(off) * np.cos(turn), np.sin(off) * np.sin(turn)
@@ -32,16 +32,16 @@ def cone_rays(cone_rad: float) -> NDArray[np.float64]:
 
 
 class SonarRing:
-    """A ring of 16 sonars on a body, which they do not see.
+    """A ring of 16 sonars on a body that they do not detect.
 
-    Each reads the distance to the nearest solid along 15 rays in its cone, the floor aside. Mirror-like
-    reflection off walls at a slant, and echoes between sonars, are not modelled; drop-outs stand in for lost
+    Each reads the distance to the nearest solid along 15 rays in its cone, the floor aside. Specular
+    reflection off oblique walls, and cross-talk between sonars, are not modelled; drop-outs represent lost
     echoes.
 
     Attributes:
-        config: as given.
-        starts: (16, 3) [m] of the sonars, robot frame.
-        ends: (240, 3) [m] of their rays, one sonar's after the other's.
+        config: the settings.
+        starts: (16, 3) [m] positions of the sonars, robot frame.
+        ends: (240, 3) [m] ends of their rays, sonar by sonar.
         reach: (16, 15) [m] lengths of the rays.
     """
 
@@ -67,21 +67,21 @@ class SonarRing:
         return self._physics.cast_rays(starts[0], ends[0], ignore=self._owner)[0][None]
 
     def draw_noise(self, noise: NDArray[np.float64], chance: NDArray[np.float64]) -> None:
-        """Fill (16,) with standard normal noise, and (16,) with 0..1 evenly, for the next readings."""
+        """Fill (16,) with standard normal and (16,) with uniform noise for the next readings."""
         self._rng.standard_normal(out=noise)
         self._rng.random(out=chance)
 
 
 def read_rings(rings: Sequence[SonarRing], world_from_robot: Matrix, cast: CastRays) -> NDArray[np.float64]:
-    """Read the rings of G robots once, all of one kind.
+    """Read the rings of G robots once; all have the same settings.
 
     Args:
-        rings: of the robots; each draws its own noise.
+        rings: sonar rings of the robots; each draws its own noise.
         world_from_robot: (G, 4, 4) poses of the robots.
         cast: casts the rays of all of them.
 
     Returns:
-        (G, 16) [m] within nearest..farthest; farthest where nothing answers.
+        (G, 16) [m] within nearest..farthest; farthest without an echo.
     """
     ring = rings[0]
     sonars, rays = ring.reach.shape

@@ -1,4 +1,4 @@
-"""What happens between one instant and the next: entries, exits, occlusions, contacts."""
+"""Events between one instant and the next: entries, exits, occlusions and contacts."""
 
 import math
 from collections.abc import Collection, Mapping, Sequence
@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from peopleboy.sim.shapes.shapes import Vector
 from peopleboy.sim.truth.truth import BORDER, PersonTruth, ThingTruth, Truth
 
-_Reported = tuple[str, str, str]  # what, to whom, by whom
+_Reported = tuple[str, str, str]  # kind, person, other
 
-# A person enters the view when more than this share of the whole silhouette is seen, and leaves it when less
-# than the second lies inside the image, hidden or not.
+# A person enters the view when more than the first share of the whole silhouette is visible, and leaves it
+# when less than the second lies inside the image, hidden or not.
 ENTERS_SEEN = 0.05
 LEAVES_INSIDE = 0.02
-# An occlusion starts when one occluder hides more than the first share of what lies inside the image, a total
-# one when all together hide more than the third. Each ends at a lower share than it starts at, and a contact
-# after some time apart: swinging arms and bounces are no news.
+# An occlusion starts when one occluder hides more than the first share of the silhouette inside the image, a
+# total one when all together hide more than the third. Each ends at a lower share than it starts at, and a
+# contact after some time apart, so that swinging arms and bounces cause no repeated events.
 OCCLUSION_STARTS = 0.15
 OCCLUSION_ENDS = 0.05
 TOTAL_STARTS = 0.98
@@ -25,15 +25,15 @@ CONTACT_ENDS_S = 0.3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Event:
-    """Something worth a line in the log.
+    """An event for the log.
 
     Attributes:
         time_s: [s] since the start.
         kind: "enters view", "leaves view", "occlusion starts", "total occlusion starts",
             "total occlusion ends", "occlusion ends", "contact starts" or "contact ends".
-        person: whom it happens to; the robot for contacts.
-        other: who or what hides or touches them; of a total occlusion who or what hides most as it starts,
-            with which it ends, too; empty if nobody.
+        person: the person concerned; the robot for contacts.
+        other: the person or thing that hides or touches them; for a total occlusion the one that hides most
+            when it starts, repeated when it ends; empty for none.
     """
 
     time_s: float
@@ -45,9 +45,9 @@ class Event:
 class EventLog:
     """Turns a sequence of truths into events, each reported once, when it happens.
 
-    Each occluder has an occlusion of its own, which ends at the latest when the hidden person leaves the view
-    or the image. Who has not entered the view yet is hidden by people alone: whoever waits behind a wall is
-    no news.
+    Each occluder has a separate occlusion, which ends at the latest when the hidden person leaves the view or
+    the image. A person who has not entered the view yet can only be occluded by people: a person who waits
+    behind a wall causes no event.
     """
 
     def __init__(self) -> None:
@@ -57,7 +57,7 @@ class EventLog:
         self._last_touch_s: dict[str, float] = {}
 
     def update(self, truth: Truth) -> list[Event]:
-        """Compare with the truth before, and return what is new."""
+        """Compare with the previous truth, and return new events."""
         found: list[_Reported] = []
         people = {person.name: person for person in truth.people}
         for name in sorted((self._in_view | self._hidden.keys() | self._total.keys()) - people.keys()):
@@ -82,7 +82,7 @@ class EventLog:
         return found + self._occlusions(name, shares)
 
     def _occlusions(self, name: str, shares: Mapping[str, float]) -> list[_Reported]:
-        """Return what is new of an occlusion by the share that each occluder hides."""
+        """Return new occlusion events, given the share that each occluder hides."""
         found: list[_Reported] = []
         hidden, total = self._hidden.setdefault(name, []), sum(shares.values())
         most = max(shares, key=lambda other: shares[other], default="")
@@ -118,21 +118,21 @@ class EventLog:
         return found
 
 
-# What becomes of things: that they were moved, from where to where and by whom, appeared or vanished.
+# Events of things: moves, with their start, end and mover, appearances and disappearances.
 
-STANDS_S = 0.5  # a thing that has stood for so long has been moved; what follows sooner belongs to it
+STANDS_S = 0.5  # a move is over when the thing has stood this long; sooner motions belong to it
 _SOON_S = 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Move:
-    """What a thing did between two rests.
+    """Move of a thing from one rest to the next.
 
     Attributes:
-        from_s, to_s: [s] when it set off and when it came to rest.
-        from_m, to_m: (x, y, z) [m] of its frame then, world frame.
-        distance_m: [m] between the two, as the crow flies.
-        turned_deg: [deg] how far it was turned meanwhile, at most 180; positive to the left.
+        from_s, to_s: [s] start and end of the move.
+        from_m, to_m: (x, y, z) [m] position of its frame at start and end, world frame.
+        distance_m: [m] straight distance between the two.
+        turned_deg: [deg] angle by which it was turned, at most 180; positive to the left.
     """
 
     from_s: float
@@ -145,14 +145,14 @@ class Move:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThingEvent:
-    """Something worth a line in the log.
+    """An event for the log.
 
     Attributes:
         time_s: [s] since the start.
         kind: "thing moved", "thing appeared" or "thing vanished".
-        thing: which.
-        by: the person who did it; empty for nobody.
-        move: of what was moved; None otherwise.
+        thing: name of the thing.
+        by: the person who moved it; empty for none.
+        move: the move, for "thing moved"; None otherwise.
     """
 
     time_s: float
@@ -163,13 +163,13 @@ class ThingEvent:
 
 
 class ThingLog:
-    """Turns a sequence of truths into events, each reported once: a move, when the thing stands again."""
+    """Turns a sequence of truths into events, each reported once; a move when the thing has come to rest."""
 
     def __init__(self) -> None:
         self._watched: dict[str, _EventWatch] = {}
 
     def update(self, truth: Truth) -> list[ThingEvent]:
-        """Compare with the truths before, and return what is new."""
+        """Compare with the previous truths, and return new events."""
         found = []
         for thing in truth.things:
             watch = self._watched.setdefault(thing.name, _EventWatch(thing, truth.time_s))
@@ -179,7 +179,7 @@ class ThingLog:
 
 
 class _EventWatch:
-    """Remembers where one thing stood last."""
+    """Keeps the last rest pose of one thing."""
 
     def __init__(self, thing: ThingTruth, time_s: float) -> None:
         self._rest = thing

@@ -1,4 +1,4 @@
-"""The truth at an instant as far as it needs no image, with how much of people rays find visible."""
+"""Ground truth that needs no image, with people's visibility estimated by rays."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -15,17 +15,17 @@ from peopleboy.sim.people.person import Person
 from peopleboy.sim.rendering.render_canvas import Lens
 from peopleboy.sim.truth.truth import Box
 
-# Two measures say how much of a person is visible. `PersonTruth.visible_fraction` counts the pixels of an
-# image, exactly. `Bystander.free_ray_share` casts five rays at the middle of the body and needs no image; it
-# knows fifths only, and takes other people for the capsules that the robot can bump into. One threshold holds
-# for both. Over 1369 views of people in the image, in six scenarios of the library, the two agree in 96 % of
-# the views; they differ by 0.05 on average and by 0.86 at most. Where they disagree it is nearly always the
-# rays that call a person hidden, since a capsule also fills the gaps round a body.
+# Two measures describe how much of a person is visible. `PersonTruth.visible_fraction` counts the pixels of
+# an image, exactly. `Bystander.free_ray_share` casts five rays at the middle of the body and needs no image.
+# It has steps of a fifth, and represents other people by solid capsules. Both use the same threshold.
+# Over 1369 views of people in the image, in six scenarios of the library, the two agree in 96 % of
+# the views; they differ by 0.05 on average and by 0.86 at most. Where they disagree, nearly always the rays
+# report the person as hidden, since a capsule also fills the gaps round a body.
 SEEN = 0.3
 
 
 def is_seen(share: float) -> bool:
-    """Return whether a person of whom this share is visible, by pixels or by rays, counts as seen."""
+    """Return whether a person counts as seen at this visible share, by pixels or by rays."""
     return share > SEEN
 
 
@@ -36,9 +36,9 @@ class Bystander(NamedTuple):
         id: 1, 2, ... in the scenario's order.
         name: as in the scenario.
         position_m: (x, y) on the floor, world frame.
-        heading_rad: [rad] where the body faces, world frame.
+        heading_rad: [rad] direction of the body, world frame.
         velocity_m_s: (x, y) [m/s] world frame.
-        height_m, radius_m: [m] of the upright body that stands for the person in contacts and sonar.
+        height_m, radius_m: [m] size of the upright body that represents the person in contacts and sonar.
         distance_m: [m] on the floor from the robot's origin.
         bearing_rad: [rad] from the robot's nose, positive to the left.
         box: left, top, width, height [px] of that upright body in the thermal image, whatever the posture, as
@@ -61,19 +61,19 @@ class Bystander(NamedTuple):
 
     @property
     def is_seen(self) -> bool:
-        """Whether the thermal camera would see enough of the person."""
+        """Whether enough of the person is visible to the thermal camera."""
         return is_seen(self.free_ray_share)
 
 
 class ImageFreeTruth(NamedTuple):
-    """The truth about one instant without images.
+    """Ground truth of one instant that needs no images.
 
     Attributes:
         time_s: [s] since the start.
         robot: true pose of the robot.
         robot_velocity: true forward speed [m/s] and turn rate [rad/s].
-        contacts: names of what the robot touches, the floor aside.
-        people: everybody who is present, in the scenario's order.
+        contacts: names of the bodies that the robot touches, the floor aside.
+        people: all present people, in the scenario's order.
     """
 
     time_s: float
@@ -91,7 +91,7 @@ SCENE: Final = np.dtype(
         ("robot", np.float64, 3),  # [m, m, rad]
         ("velocity", np.float64, 2),  # [m/s, rad/s]
         ("is_touching", np.bool_),
-        ("first", np.int64),  # of the people who are there, in records BYSTANDER
+        ("first", np.int64),  # index of the first present person, in records BYSTANDER
         ("end", np.int64),
     ]
 )
@@ -115,13 +115,13 @@ BYSTANDER: Final = np.dtype(
 
 
 class Scenes(NamedTuple):
-    """What is true in G worlds.
+    """Image-free ground truth of G worlds.
 
     Attributes:
         worlds: (G,) records SCENE.
-        people: (Q,) records BYSTANDER of all who are present, one world after the other.
-        names: of everybody in each world, present or not, in the order of their numbers.
-        contacts: names of what each robot touches, the floor aside.
+        people: (Q,) records BYSTANDER of all present people, world by world.
+        names: names of all people in each world, present or not, in the order of their numbers.
+        contacts: names of the bodies that each robot touches, the floor aside.
     """
 
     worlds: Records
@@ -130,7 +130,7 @@ class Scenes(NamedTuple):
     contacts: tuple[tuple[str, ...], ...]
 
     def truths(self) -> list[ImageFreeTruth]:
-        """Return for each world."""
+        """Return the truth of each world."""
         worlds, people = self.worlds, self._bystanders()
         rows = zip(
             worlds["time_s"].tolist(),
@@ -172,25 +172,25 @@ def _pairs(rows: NDArray[np.float64]) -> list[tuple[float, float]]:
     return list(zip(rows[:, 0].tolist(), rows[:, 1].tolist(), strict=True))
 
 
-# How much of people robots could see, from rays to upright bodies that stand for them (numba kernels).
+# Visibility of people for the robots, from rays to upright bodies that represent them (numba kernels).
 
 CastRays: TypeAlias = Callable[[NDArray[np.int64], Matrix, Matrix], Matrix]
 """Takes numbers (K,) of people, starts and ends (K, 5, 3) [m] of rays, gives the shares (K, 5) of their ways
 at which they hit something other than the robot that sends them out."""
 
-# Heights at which a person's middle is looked for, in shares of the stature.
+# Heights of the ray targets on a person's axis, as shares of the stature.
 _LOOKED_AT = (0.1, 0.3, 0.5, 0.7, 0.9)
 _NEAREST_M = 0.05
 
 
 class Uprights(NamedTuple):
-    """Q people before cameras, one each.
+    """Q upright people, each in the view of one camera.
 
     Attributes:
-        boxes: (Q, 4) [px] left, top, width, height; NaN where a person is not before the camera.
+        boxes: (Q, 4) [px] left, top, width, height; NaN where a person is not in front of the camera.
         reaches_in: (Q,) whether any of the box lies in the image.
-        eyes: (Q, 3) [m] where each one's camera is, world frame.
-        points: (Q, 5, 3) [m] up each one's middle, world frame.
+        eyes: (Q, 3) [m] position of each one's camera, world frame.
+        points: (Q, 5, 3) [m] points on each person's axis, world frame.
         is_inside: (Q, 5) whether each lies in the image.
     """
 
@@ -204,7 +204,7 @@ class Uprights(NamedTuple):
 def stand_before(
     places: Matrix, heights_m: Matrix, radii_m: Matrix, camera: Pinhole, world_from_camera: Matrix
 ) -> Uprights:
-    """See upright bodies with a camera at a pose each.
+    """Project upright bodies into the images of cameras, one each.
 
     Args:
         places: (Q, 2) [m] on the floor, world frame.
@@ -279,22 +279,22 @@ def _seen(camera_from_world: Matrix, x: float, y: float, z: float) -> Point:
 
 @njit(cache=True, error_model="numpy")
 def _shown(point: Point, lens: Lens) -> tuple[float, float]:
-    """Do as `Pinhole.project` with one point."""
+    """Project one point, as `Pinhole.project` does."""
     z = point[2] if point[2] > 1e-9 else np.nan
     return lens.focal * point[0] / z + lens.centre_u, lens.focal * point[1] / z + lens.centre_v
 
 
 def free_ray_shares(uprights: Uprights, fraction: Matrix, radii_m: Matrix) -> Matrix:
-    """Return which share of the points are inside the image with nothing solid before them.
+    """Return the share of the points that are inside the image with nothing solid in front of them.
 
     Args:
         uprights: Q people.
         fraction: (Q, 5) of the way from their eyes to their points at which rays hit something.
-        radii_m: (Q,) [m] of the people; a ray ends within the capsule of the person whom it looks for, which
-            it meets a radius before.
+        radii_m: (Q,) [m] radii of the people; a ray ends on the axis of its person's capsule, whose surface
+            it meets a radius earlier.
 
     Returns:
-        (Q,) 0 for those who do not reach into the image.
+        (Q,) 0 for people outside the image.
     """
     shares = np.zeros(len(fraction))
     _count_free(uprights, fraction, radii_m, shares)
@@ -317,7 +317,7 @@ def _count_free(uprights: Uprights, fraction: Matrix, radii_m: Matrix, shares: M
 
 
 def known_people(people: Sequence[Person]) -> Records:
-    """(Q,) records BYSTANDER with what never changes of the people of one world: id, height and radius."""
+    """Return (Q,) records BYSTANDER with the constants of one world's people: id, height and radius."""
     known = np.zeros(len(people), BYSTANDER)
     known["id"] = range(1, len(people) + 1)
     known["height_m"] = [person.config.height_m for person in people]
@@ -328,14 +328,14 @@ def known_people(people: Sequence[Person]) -> Records:
 def look_at_people(
     people: Records, robots: Matrix, camera: Pinhole, world_from_camera: Matrix, cast: CastRays
 ) -> None:
-    """Fill in where people are as robots see them, and how much of them their cameras could see.
+    """Fill in the people's positions relative to the robots, and their visibility for the cameras.
 
     Args:
-        people: (Q,) records BYSTANDER, all present, of which the last four fields are filled.
-        robots: (Q, 3) or (1, 3) [m, m, rad] poses of the robots that look at them.
+        people: (Q,) records BYSTANDER of present people, whose last four fields are filled in.
+        robots: (Q, 3) or (1, 3) [m, m, rad] poses of the robots that observe them.
         camera: of all robots.
         world_from_camera: (Q, 4, 4).
-        cast: casts the rays to some of the people.
+        cast: function that casts the rays to some of the people.
     """
     if not len(people):
         return

@@ -1,4 +1,4 @@
-"""The exact truth about one instant: poses of people, what the camera sees of them, and occlusion."""
+"""Ground truth of one instant: poses of people, their visibility in the image, and occlusion."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -13,14 +13,14 @@ from peopleboy.sim.geometry.pinhole import CameraGeometry, Matrix
 from peopleboy.sim.places.moving import Mover
 
 # A box is left, top, width, height [px] in the camera's image, whose pixel (0, 0) spans -0.5..0.5; bounds
-# are left, top, right, bottom [px], all NaN where nothing is before the camera.
+# are left, top, right, bottom [px], all NaN if nothing is in front of the camera.
 
 Box = tuple[float, float, float, float]
 Edges = Sequence[float]
 
 
 def box_between(bounds: Edges) -> Box | None:
-    """Return the box with these bounds; None where nothing is before the camera."""
+    """Return the box with these bounds; None if nothing is in front of the camera."""
     left, top, right, bottom = bounds
     return None if math.isnan(left + top) else (left, top, right - left, bottom - top)
 
@@ -31,7 +31,7 @@ def box_of_pixels(first_u: float, last_u: float, first_v: float, last_v: float) 
 
 
 def is_cut_off(bounds: Edges, camera: CameraGeometry) -> bool:
-    """Return whether something with these bounds reaches beyond the image's border."""
+    """Return whether these bounds reach beyond the image's border."""
     left, top, right, bottom = bounds
     return left <= -0.5 or top <= -0.5 or right >= camera.width - 0.5 or bottom >= camera.height - 0.5
 
@@ -41,10 +41,10 @@ NOTHING = -1
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Owners:
-    """Which person, thing or wall each pixel of an image shows, computed on demand.
+    """The person, thing or wall at each pixel of an image, computed on demand.
 
     Attributes:
-        names: of people, things, walls and the robot.
+        names: names of people, things, walls and the robot.
         of_part: (P + 1,) number of the name of each part's owner; the last one for no part.
         part: (H, W) number of the part seen, -1 for none.
     """
@@ -54,28 +54,28 @@ class Owners:
     part: NDArray[np.int32]
 
     def image(self) -> NDArray[np.int16]:
-        """(H, W) number in `names` of who or what is seen, -1 for nothing."""
+        """(H, W) index in `names` of the owner of each pixel, -1 for none."""
         return np.asarray(self.of_part[self.part])
 
     def mask(self, *names: str) -> NDArray[np.bool_]:
-        """(H, W) where one of these is seen; of unknown names, nowhere."""
+        """Return the (H, W) mask of pixels that show one of these names; unknown names have no pixels."""
         wanted = np.isin(np.array([*self.names, ""]), names)
         return np.asarray(wanted[self.of_part][self.part])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThingTruth:
-    """All that is true of one moved thing at one instant.
+    """Ground truth of one moving thing at one instant.
 
     Attributes:
         name: as in the scenario.
-        position_m: (x, y, z) of its frame, world frame: z is the height of its foot. Of what is not there,
-            where it was last, or will appear.
-        heading_rad: [rad] where its front looks.
-        is_there: whether it is in the place.
-        is_moving: whether something moves it.
-        moved_by: name of the person who does, or did last; None for nobody.
-        visible_px: pixels in which it is what the camera sees.
+        position_m: (x, y, z) of its frame, world frame; z is the height of its foot. For an absent thing,
+            the last position, or the one where it will appear.
+        heading_rad: [rad] direction of its front.
+        is_there: whether it is present.
+        is_moving: whether it is being moved.
+        moved_by: name of the person who moves it, or moved it last; None for none.
+        visible_px: number of pixels that show it.
         visible_box: left, top, width, height [px] of those pixels; None without any.
     """
 
@@ -90,7 +90,7 @@ class ThingTruth:
 
 
 def things_truth(movers: Sequence[Mover], time_s: float, owners: Owners) -> tuple[ThingTruth, ...]:
-    """Return the truth about all things that are moved, as one camera sees them."""
+    """Return the truth of all moving things in the view of one camera."""
     if not movers:
         return ()
     image = owners.image()
@@ -118,20 +118,20 @@ def _box(seen: NDArray[np.bool_]) -> Box | None:
     return box_of_pixels(*(float(edge) for edge in (columns[0], columns[-1], rows[0], rows[-1])))
 
 
-# Persons nearer than 3 m or farther than 10 m are not counted (T 3.3).
+# People nearer than 3 m or farther than 10 m are not counted (T 3.3).
 COUNTED_NEAREST_M = 3.0
 COUNTED_FARTHEST_M = 10.0
-# All round, the lens's rim cuts off nearer people, and a row is too much of a metre for farther ones.
+# In panoramas the lens's rim cuts off nearer people, and a row covers too much depth for farther ones.
 ROUND_NEAREST_M = 1.1
 ROUND_FARTHEST_M = 7.0
 
-# What the border of the image cuts off is hidden by this.
+# Name of the occluder for parts that the image border cuts off.
 BORDER = "border"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PersonTruth:
-    """All that is true of one person at one instant. Arrays are read-only.
+    """Ground truth of one person at one instant. Arrays are read-only.
 
     Boxes are left, top, width, height [px] in the camera's image, whose pixel (0, 0) spans -0.5..0.5.
 
@@ -139,26 +139,26 @@ class PersonTruth:
         id: 1, 2, ... in the scenario's order.
         name: as in the scenario.
         position_m: (x, y) on the floor, world frame.
-        heading_rad: [rad] where the body faces, world frame.
+        heading_rad: [rad] direction of the body, world frame.
         velocity_m_s: (x, y) [m/s] world frame.
         posture: such as "standing".
         distance_m: [m] on the floor from the camera.
-        is_counted: whether that distance is one at which persons are to be found (`is_counted`).
-        box: head to feet, and as wide as the torso without arms, as if nothing hid it (T 3.3); None when
+        is_counted: whether the person counts in evaluation at that distance (`is_counted`).
+        box: head to feet, with the width of the torso without arms, ignoring occlusion (T 3.3); None when
             nothing of it is in front of the camera.
-        whole_box: the whole silhouette as if nothing hid it, also outside the image; None as above.
+        whole_box: the whole silhouette ignoring occlusion, also outside the image; None as above.
         visible_box: the visible pixels; None when there are none.
         whole_px: pixels of the whole silhouette, those outside the image included, as far as one image size
             beyond each border.
-        visible_px: pixels in which the person is what the camera sees.
+        visible_px: number of pixels that show the person.
         visible_fraction: visible_px / whole_px; 0 when whole_px is 0.
-        hidden_by: share of the whole silhouette hidden by each thing or person, by name, "border" being what
-            lies outside the image; with visible_fraction they sum to 1. A pixel counts for the foremost.
-            Empty when whole_px is 0, where both sum to 0.
+        hidden_by: share of the whole silhouette hidden by each thing or person, by name; "border" is the
+            share outside the image. With visible_fraction they sum to 1. A pixel counts for the foremost
+            occluder. Empty when whole_px is 0, where both sum to 0.
         part_temperature_c: [degC] mean surface temperature by part name.
         joints_m: (17, 3) [m] COCO keypoints, world frame.
         joints_px: (17, 2) [px] u, v of the same; NaN behind the camera.
-        joint_is_visible: (17,) whether the person is what the camera sees at that pixel.
+        joint_is_visible: (17,) whether that pixel shows the person.
     """
 
     id: int
@@ -182,18 +182,18 @@ class PersonTruth:
     joint_is_visible: NDArray[np.bool_]
 
     def __repr__(self) -> str:
-        """Say who, how far and how visible."""
+        """Return name, distance and visibility."""
         visible = f"{self.visible_fraction:.0%} visible"
         return f"PersonTruth({self.id} {self.name!r}, {self.distance_m:.1f} m, {visible})"
 
     @property
     def inside_fraction(self) -> float:
-        """Share of the whole silhouette that lies inside the image, hidden or not."""
+        """Share of the whole silhouette inside the image, ignoring occlusion."""
         return 1.0 - self.hidden_by.get(BORDER, 0.0) if self.whole_px else 0.0
 
     @property
     def is_in_image(self) -> bool:
-        """Whether any of the silhouette lies inside the image, hidden or not."""
+        """Whether any of the silhouette lies inside the image, ignoring occlusion."""
         return self.inside_fraction > 0.0
 
     @property
@@ -209,30 +209,29 @@ class PersonTruth:
 
     @property
     def occluder(self) -> str | None:
-        """The person or thing that hides most of this person, the image border aside; None if none does."""
+        """The person or thing that hides most of this person, the image border aside, or None."""
         others = {name: share for name, share in self.hidden_by.items() if name != BORDER}
         return max(others, key=lambda name: others[name]) if others else None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Truth:
-    """The truth about the instant of one observation. Arrays are read-only.
+    """Ground truth for the instant of one observation. Arrays are read-only.
 
     Attributes:
         time_s: [s] since the start.
-        people: everybody who is present, seen or not.
+        people: all present people, visible or not.
         instance: (H, W) uint8, the id of the person seen at each pixel, 0 for none.
         body_part: (H, W) uint8, the PART_CLASSES number of the part of a person seen, 0 for none.
         depth_m: (H, W) float32 [m] along the optical axis of the camera, inf for none.
-        camera: in whose image boxes and masks are; the thermal one if no other was asked for.
-        world_from_camera: (4, 4) its pose, optical frame.
+        camera: the camera of boxes and masks, by default the thermal one.
+        world_from_camera: (4, 4) pose of its optical frame.
         robot: true pose of the robot.
         robot_velocity: true forward speed [m/s] and turn rate [rad/s].
-        contacts: names of what the robot touches, the floor aside.
-        things: all that a person or something moves in this place, there or not.
-        owners: who or what is seen at each pixel.
-        background_m: draws (H, W) [m] the depth without people and without what is moved; what it costs is
-            a rendering.
+        contacts: names of the bodies that the robot touches, the floor aside.
+        things: all moving things of the place, present or not.
+        owners: the person, thing or wall at each pixel.
+        background_m: renders the (H, W) [m] depth without people and moving things; it costs one rendering.
     """
 
     time_s: float
@@ -255,10 +254,10 @@ class Truth:
 
 
 def counted_m(camera: CameraGeometry) -> tuple[float, float]:
-    """Return the distances [m] from a camera between which people are to be found.
+    """Return the range of distances [m] from a camera within which people count in evaluation.
 
-    It is where the sources count (T 3.3). They had no panorama; there it is where trackers of
-    panoramas find people.
+    The range is that of the source (T 3.3). The source has no panoramas; their range is that of
+    panoramic trackers.
     """
     if isinstance(camera, Panorama):
         return ROUND_NEAREST_M, ROUND_FARTHEST_M
@@ -266,26 +265,26 @@ def counted_m(camera: CameraGeometry) -> tuple[float, float]:
 
 
 def is_counted(distance_m: float, camera: CameraGeometry) -> bool:
-    """Whether a person at this distance from a camera is to be found."""
+    """Return whether a person at this distance from a camera counts in evaluation."""
     nearest_m, farthest_m = counted_m(camera)
     return nearest_m <= distance_m <= farthest_m
 
 
-# What stands behind everything that comes and goes: the depth that models of a scene are held against.
+# Backgrounds without people and moving things: the reference depth for models of a scene.
 
 Metres = NDArray[np.float32]
 
-_STOOD_M = 1e-3  # a camera that moved or turned by less stands still
+_STOOD_M = 1e-3  # a camera that moved or turned by less counts as static
 _STOOD_RAD = 1e-3
 
 
 class Backgrounds:
-    """The backgrounds of one camera, fed with the truths of its instants; a camera that moves starts anew.
+    """The background of one camera, updated with each truth; it restarts when the camera moves.
 
     Attributes:
-        clean: (H, W) [m] true depth without people and without what is moved.
-        ever: (H, W) [m] farthest true depth shown so far: all that can be known of `clean`.
-        frames: how many instants that is.
+        clean: (H, W) [m] true depth without people and moving things.
+        ever: (H, W) [m] farthest true depth so far: the observable part of `clean`.
+        frames: number of instants.
     """
 
     def __init__(self) -> None:
@@ -295,7 +294,7 @@ class Backgrounds:
         self._pose: Matrix | None = None
 
     def update(self, truth: Truth) -> None:
-        """Take in one more instant."""
+        """Update with one more instant."""
         if self.ever is None or not self._stands(truth.world_from_camera):
             self._pose = np.array(truth.world_from_camera)
             self.clean, self.ever, self.frames = truth.background_m(), np.array(truth.depth_m), 0

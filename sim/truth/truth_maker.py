@@ -1,4 +1,4 @@
-"""Makes the truth: puts what the renderer saw beside what the people's bodies say."""
+"""Makes ground truth from rendered views and the people's bodies."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -38,11 +38,11 @@ A = TypeVar("A", bound=NDArray[Any])
 Depth = NDArray[np.float32]
 Bytes = NDArray[np.uint8]
 
-_WHOLE: Final = 0  # of the outlines of a person: the silhouette
+_WHOLE: Final = 0  # index of the silhouette among a person's outlines
 
 
 class TruthMaker:
-    """Knows which part belongs to whom, and makes the truth of one instant after another."""
+    """Maps parts to their owners, and makes the truth of each instant."""
 
     def __init__(
         self,
@@ -64,7 +64,7 @@ class TruthMaker:
         parts = [key.name.split("/")[-1] for key in keys]
         is_person = self.person_of_part >= 0
         classes = [PART_CLASSES.get(p, 0) if own else 0 for p, own in zip(parts, is_person, strict=True)]
-        # The last entry is for part -1, where nothing is seen.
+        # The last entry is for part -1, where there is no surface.
         self._class_of_part = np.array([*classes, 0], np.uint8)
         self._id_of_part = np.array([*(self.person_of_part + 1), 0], np.uint8)
         self._outlines = _outlines(parts, self.person_of_part, len(names))
@@ -82,7 +82,7 @@ class TruthMaker:
         robot_velocity: tuple[float, float],
         contacts: tuple[str, ...],
     ) -> Truth:
-        """Make the truth of the instant that a camera sees."""
+        """Make the truth of an instant for one camera."""
         view, people, owners = seen.view, len(self._people), len(self._owner_names)
         cover = seen.renderer.cover(view, self._owner_of_part, people, owners)
         whose = Owners(tuple(self._owner_names), self._owner_or_nothing, view.part)
@@ -104,7 +104,7 @@ class TruthMaker:
         )
 
     def _background(self, seen: RenderPass) -> Depth:
-        """Draw what a camera would see if nobody were there, nor anything that is moved."""
+        """Render a camera's view without people and moving things."""
         hidden = seen.scene.hidden | self._is_moved | (self.person_of_part >= 0)
         bare = replace(seen.scene, renderer="raycast", hidden=hidden)
         return seen.renderer.view(bare, seen.camera, seen.world_from_camera).depth
@@ -135,7 +135,7 @@ class TruthMaker:
         edges: Sequence[Edges],
         joints: "_Joints",
     ) -> PersonTruth:
-        """Tell of a person, at whose pixels so many of each owner's are `shown`, and in which are its own."""
+        """Return a person's truth from the pixels of each owner on its silhouette, and its own pixels."""
         person, (whole, height, torso) = self._people[k], edges
         (x, y), (u, v) = person.position.tolist(), person.velocity.tolist()
         camera_x, camera_y = seen.world_from_camera[:2, 3].tolist()
@@ -164,14 +164,14 @@ class TruthMaker:
         )
 
     def _whole_area(self, k: int, inside: int, seen: RenderPass, whole: Edges) -> int:
-        """Pixels of the whole silhouette; those outside the image are counted only if there are any."""
+        """Return the pixels of the whole silhouette; counts those outside the image only if there are any."""
         if not is_cut_off(whole, seen.camera):
             return inside
         # TinyRenderer's silhouettes may be a few pixels larger.
         return max(inside, seen.area(self._outlines[k, _WHOLE], whole))
 
     def _hidden_by(self, k: int, shown: list[int], area: int) -> dict[str, float]:
-        """Share of the whole silhouette that each other owner, or the border, hides."""
+        """Return the share of the whole silhouette that each other owner, or the border, hides."""
         if not area:
             return {}
         shares = {
@@ -197,7 +197,7 @@ class TruthMaker:
 
 
 class _Joints(NamedTuple):
-    """A person's joints: places (17, 3) [m], pixels (17, 2), and whether each is seen (17,)."""
+    """A person's joints: positions (17, 3) [m], pixels (17, 2), and whether each is visible (17,)."""
 
     place_m: Matrix
     pixel: Matrix
@@ -205,7 +205,7 @@ class _Joints(NamedTuple):
 
 
 def _outlines(parts: Sequence[str], person_of_part: NDArray[np.int64], people: int) -> NDArray[np.bool_]:
-    """Return which parts of each person make up what edges of the boxes, (N, 3, P): whole, height, torso."""
+    """Return the parts of each person that define its boxes' edges, (N, 3, P): whole, height, torso."""
     is_arm, is_torso, is_body = (
         np.isin(parts, names) for names in (ARM_PARTS, TORSO_PARTS, list(PART_CLASSES))
     )
@@ -215,7 +215,7 @@ def _outlines(parts: Sequence[str], person_of_part: NDArray[np.int64], people: i
 
 @njit(cache=True, nogil=True)
 def _looked_up(part: NDArray[np.int32], one: Bytes, other: Bytes) -> tuple[Bytes, Bytes]:
-    """Say of each pixel (H, W) what two tables (P + 1,) say of its part; their last entry is for part -1."""
+    """Look up the part of each pixel (H, W) in two tables (P + 1,), whose last entry is for part -1."""
     first, second = np.empty(part.shape, np.uint8), np.empty(part.shape, np.uint8)
     nothing = np.uint64(len(one) - 1)
     for v in range(np.uint64(part.shape[0])):
@@ -226,7 +226,7 @@ def _looked_up(part: NDArray[np.int32], one: Bytes, other: Bytes) -> tuple[Bytes
 
 
 def _thesis_box(height: Edges, torso: Edges) -> Box | None:
-    """Head to feet, as wide as the torso without arms (T 3.3), of the edges of both."""
+    """Return the box from head to feet, with the torso's width without arms (T 3.3), from the edges."""
     return box_between((torso[0], height[1], torso[2], height[3]))
 
 

@@ -198,7 +198,7 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
     ),
     "name of another camera's images": (
         lambda d: d["robot"].update(cameras={"thermal16": {"kind": "colour"}}),
-        ("robot.cameras: camera 'thermal16': another camera gives images of that name",),
+        ("robot.cameras: camera 'thermal16': another camera has images of that name",),
     ),
     "camera name that is none": (
         lambda d: d["robot"].update(cameras={"Rear view": {"kind": "thermal"}}),

@@ -106,7 +106,7 @@ def test_images_and_truths_of_an_instant_that_is_over_are_refused() -> None:
         assert before["thermal"] is kept
         with pytest.raises(BadInput, match=r"'colour': .* read it before the next step"):
             before["colour"]
-        with pytest.raises(BadInput, match="'colour': the truth of an instant that is over"):
+        with pytest.raises(BadInput, match="'colour': the truth of an earlier instant"):
             truths["colour"]
         with pytest.raises(BadInput, match=r"camera 'rear': .* choose from thermal, colour"):
             world.truth("rear")
