@@ -1,1 +1,1 @@
-"""What stands still: rooms, corridors, and the warm and cold things in them."""
+"""Places: rooms, corridors and streets, with the warm and cold things in them."""

@@ -1,4 +1,4 @@
-"""How much room fixtures take up: the boxes around shapes and URDF files, and which upright boxes overlap."""
+"""Extents of fixtures: boxes around shapes and URDF files, and overlap of upright boxes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ _CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)],
 
 
 def fixture_extent(fixture: Fixture) -> Extent:
-    """The box around a fixture in the world frame: exact for boxes, and never too small.
+    """Return the box around a fixture in the world frame: exact for boxes, and never too small.
 
     Raises:
         BadInput: a URDF or a mesh cannot be read.
@@ -33,7 +33,7 @@ def fixture_extent(fixture: Fixture) -> Extent:
 
 
 def shape_extents(fixture: Fixture) -> list[Extent]:
-    """The boxes around each shape of a fixture, in the fixture's own frame; a URDF is a single one.
+    """Return the boxes around each shape of a fixture, in the fixture's frame; a URDF is one box.
 
     Raises:
         BadInput: a URDF or a mesh cannot be read.
@@ -77,7 +77,7 @@ def mesh_extent(path: Path) -> Extent:
 
 @cache
 def urdf_extent(path: Path) -> Extent:
-    """The box around everything that is seen of a URDF, all links in their rest pose.
+    """Return the box around all visible shapes of a URDF, with all links in their rest pose.
 
     Raises:
         BadInput: the file is not a URDF with shapes, or names a mesh outside its own folder.
@@ -90,7 +90,7 @@ def urdf_extent(path: Path) -> Extent:
 
 
 def _check_meshes(path: Path) -> None:
-    """Refuse meshes that lie outside the file's folder, or outside pybullet_data if the file is of there."""
+    """Refuse meshes that lie outside the file's folder, or outside pybullet_data if the file is in it."""
     home = data_folder() if is_in_data(path) else path.parent
     for name in mesh_files(path):
         if not (path.parent / name).resolve().is_relative_to(home.resolve()):
@@ -110,7 +110,7 @@ def _around(points: NDArray[np.float64]) -> Extent:
     return np.array([points.min(axis=0), points.max(axis=0)])
 
 
-# Upright boxes, turned about the vertical: which of them overlap, and how far off points are.
+# Upright boxes, turned about the vertical: their overlap, and their distance to points.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -120,7 +120,7 @@ class BoxSet:
     Attributes:
         centre: (N, 3) [m] world frame.
         half: (N, 3) [m] half of their sides, along their own axes.
-        heading: (N,) [rad] where their own x axis points.
+        heading: (N,) [rad] direction of their own x axis.
     """
 
     centre: Array
@@ -128,17 +128,17 @@ class BoxSet:
     heading: Array
 
     def moved(self, stance: Stance) -> "BoxSet":
-        """Boxes given in a thing's frame, where they are when the thing is there."""
+        """Return boxes of a thing's frame, in the world, for a pose of the thing."""
         return BoxSet(stance.place(self.centre), self.half, self.heading + stance.heading_rad)
 
     def between(self, low_m: float, high_m: float) -> "BoxSet":
-        """Those that reach into a span of heights."""
+        """Return the boxes that overlap a span of heights."""
         bottom, top = self.centre[:, 2] - self.half[:, 2], self.centre[:, 2] + self.half[:, 2]
         kept = (bottom < high_m) & (top > low_m)
         return BoxSet(self.centre[kept], self.half[kept], self.heading[kept])
 
     def distance(self, point: tuple[float, float]) -> float:
-        """How far a point on the floor [m] is from the nearest box; 0 inside, infinite without any."""
+        """Return the distance of a floor point [m] to the nearest box; 0 inside, infinite without boxes."""
         if not len(self.centre):
             return np.inf
         gap = np.abs(_own(np.array(point) - self.centre[:, :2], self.heading)) - self.half[:, :2]
@@ -146,11 +146,11 @@ class BoxSet:
 
 
 def boxes_of(fixtures: Sequence[Fixture], origin: Stance | None = None) -> BoxSet:
-    """The boxes round all solid shapes of some fixtures, in the world or in the frame of a thing.
+    """Return the boxes around all solid shapes of fixtures, in the world or in the frame of a thing.
 
     Args:
-        fixtures: turned about the vertical at most.
-        origin: where the frame is that all of them share; None for boxes in the world.
+        fixtures: fixtures that are upright, turned about the vertical only.
+        origin: the frame that all of them share; None for boxes in the world.
     """
     found = [
         (extent.mean(axis=0), (extent[1] - extent[0]) / 2.0, _stance_of(fixture))
@@ -179,14 +179,14 @@ def overlaps(a: BoxSet, b: BoxSet, by_m: float) -> NDArray[np.bool_]:
 
 
 def _reach(boxes: BoxSet, angle: Array, shape: tuple[int, int]) -> Array:
-    """How far boxes reach from their middle in a direction."""
+    """Return how far boxes extend from their centre in a direction."""
     own = angle - boxes.heading.reshape(shape)
     x, y = boxes.half[:, 0].reshape(shape), boxes.half[:, 1].reshape(shape)
     return np.asarray(x * np.abs(np.cos(own)) + y * np.abs(np.sin(own)))
 
 
 def _own(offset: Array, heading: Array) -> Array:
-    """(N, 2) offsets of the world in frames of these headings (N,)."""
+    """Return (N, 2) world offsets in frames of headings (N,)."""
     c, s = np.cos(heading), np.sin(heading)
     return np.stack([c * offset[:, 0] + s * offset[:, 1], c * offset[:, 1] - s * offset[:, 0]], axis=1)
 

@@ -1,4 +1,4 @@
-"""Where one can walk: rectangles of floor, the walls around them, and the doors in the walls."""
+"""Floor plans: walkable rectangles, the walls around them, and the doors in the walls."""
 
 import math
 from dataclasses import dataclass
@@ -11,9 +11,9 @@ from pydantic import Field
 from peopleboy.bad_input import BadInput
 from peopleboy.settings import Coordinate, Word
 
-# Upright rectangles on the floor: what they share, and what one leaves of another.
+# Axis-aligned rectangles on the floor: intersection and difference.
 
-CLOSE_M = 1e-9  # rectangles so close touch
+CLOSE_M = 1e-9  # rectangles within this distance touch
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,12 +27,12 @@ class Rectangle:
 
     @property
     def is_empty(self) -> bool:
-        """Whether it has no inside."""
+        """Whether its area is empty."""
         return self.max_x - self.min_x <= CLOSE_M or self.max_y - self.min_y <= CLOSE_M
 
     @property
     def centre(self) -> tuple[float, float]:
-        """Its middle (x, y) [m]."""
+        """Centre (x, y) [m]."""
         return (self.min_x + self.max_x) / 2.0, (self.min_y + self.max_y) / 2.0
 
     @property
@@ -42,21 +42,21 @@ class Rectangle:
 
     @property
     def area(self) -> float:
-        """What it covers [m2]."""
+        """Area [m2]."""
         return (self.max_x - self.min_x) * (self.max_y - self.min_y)
 
     def grown(self, margin_m: float) -> "Rectangle":
-        """The rectangle with every side moved outward by margin_m; inward if it is negative."""
+        """Return the rectangle with every side moved outward by margin_m; inward if it is negative."""
         return Rectangle(
             self.min_x - margin_m, self.min_y - margin_m, self.max_x + margin_m, self.max_y + margin_m
         )
 
     def meets(self, other: "Rectangle") -> bool:
-        """Whether the insides of the two share a point."""
+        """Return whether the interiors of the two overlap."""
         return not self.cut(other).is_empty
 
     def cut(self, other: "Rectangle") -> "Rectangle":
-        """What the two share; empty if nothing."""
+        """Return the intersection, which may be empty."""
         return Rectangle(
             max(self.min_x, other.min_x),
             max(self.min_y, other.min_y),
@@ -65,7 +65,7 @@ class Rectangle:
         )
 
     def without(self, hole: "Rectangle") -> "tuple[Rectangle, ...]":
-        """Split what is left outside a hole into at most four rectangles that do not overlap."""
+        """Subtract a hole; return at most four rectangles that do not overlap."""
         cut = self.cut(hole)
         if cut.is_empty:
             return (self,)
@@ -91,7 +91,7 @@ def subtract(block: Rectangle, holes: tuple[Rectangle, ...]) -> tuple[Rectangle,
 
 
 def lengthened(block: Rectangle, piece: Rectangle) -> Rectangle | None:
-    """The union of two rectangles that do not overlap, if it is a rectangle itself."""
+    """Return the union of two rectangles that do not overlap, if it is a rectangle itself."""
     union = Rectangle(
         min(block.min_x, piece.min_x),
         min(block.min_y, piece.min_y),
@@ -145,7 +145,7 @@ class WallSide(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Wall:
-    """One side of an area, which stands as a wall where no other area follows."""
+    """One side of an area, with a wall where no other area adjoins."""
 
     name: str
     area: Rectangle
@@ -159,28 +159,28 @@ class Door:
     wall: Annotated[
         Word,
         Field(
-            description="name of the wall: north, south, east or west; in L and T corridors after the leg, "
+            description="name of the wall: north, south, east or west; in L and T corridors with the leg, "
             "as in first_north"
         ),
     ]
     along_m: Annotated[
         Coordinate,
         Field(
-            description="middle of the door: world x in a north or south wall, world y in an east or west "
+            description="centre of the door: world x in a north or south wall, world y in an east or west "
             "wall"
         ),
     ]
     width_m: Annotated[float, Field(ge=0.7, le=4.0, description="width of the opening")] = 0.95
     height_m: Annotated[float, Field(ge=1.9, le=3.0, description="height of the opening")] = 2.05
     is_open: Annotated[
-        bool, Field(alias="open", description="a closed door is a leaf on the wall, with nothing behind")
+        bool, Field(alias="open", description="a closed door is a leaf on the wall without a lobby behind")
     ] = True
     lobby_m: Annotated[float, Field(ge=1.0, le=6.0, description="depth of the lobby behind an open door")] = (
         1.5
     )
 
 
-LOBBY_MARGIN_M = 0.9  # room beside the opening, enough to stand out of sight
+LOBBY_MARGIN_M = 0.9  # space beside the opening, enough to stand out of sight
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -199,7 +199,7 @@ class FloorPlan:
         """Refuse doors that do not fit into their walls, or whose lobby would cut into the place.
 
         Raises:
-            BadInput: a door is wider than its wall, overlaps another, or has no space behind.
+            BadInput: a door is wider than its wall, overlaps another one, or has no space behind it.
         """
         for index, door in enumerate(self.doors):
             self._check_fits(index, door)
@@ -213,7 +213,7 @@ class FloorPlan:
         """Find a wall.
 
         Raises:
-            BadInput: no wall has that name.
+            BadInput: there is no wall of that name.
         """
         found = {wall.name: wall for wall in self.walls()}
         if name not in found:
@@ -221,7 +221,7 @@ class FloorPlan:
         return found[name]
 
     def walls(self) -> tuple[Wall, ...]:
-        """List the sides of all areas along which at least a piece of wall stands."""
+        """List the sides of all areas that have at least one piece of wall."""
         return _walls(self.areas)
 
     def opening(self, door: Door) -> Rectangle:
@@ -242,7 +242,7 @@ class FloorPlan:
         )
 
     def wall_pieces(self) -> tuple[tuple[Wall, Rectangle], ...]:
-        """Cut all walls into upright blocks that neither overlap each other nor stand on floor."""
+        """Divide all walls into upright blocks that overlap neither each other nor the floor."""
         floor = self.walkable()
         placed: list[tuple[Wall, Rectangle]] = []
         for wall in (*self.walls(), *self._lobby_walls()):
@@ -255,7 +255,7 @@ class FloorPlan:
         return any(area.contains(x, y) for area in self.walkable())
 
     def describe(self) -> str:
-        """Return where the floor is, for messages."""
+        """Return a description of the floor, for messages."""
         parts = (
             f"{f'{name} has ' if name else ''}x {a.min_x:g} to {a.max_x:g} and y {a.min_y:g} to {a.max_y:g}"
             for name, a in self.areas
@@ -278,7 +278,7 @@ class FloorPlan:
         half = door.width_m / 2.0 + WALL_M
         if not low + half <= door.along_m <= high - half:
             raise BadInput(
-                f"{door.along_m:g} does not leave room for a door of {door.width_m:g} m "
+                f"{door.along_m:g} does not leave space for a door of {door.width_m:g} m "
                 f"in wall {door.wall!r}, which reaches from {low:g} to {high:g} m",
                 key=("doors", index, "along_m"),
             )
@@ -288,8 +288,8 @@ class FloorPlan:
         for name, area in self.areas:
             if any(part.meets(area) for part in behind):
                 raise BadInput(
-                    f"{door.along_m:g} puts the door of wall {door.wall!r} into {name or 'the room'}; "
-                    f"choose a place with {WALL_M + door.lobby_m:g} m behind the wall",
+                    f"{door.along_m:g}: behind the door of wall {door.wall!r} is {name or 'the room'}; "
+                    f"choose a position with {WALL_M + door.lobby_m:g} m of space behind the wall",
                     key=("doors", index, "along_m"),
                 )
 
@@ -323,11 +323,11 @@ def _walls(areas: tuple[tuple[str, Rectangle], ...]) -> tuple[Wall, ...]:
 
 
 def _join_stubs(blocks: list[tuple[Wall, Rectangle]]) -> tuple[tuple[Wall, Rectangle], ...]:
-    """Return each lone corner to a block that it lengthens, so that no seam crosses a straight wall."""
+    """Join each single corner to a block that it lengthens, so that no seam crosses a straight wall."""
     joined = list(blocks)
     for stub in [item for item in blocks if item[1].longer_side <= WALL_M + CLOSE_M]:
         if stub not in joined:
-            continue  # another corner made it longer
+            continue  # lengthened by another corner
         others = [item for item in joined if item != stub]
         for index, (wall, block) in enumerate(others):
             union = lengthened(block, stub[1])
@@ -339,7 +339,7 @@ def _join_stubs(blocks: list[tuple[Wall, Rectangle]]) -> tuple[tuple[Wall, Recta
 
 
 def _facing(wall: Wall) -> Rectangle:
-    """The strip outside a wall's area without its corners."""
+    """Return the strip outside a wall's area, without its corners."""
     strip = wall.side.strip(wall.area, WALL_M)
     if wall.side in (WallSide.NORTH, WallSide.SOUTH):
         return Rectangle(wall.area.min_x, strip.min_y, wall.area.max_x, strip.max_y)

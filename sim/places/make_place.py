@@ -1,4 +1,4 @@
-"""Build a place of its settings: its shell, the things in it, and what moves them."""
+"""Build a place from its settings: its shell, its things, and their movers."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -36,16 +36,16 @@ def make_place(
     """Build a whole place.
 
     Args:
-        config: the place without its things.
-        plan: its floor, as `lay_out` gives it.
-        things: what stands or hangs in it.
+        config: settings of the place without its things.
+        plan: its floor plan, as returned by `lay_out`.
+        things: settings of its things.
         lights: time [s] and level of each step of its light; empty for full light.
-        people: names of all people, who may move things.
-        duration_s: [s] of a run.
-        folder: where URDF files of the scenario's own lie.
+        people: names of all people, who can move things.
+        duration_s: [s] duration of a run.
+        folder: folder of the scenario's own URDF files.
 
     Raises:
-        BadInput: something does not fit; with its key.
+        BadInput: a setting does not fit; with its key.
     """
     placed = Furnishing(plan, config.height_m, config.temperatures.air_c, folder).place(things)
     surfaces = _surfaces(config)
@@ -82,7 +82,7 @@ def build_place(
     movers: tuple[Mover, ...] = (),
     sun: Sun | None = None,
 ) -> Place:
-    """Build the shell of a place, unless one is given, and put things into it, some of which are moved."""
+    """Build the shell of a place, unless one is given, and add static and moving things."""
     materials = Surfaces() if surfaces is None else surfaces
     fixtures = (*(room_shell(plan, height_m, materials) if shell is None else shell), *things)
     moved = {mover.name for mover in movers}
@@ -101,7 +101,7 @@ def build_place(
 
 
 def obstacles(fixtures: tuple[Fixture, ...]) -> tuple[tuple[str, ...], NDArray[np.float64]]:
-    """List everything solid that a walking person can bump into.
+    """List all solid obstacles to walking people.
 
     Returns:
         The K names, and (K, 4) [m] min x, min y, max x, max y.
@@ -134,7 +134,7 @@ def _surfaces(config: PlaceConfig) -> Surfaces:
 
 
 def _door_c(temperatures: Temperatures) -> float:
-    """How warm closed doors are: as the air [degC]."""
+    """Return the temperature of closed doors: that of the air [degC]."""
     return _USUAL_AIR_C if temperatures.air_c is None else temperatures.air_c
 
 

@@ -1,4 +1,4 @@
-"""Things that are moved: where a thing is at a time, and what happens to it then."""
+"""Moving things: their actions, and their state at any time."""
 
 import math
 from dataclasses import dataclass
@@ -12,14 +12,14 @@ from peopleboy.sim.shapes.shapes import Quaternion, Vector
 
 Array = NDArray[np.float64]
 
-_HANDLE_M = 1.0  # above the floor, as near as the thing has it
-_BESIDE_M = 0.1  # from a thing to its hinge
-_FROM_EDGE = 0.94  # of the way from the middle of a leaf to its edge is its handle
+_HANDLE_M = 1.0  # height of the handle above the floor, limited to the thing's extent
+_BESIDE_M = 0.1  # largest distance from a thing to its hinge
+_FROM_EDGE = 0.94  # position of the handle as a share of the distance from the centre of a leaf to its edge
 _SAME_S = 1e-9
 
 
 class ActionKind(StrEnum):
-    """What may happen to a thing."""
+    """The kinds of actions on a thing."""
 
     APPEAR = "appear"
     VANISH = "vanish"
@@ -33,11 +33,11 @@ LASTING = (ActionKind.GLIDE, ActionKind.TURN, ActionKind.SLIDE)
 
 @dataclass(frozen=True, slots=True)
 class Stance:
-    """Where the frame of a thing is.
+    """Pose of the frame of a thing.
 
     Attributes:
         position_m: (x, y, z) [m] world frame; z is the height of its foot.
-        heading_rad: [rad] where its front looks.
+        heading_rad: [rad] direction of its front.
     """
 
     position_m: Vector
@@ -45,19 +45,19 @@ class Stance:
 
     @property
     def orientation(self) -> Quaternion:
-        """World from thing: x, y, z, w."""
+        """Quaternion world from thing: x, y, z, w."""
         return (0.0, 0.0, math.sin(self.heading_rad / 2.0), math.cos(self.heading_rad / 2.0))
 
     def place(self, points: Array) -> Array:
-        """(..., 3) [m] points of the thing's frame, in the world frame."""
+        """Map (..., 3) points [m] from the thing's frame to the world frame."""
         return np.asarray(points @ _turned(self.heading_rad).T + np.array(self.position_m))
 
     def locate(self, points: Array) -> Array:
-        """(..., 3) [m] points of the world frame, in the thing's frame."""
+        """Map (..., 3) points [m] from the world frame to the thing's frame."""
         return np.asarray((points - np.array(self.position_m)) @ _turned(self.heading_rad))
 
     def turned_about(self, hinge_m: tuple[float, float], angle_rad: float) -> "Stance":
-        """The stance after a turn about an upright axis through hinge_m (x, y) [m]."""
+        """Return the pose after a turn about a vertical axis through hinge_m (x, y) [m]."""
         x, y, z = self.position_m
         dx, dy = x - hinge_m[0], y - hinge_m[1]
         c, s = math.cos(angle_rad), math.sin(angle_rad)
@@ -67,15 +67,15 @@ class Stance:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Action:
-    """Something that happens to a thing.
+    """An action on a thing.
 
     Attributes:
-        kind: what.
-        at_s: [s] when it begins.
-        takes_s: [s] how long it lasts; 0 of what appears or vanishes.
-        target: where the thing is at its end.
+        kind: kind of the action.
+        at_s: [s] start.
+        takes_s: [s] duration; 0 for `appear` and `vanish`.
+        target: pose of the thing at the end.
         hinge_m: (x, y) [m] of the upright axis that it turns about; None if it does not turn.
-        by: name of the person whose hand does it; None for nobody.
+        by: name of the person whose hand does it, or None.
     """
 
     kind: ActionKind
@@ -87,13 +87,13 @@ class Action:
 
     @property
     def ends_s(self) -> float:
-        """[s] when it is over."""
+        """[s] end of the action."""
         return self.at_s + self.takes_s
 
     def stance(self, start: Stance, time_s: float) -> Stance:
         """Where a thing that was at `start` before is at a time while or after this happens.
 
-        It starts and stops gently: after a share u of the time it has gone 3 u^2 - 2 u^3 of the way.
+        It starts and stops gently: after a share u of the time it has covered 3 u^2 - 2 u^3 of the path.
         """
         if self.kind not in LASTING or time_s >= self.ends_s - _SAME_S:
             return self.target
@@ -107,13 +107,13 @@ class Action:
 
 @dataclass(frozen=True, slots=True)
 class ThingState:
-    """A thing at an instant.
+    """State of a thing at an instant.
 
     Attributes:
-        stance: where it is, or was last.
-        is_there: whether it is to be seen.
-        is_moving: whether something moves it.
-        by: the person who moves it, or did last; None for nobody.
+        stance: its current or last pose.
+        is_there: whether it is present.
+        is_moving: whether it is being moved.
+        by: the person who moves it, or moved it last; None for none.
     """
 
     stance: Stance
@@ -124,14 +124,14 @@ class ThingState:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mover:
-    """A thing to which something happens.
+    """A thing with actions.
 
     Attributes:
-        name: of the thing; its fixtures are called so, or "name/piece".
-        start: where it is at first.
+        name: name of the thing; its fixtures have this name, or "name/piece".
+        start: its initial pose.
         low_m, high_m: [m] corners of the box around it, in its own frame.
-        is_hidden_at_start: whether it is not there yet.
-        actions: in the order of time; none begins before the one before it is over.
+        is_hidden_at_start: whether it is absent at first.
+        actions: actions in order of time; none starts before the previous one is over.
     """
 
     name: str
@@ -146,7 +146,7 @@ class Mover:
         return np.array(list(product(*zip(self.low_m, self.high_m, strict=True))))
 
     def at(self, time_s: float) -> ThingState:
-        """Return where the thing is at a time [s]; it depends on nothing else."""
+        """Return the state of the thing at a time [s], on which alone it depends."""
         stance, is_there, by = self.start, not self.is_hidden_at_start, None
         for action in self.actions:
             if time_s < action.at_s - _SAME_S:
@@ -158,16 +158,16 @@ class Mover:
         return ThingState(stance, is_there, is_moving=False, by=by)
 
     def grip(self, action: Action, time_s: float, person: tuple[float, float]) -> Array:
-        """Where a person holds the thing at a time: (3,) [m] in the world frame.
+        """Return the point at which a person holds the thing at a time: (3,) [m] in the world frame.
 
-        It is the edge farthest from the hinge of what has one, the middle of the front of what slides, and
-        of anything else the point nearest to the person, as far up as a hand is. A thing that is turned about
-        an axis beside it, as about who carries it, has no hinge.
+        It is the edge farthest from the hinge if there is one, the front's middle of a sliding thing, and
+        otherwise the point nearest to the person, at the height of a hand. A thing that turns about an axis
+        away from it, such as the person who carries it, has no hinge.
 
         Args:
-            action: for which it is held.
-            time_s: [s]; outside the action, where it is held at its beginning or its end.
-            person: (x, y) [m] where the person stands.
+            action: the action for which it is held.
+            time_s: [s] time; before or after the action, its start or its end counts.
+            person: (x, y) [m] position of the person.
         """
         stance = self.at(min(max(time_s, action.at_s), action.ends_s)).stance
         low, high = np.array(self.low_m), np.array(self.high_m)
@@ -183,7 +183,7 @@ class Mover:
 
 
 def _handle(low: Array, high: Array, hinge: Array) -> Array:
-    """(2,) near the end of the longer side of a rectangle, far from the hinge."""
+    """Return the point (2,) near the end of a rectangle's longer side, far from the hinge."""
     middle, longer = (low + high) / 2.0, int(np.argmax(high - low))
     far = low if abs(low[longer] - hinge[longer]) > abs(high[longer] - hinge[longer]) else high
     middle[longer] += _FROM_EDGE * (far[longer] - middle[longer])
@@ -191,12 +191,12 @@ def _handle(low: Array, high: Array, hinge: Array) -> Array:
 
 
 def ease(share: float) -> float:
-    """How far something has gone after a share of its time, if it starts and stops gently."""
+    """Return the share of a path covered after a share of the time, with gentle start and stop."""
     return share * share * (3.0 - 2.0 * share)
 
 
 def shorter_turn(before_rad: float, after_rad: float) -> float:
-    """The turn [rad] from one heading to another, the shorter way round."""
+    """Return the shorter turn [rad] from one heading to another."""
     return math.remainder(after_rad - before_rad, math.tau)
 
 

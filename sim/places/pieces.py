@@ -11,7 +11,7 @@ from typing import Any
 from peopleboy.sim.shapes.materials import Covering, Pattern, Rgb
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, ShapeKind, Vector
 
-# Feet reach this far into the floor and backs into the wall, so that no two faces lie in one plane.
+# Feet extend this far into the floor and backs into the wall, so that no two faces are coplanar.
 SINK_M = 0.01
 
 WHITE: Rgb = (0.78, 0.78, 0.75)
@@ -23,7 +23,7 @@ ALONG_Y: Quaternion = (math.sin(math.pi / 4.0), 0.0, 0.0, math.cos(math.pi / 4.0
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """Shapes of one look in the frame of their thing; see `Material` for what the rest means."""
+    """Shapes of one appearance in the frame of their thing; see `Material` for the other attributes."""
 
     name: str
     shapes: tuple[Shape, ...]
@@ -48,13 +48,13 @@ class Kind:
     """A kind of thing, with its usual size (depth, width, height), temperature and colour.
 
     Attributes:
-        build: size [m] and main temperature [degC] and colour to pieces, the main one first.
-        is_hung: whether it hangs on a wall, its back against it.
-        is_from_ceiling: whether it hangs under the ceiling.
+        build: maps size [m], main temperature [degC] and colour to pieces, the main one first.
+        is_hung: whether it is mounted on a wall.
+        is_from_ceiling: whether it hangs from the ceiling.
         is_to_ceiling: whether its usual height is that of the place.
-        is_seat: whether a person may sit on it, and so be where it is.
+        is_seat: whether a person can sit on it, and so may overlap it.
         base_m: [m] usual height of its foot.
-        is_heated: whether its main piece is warm by itself, and not as the air has it.
+        is_heated: whether its main piece is heated, and does not follow the air.
     """
 
     build: Builder
@@ -75,7 +75,7 @@ _KINDS_BY_MODULE: dict[str, dict[str, Kind]] = {}
 def thing_kind(name: str, **usual: Any) -> Callable[[Builder], Builder]:
     """Register a builder as a kind of thing, with the attributes of `Kind`.
 
-    A builder with several kinds registers the lowest decorator first.
+    If a builder has several kinds, the lowest decorator is registered first.
     """
 
     def register(build: Builder) -> Builder:
@@ -91,31 +91,31 @@ def kinds_of(module: str) -> dict[str, Kind]:
 
 
 def box(size: Vector, position: Vector) -> Shape:
-    """A box by its full extents and its middle [m]."""
+    """Make a box from its full extents and its centre [m]."""
     return Shape(kind=ShapeKind.BOX, size=size, position=position)
 
 
 def standing_box(
     depth: float, width: float, bottom: float, top: float, x: float = 0.0, y: float = 0.0
 ) -> Shape:
-    """A box from one height to another [m]."""
+    """Make a box from one height to another [m]."""
     return box((depth, width, top - bottom), (x, y, (bottom + top) / 2.0))
 
 
 def tube(length: float, radius: float, position: Vector, orientation: Quaternion = UPRIGHT) -> Shape:
-    """A cylinder by its length, radius and middle [m]; along z unless turned."""
+    """Make a cylinder from its length, radius and centre [m], along z unless turned."""
     return Shape(
         kind=ShapeKind.CYLINDER, size=(length, radius, 0.0), position=position, orientation=orientation
     )
 
 
 def ball(radius: float, position: Vector) -> Shape:
-    """A sphere [m]."""
+    """Make a sphere [m]."""
     return Shape(kind=ShapeKind.SPHERE, size=(radius, 0.0, 0.0), position=position)
 
 
 def corner_legs(thick: float, top: float, x: float, y: float) -> tuple[Shape, ...]:
-    """Four square legs from below the floor to a height, this far [m] from the middle on both axes."""
+    """Make four square legs from below the floor to a height, at a distance [m] from the centre."""
     return tuple(
         standing_box(thick, thick, -SINK_M, top, x=sx * x, y=sy * y)
         for sx in (-1.0, 1.0)

@@ -1,4 +1,4 @@
-"""What stands in a world: walls, floor, ceiling, and the things between them."""
+"""The place of a world: walls, floor, ceiling and things."""
 
 import math
 from dataclasses import dataclass
@@ -13,24 +13,24 @@ from peopleboy.sim.places.moving import Mover
 from peopleboy.sim.shapes.materials import Covering, Material
 from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Quaternion, Vector
 
-# What is lower than a step or higher than a head is in nobody's way.
+# Objects lower than a step or higher than a head are no obstacles.
 STEP_M = 0.03
 HEAD_M = 2.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fixture:
-    """One thing that stands there: a wall, a radiator, one part of a desk, or furniture from a URDF file.
+    """One object of a place: a wall, a radiator, one part of a desk, or furniture from a URDF file.
 
     Attributes:
-        name: unique; what comes before a "/" names the thing that it is part of ("monitor_1/screen").
-        part: shapes and look; None for a URDF.
+        name: unique; the part before a "/" is the name of its thing ("monitor_1/screen").
+        part: shapes and appearance; None for a URDF.
         urdf: file known to PyBullet, such as "table/table.urdf"; None for parts.
-        material: of every surface of a URDF, its colours being the file's own; None for parts.
-        scale: of a URDF.
+        material: material of every surface of a URDF, with the colours of the file; None for parts.
+        scale: scale of a URDF.
         position: [m] world frame.
         orientation: x, y, z, w quaternion, world from fixture.
-        is_solid: whether it stops robot, people and sonar.
+        is_solid: whether robot, people and sonar rays collide with it.
     """
 
     name: str
@@ -47,44 +47,40 @@ class Fixture:
 class Sun:
     """Position of the sun, and its effect on floor and walls that it reaches through windows."""
 
-    azimuth_deg: Annotated[Degrees, Field(description="where it stands: 0 is along x, 90 along y")]
-    elevation_deg: Annotated[
-        float, Field(ge=5.0, le=85.0, description="how high it stands above the horizon")
-    ]
-    warms_k: Annotated[
-        float, Field(ge=0.0, le=40.0, description="how much warmer it makes what it shines on")
-    ] = 8.0
+    azimuth_deg: Annotated[Degrees, Field(description="azimuth: 0 is along x, 90 along y")]
+    elevation_deg: Annotated[float, Field(ge=5.0, le=85.0, description="elevation above the horizon")]
+    warms_k: Annotated[float, Field(ge=0.0, le=40.0, description="temperature rise of sunlit surfaces")] = 8.0
     brightens: Annotated[
-        float, Field(ge=0.0, le=5.0, description="how much brighter, as a share of the light without it")
+        float, Field(ge=0.0, le=5.0, description="brightness rise, as a share of the light without sun")
     ] = 0.9
 
     @property
     def azimuth_rad(self) -> float:
-        """[rad] where it stands, from +x towards +y."""
+        """[rad] azimuth, from +x towards +y."""
         return math.radians(self.azimuth_deg)
 
     @property
     def elevation_rad(self) -> float:
-        """[rad] above the horizon."""
+        """[rad] elevation above the horizon."""
         return math.radians(self.elevation_deg)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Place:
-    """A room or corridor with everything that stands in it, or is moved there.
+    """A room, corridor or street with its static and moving objects.
 
     Attributes:
-        fixtures: all of it, drawn in this order; of what is moved, where it is at first.
-        obstacles: (K, 4) [m] min x, min y, max x, max y of everything solid that stands on the floor and
-            that nobody moves.
-        obstacle_names: the K names, for messages.
+        fixtures: all objects in drawing order; moving ones at their initial poses.
+        obstacles: (K, 4) [m] min x, min y, max x, max y of all static solid objects
+            on the floor.
+        obstacle_names: the K names of the obstacles, for messages.
         bounds: [m] min x, min y, max x, max y of the floor and the walls around it.
-        surroundings_c: [degC] what surfaces of low emissivity mirror.
+        surroundings_c: [degC] temperature that surfaces of low emissivity mirror.
         light: (time [s], level) steps of the room's light; level 1 is full, 0 is dark.
-        movers: the things to which something happens.
-        sun: the sun, where it shines in; only `detail: full` shows it.
-        things: names of the things in it, in the order in which they were given.
-        seats: names of those that one may sit on.
+        movers: the moving things.
+        sun: the sun, if there is any; visible only with `detail: full`.
+        things: names of the things, in the given order.
+        seats: names of the things that people can sit on.
     """
 
     fixtures: tuple[Fixture, ...]
@@ -99,7 +95,7 @@ class Place:
     seats: frozenset[str] = frozenset()
 
     def obstacles_at(self, time_s: float) -> NDArray[np.float64]:
-        """(K, 4) [m] as `obstacles`, with what is moved where it is at a time."""
+        """Return (K, 4) [m] rectangles as in `obstacles`, including moving things at a time."""
         boxes = [box for mover in self.movers if (box := _ground_box(mover, time_s)) is not None]
         return np.concatenate([self.obstacles, boxes]) if boxes else self.obstacles
 
@@ -110,13 +106,13 @@ def air_of(place: Place) -> float:
 
 
 def is_outdoors(place: Place) -> bool:
-    """Return whether there is a street, over which wind blows."""
+    """Return whether the place is a street, which has wind."""
     floors = (fixture.part.material.covering for fixture in place.fixtures if fixture.part is not None)
     return Covering.STREET in floors
 
 
 def _ground_box(mover: Mover, time_s: float) -> NDArray[np.float64] | None:
-    """The rectangle (4,) around a thing at a time; None if it is in nobody's way."""
+    """Return the rectangle (4,) around a thing at a time; None if it is no obstacle."""
     state = mover.at(time_s)
     corners = state.stance.place(mover.corners())
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -126,5 +122,5 @@ def _ground_box(mover: Mover, time_s: float) -> NDArray[np.float64] | None:
 
 
 def is_in_the_way(low_m: float, high_m: float) -> bool:
-    """Whether people bump into what reaches from one height to another: no step, and not overhead."""
+    """Return whether an object between two heights is an obstacle: neither a step nor overhead."""
     return low_m < HEAD_M and high_m > STEP_M

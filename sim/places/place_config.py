@@ -1,4 +1,4 @@
-"""The settings of a place: its kind and size, its doors, and its surfaces."""
+"""The settings of a place: its kind, size, doors and surfaces."""
 
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, Final, Literal
@@ -16,12 +16,12 @@ Length = Annotated[float, Field(ge=1.5, le=100.0)]
 
 _LINTEL_M: Final = 0.1
 
-# Surfaces of a place against its air [K], where they are left out but the air is not.
+# Default surface temperatures less the given air temperature [K].
 _FROM_AIR: Final = {"floor_c": -1.0, "ceiling_c": 1.8, "walls_c": 0.5, "surroundings_c": 0.0}
 
 
 def _follow_air(given: Any) -> Any:
-    """Fill in the temperatures that follow from the air; what is no temperature is refused later."""
+    """Fill in the temperatures that follow the air; invalid values are refused later."""
     air = given.get("air_c") if isinstance(given, dict) else None
     if not isinstance(air, int | float) or not -40.0 <= air <= 60.0:
         return given
@@ -39,12 +39,12 @@ class Temperatures:
             "follow it where they have no temperature of their own; if omitted, all is as at 21 degC"
         ),
     ] = None
-    floor_c: Annotated[Celsius, Field(description="of the floor")] = 20.0
-    ceiling_c: Annotated[Celsius, Field(description="of the ceiling")] = 22.8
-    walls_c: Annotated[Celsius, Field(description="of all walls that `single_walls_c` does not name")] = 21.5
+    floor_c: Annotated[Celsius, Field(description="temperature of the floor")] = 20.0
+    ceiling_c: Annotated[Celsius, Field(description="temperature of the ceiling")] = 22.8
+    walls_c: Annotated[Celsius, Field(description="all walls that are not in `single_walls_c`")] = 21.5
     single_walls_c: Annotated[
         dict[Word, Celsius],
-        Field(description="walls that differ, by name, such as an outer wall in winter"),
+        Field(description="temperatures of single walls by name, such as an outer wall in winter"),
     ] = field(default_factory=dict)
     surroundings_c: Annotated[Celsius, Field(description="what surfaces of low emissivity mirror")] = 21.0
 
@@ -61,20 +61,20 @@ class Colours:
 
 @dataclass(frozen=True, kw_only=True)
 class AnyPlaceConfig:
-    """What all places have."""
+    """Settings of all places."""
 
     width_m: Annotated[float, Field(ge=1.2, le=60.0, description="width; in L and T corridors, of both legs")]
     height_m: Annotated[float, Field(ge=2.2, le=8.0, description="height of the ceiling")] = 2.7
     doors: Annotated[tuple[Door, ...], Field(strict=False, description="openings in the walls")] = ()
     temperatures: Annotated[
-        Temperatures, BeforeValidator(_follow_air), Field(description="of its surfaces")
+        Temperatures, BeforeValidator(_follow_air), Field(description="temperatures of its surfaces")
     ] = field(default_factory=Temperatures)
-    colours: Annotated[Colours, Field(description="of its surfaces")] = field(default_factory=Colours)
+    colours: Annotated[Colours, Field(description="colours of its surfaces")] = field(default_factory=Colours)
     floor_shine: Annotated[
         Share,
         Field(
-            description="how much of what the floor reflects it mirrors, from 0, a carpet, to 1, polished "
-            "stone; seen with `detail: full`"
+            description="specular share of the floor's reflection, from 0, a carpet, to 1, polished stone; "
+            "visible with `detail: full`"
         ),
     ] = 0.3
     sun: Annotated[
@@ -157,8 +157,8 @@ class StreetConfig(AnyPlaceConfig):
     sky_c: Annotated[
         Celsius,
         Field(
-            description="what the sky seems to have at the horizon; overhead it is 15 K colder, and clouds "
-            "are warmer"
+            description="apparent temperature of the sky at the horizon; overhead it is 15 K colder, and "
+            "clouds are warmer"
         ),
     ] = 5.0
 
@@ -170,13 +170,13 @@ class StreetConfig(AnyPlaceConfig):
         """Name the walls that are fronts of houses.
 
         Raises:
-            BadInput: a door is where no house is.
+            BadInput: a door is on a side without houses.
         """
         walls = {"both": ("north", "south"), "none": ()}.get(self.houses, (self.houses,))
         for index, door in enumerate(self.doors):
             if door.wall not in walls:
                 raise BadInput(
-                    f"there is no house in the {door.wall}; houses is {self.houses!r}",
+                    f"there is no house on side {door.wall}; houses is {self.houses!r}",
                     key=("doors", index, "wall"),
                 )
         return frozenset(walls)
@@ -192,7 +192,7 @@ def lay_out(config: PlaceConfig) -> FloorPlan:
     """Lay out the floor of a place, with its doors.
 
     Raises:
-        BadInput: an unknown wall, or a door that does not fit.
+        BadInput: a wall is unknown, or a door does not fit.
     """
     plan = config.areas()
     for index, door in enumerate(config.doors):
@@ -248,10 +248,10 @@ def t_corridor(stem_m: float, bar_m: float, width_m: float) -> FloorPlan:
 
 
 def check_wall(plan: FloorPlan, key: Key, name: str) -> None:
-    """Refuse the name of a wall that the plan lacks.
+    """Refuse the name of a wall that is not in the plan.
 
     Raises:
-        BadInput: with the key and the walls that there are.
+        BadInput: the wall is unknown; with the key and the known walls.
     """
     known = [wall.name for wall in plan.walls()]
     if name not in known:

@@ -8,24 +8,24 @@ from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.shapes.materials import Covering, Material, Pattern, PatternKind
 from peopleboy.sim.shapes.shapes import Part, Shape, ShapeKind
 
-# Blocks that meet run this far into each other, so that no two faces lie in one plane.
+# Adjoining blocks overlap by this much, so that no two faces are coplanar.
 SINK_M = 0.05
 
-_LEAF_M = 0.03  # how far a closed door's leaf stands out of its wall
-_FAR_M = 30.0  # from the street to where the world ends
-_SKY_M = 24.0  # how high the sky hangs
-_STEP_M = 0.02  # how much lower it is where nobody walks
-_LOBBY_M = 2.6  # how high the walls of a lobby are
+_LEAF_M = 0.03  # distance of a closed door's leaf from its wall
+_FAR_M = 30.0  # distance from the street to the end of the world
+_SKY_M = 24.0  # height of the sky
+_STEP_M = 0.02  # depth of the ground beyond the walkable area
+_LOBBY_M = 2.6  # height of the walls of a lobby
 _HORIZON = {WallSide.NORTH: "north", WallSide.SOUTH: "south", WallSide.EAST: "east", WallSide.WEST: "west"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Surfaces:
-    """Looks of the shell of a place.
+    """Materials of the shell of a place.
 
     Attributes:
-        floor, ceiling, walls, door: looks; a door's is that of its closed leaf.
-        named: looks of single walls, by the wall's name.
+        floor, ceiling, walls, door: materials; that of a door is for its closed leaf.
+        named: materials of single walls, by name.
     """
 
     floor: Material = field(
@@ -66,14 +66,14 @@ class Surfaces:
     named: Mapping[str, Material] = field(default_factory=dict)
 
     def of_wall(self, wall: Wall) -> Material:
-        """The look of one wall."""
+        """Return the material of one wall."""
         return self.named.get(wall.name, self.walls)
 
 
 def room_shell(plan: FloorPlan, height_m: float, materials: Surfaces) -> tuple[Fixture, ...]:
     """Build the fixtures of rooms and corridors: a ray from any point inside meets a surface.
 
-    No two visible faces lie in one plane and overlap.
+    No two visible faces are coplanar and overlap.
     """
     outside = plan.bounds().grown(SINK_M)
     walls = tuple(
@@ -119,7 +119,7 @@ def build_door(plan: FloorPlan, number: int, door: Door, height_m: float, materi
 
 
 def block_fixture(name: str, block: Rectangle, bottom_m: float, top_m: float, material: Material) -> Fixture:
-    """An upright block on a rectangle of floor, from one height to another [m]."""
+    """Make an upright block on a rectangle of floor, from one height to another [m]."""
     x, y = block.centre
     size = (block.max_x - block.min_x, block.max_y - block.min_y, top_m - bottom_m)
     shape = Shape(kind=ShapeKind.BOX, size=size)
@@ -132,12 +132,12 @@ def block_fixture(name: str, block: Rectangle, bottom_m: float, top_m: float, ma
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StreetLook:
-    """What a street has that a room has not.
+    """Additional settings of a street.
 
     Attributes:
-        houses: names of the walls that are fronts of houses; the others are not there.
+        houses: names of the walls that are house fronts; the others are absent.
         house_m: [m] height of the houses.
-        sky_c: [degC] what the sky seems to have at the horizon.
+        sky_c: [degC] apparent temperature of the sky at the horizon.
     """
 
     houses: frozenset[str]
@@ -182,7 +182,7 @@ def street_shell(plan: FloorPlan, look: StreetLook, surfaces: Surfaces) -> tuple
 
 
 def _fronts(surfaces: Surfaces) -> Surfaces:
-    """The looks with those of houses on every wall."""
+    """Return the materials with those of houses on every wall."""
     named = {name: replace(look, covering=Covering.FACADE) for name, look in surfaces.named.items()}
     return replace(surfaces, walls=replace(surfaces.walls, covering=Covering.FACADE), named=named)
 

@@ -1,1 +1,1 @@
-"""Furniture and other things: how each kind is made, and where those of a scenario stand."""
+"""Furniture and other things: builders of each kind, and the placement of a scenario's things."""

@@ -1,4 +1,4 @@
-"""What runs warm in kitchens, halls and workshops, and what stands about there.
+"""Warm appliances and other things of kitchens, halls and workshops.
 
 Builders as in `furniture_pieces`: size [m], temperature [degC] and colour of the main piece, which is first.
 """
@@ -232,7 +232,7 @@ def machine(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("glass_wall", size_m=(0.08, 2.4, 2.4), temperature_c=19.5, rgb=(0.45, 0.55, 0.55))
 def glass_wall(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A pane from floor to top in a frame of posts, which mirrors who walks past."""
+    """A pane from floor to top in a frame of posts, which mirrors people who walk past."""
     depth, width, height = size
     pane = standing_box(0.4 * depth, width - 0.02, 0.02, height - 0.02)
     count = max(round(width / 1.2), 1)
@@ -262,7 +262,7 @@ def glass_wall(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("dog", size_m=(0.75, 0.28, 0.6), temperature_c=28.5, rgb=(0.3, 0.18, 0.08), is_heated=True)
 def dog(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A dog that stands: as warm as a person, and half as tall as a child."""
+    """A standing dog: as warm as a person, and half as tall as a child."""
     depth, width, height = size
     radius, back = 0.42 * width, 0.62 * height
     trunk = capsule(0.42 * depth, radius, (-0.04 * depth, 0.0, back), ALONG_X)
@@ -309,7 +309,7 @@ def bench(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("railing", size_m=(0.04, 2.0, 1.05), temperature_c=19.5, rgb=STEEL)
 def railing(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A barrier of two rails and upright bars, through which one sees."""
+    """A barrier of two rails and upright bars, which can be seen through."""
     depth, width, height = size
     radius = 0.5 * depth
     rails = tuple(tube(width, radius, (0.0, 0.0, at), ALONG_Y) for at in (0.15, height - radius))

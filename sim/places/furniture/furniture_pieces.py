@@ -1,4 +1,4 @@
-"""What stands, lies and hangs in rooms: warm clutter that a tracker must not take for people, and furniture.
+"""Things of rooms: furniture, and warm clutter that a tracker must not mistake for people.
 
 Source of the list of clutter: T fig. 4.1. Every builder takes depth, width, height [m] and the temperature
 [degC] and colour of the main piece, and returns the pieces, the main one first.
@@ -143,7 +143,7 @@ def robot(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     )
 
 
-# Furniture at room temperature, pillars, and what hangs on walls.
+# Furniture at room temperature, pillars, and things on walls.
 
 # Middle of each ball of leaves, in radii sideways and as a share of the height, and its share of the radius.
 _LEAVES = ((0.0, 0.0, 1.0, 1.0), (0.7, 0.4, 0.6, 0.9), (-0.6, 0.6, 0.5, 0.8), (0.0, -0.8, 0.55, 0.9))

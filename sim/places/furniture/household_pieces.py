@@ -1,4 +1,4 @@
-"""What people take up, put down, open and close: toys, cans, doors, cupboards and drawers.
+"""Things that people carry, open and close: toys, cans, doors, cupboards and drawers.
 
 Builders as in `furniture_pieces`: size [m], temperature [degC] and colour of the main piece, which is first.
 """
@@ -56,7 +56,7 @@ def can(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("flower", size_m=(0.5, 0.5, 1.0), temperature_c=20.5, rgb=(0.05, 0.22, 0.06))
 def flower(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A bush on a stem, in a pot that one can carry."""
+    """A bush on a stem, in a pot that can be carried."""
     _, width, height = size
     radius, pot = 0.3 * width, 0.26 * height
     bush = (
@@ -128,5 +128,5 @@ def drawer(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 
 def _pitched(angle: float) -> Quaternion:
-    """A turn about y [rad]: what points up leans to the front."""
+    """Return a rotation about y [rad]: an upward direction leans to the front."""
     return (0.0, math.sin(angle / 2.0), 0.0, math.cos(angle / 2.0))

@@ -1,4 +1,4 @@
-"""Make movers of the actions of things; actions that cannot happen are refused."""
+"""Make movers from the actions of things; impossible actions are refused."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -15,9 +15,9 @@ from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.shapes.shapes import UPRIGHT
 from peopleboy.wording import hint
 
-_OFF_LINE_M = 0.02  # how far what slides may get off its own line
+_OFF_LINE_M = 0.02  # distance that a sliding thing may deviate from its line
 _AFTER_S = 1e-6
-FASTEST_M_S = 2.5  # on the whole way, so that nothing jumps over what it would sweep through
+FASTEST_M_S = 2.5  # largest mean speed, so that collisions along the path are not skipped
 _WANTS: Mapping[ActionKind, tuple[str, ...]] = {
     ActionKind.TURN: ("facing_deg", "hinge_m"),
     ActionKind.SLIDE: ("to_m",),
@@ -38,17 +38,17 @@ def make_movers(
     people: Sequence[str],
     duration_s: float,
 ) -> tuple[Mover, ...]:
-    """Collect the things to which something happens.
+    """Collect the things that have actions.
 
     Args:
-        things: all of a place.
+        things: all things of a place.
         placed: their fixtures by name, in the same order.
-        plan: the floor.
+        plan: the floor plan.
         people: names of all people.
-        duration_s: [s] of a run.
+        duration_s: [s] duration of a run.
 
     Raises:
-        BadInput: something cannot happen; with its key.
+        BadInput: an action is impossible; with its key.
     """
     movers = []
     for index, (name, thing) in enumerate(zip(placed, things, strict=True)):
@@ -61,9 +61,9 @@ def make_movers(
 
 def _check_thing(thing: ThingConfig) -> None:
     if thing.name is None:
-        raise BadInput("missing key 'name': a thing to which something happens needs one")
+        raise BadInput("missing key 'name', which a thing with actions needs")
     if not thing.actions:
-        raise BadInput("it never appears; give it an action of kind 'appear'", key=("hidden_at_start",))
+        raise BadInput("it never appears; add an action of kind 'appear'", key=("hidden_at_start",))
 
 
 def _mover(
@@ -96,7 +96,7 @@ def _stance(fixture: Fixture) -> Stance:
 
 
 def _own_box(fixtures: Sequence[Fixture]) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-    """The corners of the box around a thing, in its own frame."""
+    """Return the corners of the box around a thing, in its own frame."""
     here = [replace(fixture, position=(0.0, 0.0, 0.0), orientation=UPRIGHT) for fixture in fixtures]
     extents = np.array([fixture_extent(fixture) for fixture in here])
     (x0, y0, z0), (x1, y1, z1) = extents[:, 0].min(axis=0).tolist(), extents[:, 1].max(axis=0).tolist()
@@ -107,15 +107,15 @@ def _check_keys(action: ActionConfig) -> None:
     kind = ActionKind(action.kind)
     for key in ("to_m", "base_m", "facing_deg", "takes_s", "hinge_m"):
         if getattr(action, key) is not None and key not in _TAKES[kind]:
-            raise BadInput(f"what is to {kind} takes none; leave it out", key=(key,))
+            raise BadInput(f"action '{kind}' does not use it; leave it out", key=(key,))
     for key in _WANTS.get(kind, ()):
         if getattr(action, key) is None:
-            raise BadInput(f"missing key {key!r}: what is to {kind} needs it")
+            raise BadInput(f"missing key {key!r}, which action '{kind}' needs")
     wherever = (action.to_m, action.base_m, action.facing_deg)
     if kind is ActionKind.GLIDE and all(value is None for value in wherever):
-        raise BadInput("missing key 'to_m', 'base_m' or 'facing_deg': what is to glide needs one of them")
+        raise BadInput("missing key 'to_m', 'base_m' or 'facing_deg': action 'glide' needs one of them")
     if kind in LASTING and action.takes_s is None:
-        raise BadInput(f"missing key 'takes_s': what is to {kind} takes some time")
+        raise BadInput(f"missing key 'takes_s', which action '{kind}' needs")
     if action.takes_s is not None and action.takes_s <= 0.0:
         raise BadInput(f"{action.takes_s:g} must be more than 0", key=("takes_s",))
 
@@ -129,10 +129,10 @@ def _check_time(action: ActionConfig, mover: Mover, duration_s: float) -> None:
         return
     before = mover.actions[-1]
     if action.at_s < before.at_s - _AFTER_S:
-        raise BadInput(f"{action.at_s:g} must be after {before.at_s:g} before it", key=("at_s",))
+        raise BadInput(f"{action.at_s:g} must be after {before.at_s:g}, the previous start", key=("at_s",))
     if action.at_s < before.ends_s - _AFTER_S or action.at_s <= before.at_s:
         raise BadInput(
-            f"{action.at_s:g} is before the action before it is over, at {before.ends_s:g}", key=("at_s",)
+            f"{action.at_s:g} is before the end of the previous action, {before.ends_s:g}", key=("at_s",)
         )
 
 
@@ -173,14 +173,14 @@ def _check_target(spec: ActionConfig, action: Action, mover: Mover, plan: FloorP
     way_m = math.dist(before.position_m, action.target.position_m)
     if action.takes_s and way_m > FASTEST_M_S * action.takes_s:
         raise BadInput(
-            f"{action.takes_s:g} is too short for {way_m:.2g} m; things go at {FASTEST_M_S:g} m/s at most",
+            f"{action.takes_s:g} is too short for {way_m:.2g} m; the fastest speed is {FASTEST_M_S:g} m/s",
             key=("takes_s",),
         )
     if action.kind is ActionKind.SLIDE:
         aside = abs(float(before.locate(np.array(action.target.position_m))[1]))
         if aside > _OFF_LINE_M:
             raise BadInput(
-                f"({x:g}, {y:g}) is {aside:.2g} m beside the line along which {mover.name!r} slides; "
-                "or let it glide",
+                f"({x:g}, {y:g}) is {aside:.2g} m off the line along which {mover.name!r} slides; "
+                "or use action 'glide'",
                 key=("to_m",),
             )

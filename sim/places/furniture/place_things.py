@@ -1,4 +1,4 @@
-"""Where the things of a scenario stand: on the floor, against or on a wall, under the ceiling, on a thing."""
+"""Placement of a scenario's things: on the floor, at or on a wall, under the ceiling, on a thing."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -19,7 +19,7 @@ from peopleboy.sim.shapes.materials import Material, Pattern, PatternKind, rgb_o
 from peopleboy.sim.shapes.shapes import Part, Vector
 from peopleboy.wording import hint
 
-_USUAL_AIR_C = 21.0  # for which the kinds' temperatures are given
+_USUAL_AIR_C = 21.0  # air temperature for which the kinds' temperatures are given
 _SHADE = 0.45  # brightness of a pattern's second colour, as a share of the first
 
 
@@ -32,14 +32,14 @@ def build_thing(
     air_c: float | None = None,
     urdf: str | None = None,
 ) -> tuple[Fixture, ...]:
-    """Build a thing as fixtures called "name/piece"; one of a single piece keeps its bare name.
+    """Build a thing as fixtures named "name/piece", or just "name" for a single piece.
 
     Args:
-        config: what it is, and how its main surface looks.
-        stance: where it stands.
-        name: unique in its place; None for the name in the settings.
+        config: its kind, and the appearance of its main surface.
+        stance: its pose.
+        name: unique name in the place; None for the name in the settings.
         size_m: [m] depth, width, height; None for the kind's usual size.
-        air_c: [degC] air of the place, which things that are not heated follow; None for the usual air.
+        air_c: [degC] air temperature of the place, which unheated things follow; None for the usual one.
         urdf: file of a thing of kind "urdf", as PyBullet finds it.
     """
     name = config.name or config.kind if name is None else name
@@ -73,7 +73,7 @@ def build_thing(
 
 
 def _pieces(config: ThingConfig, kind: Kind, size_m: Vector | None, air_c: float | None) -> tuple[Piece, ...]:
-    """The pieces of a thing; emissivity, shine and pattern go to the first, the main one."""
+    """Return the pieces of a thing; emissivity, shine and pattern apply to the first, main piece."""
     rgb = kind.rgb if config.colour is None else rgb_of(config.colour)
     warmer_k = 0.0 if air_c is None else air_c - _USUAL_AIR_C
     usual_c = kind.temperature_c if kind.is_heated else kind.temperature_c + warmer_k
@@ -108,15 +108,15 @@ def _material(piece: Piece) -> Material:
     )
 
 
-_GAP_M = 0.01  # between a wall and what stands against it
-_SINK_M = 0.005  # furniture from a file reaches so far into what it stands on
+_GAP_M = 0.01  # gap between a wall and a thing that stands against it
+_SINK_M = 0.005  # furniture from a file sinks this far into the surface below
 
 
 def name_things(things: Sequence[ThingConfig]) -> tuple[str, ...]:
-    """Name every thing; one without a name is called by its kind and its number among its kind.
+    """Name every thing; the default name is the kind with a number.
 
     Raises:
-        BadInput: two things have one name.
+        BadInput: two things have the same name.
     """
     names: list[str] = []
     for index, thing in enumerate(things):
@@ -124,7 +124,7 @@ def name_things(things: Sequence[ThingConfig]) -> tuple[str, ...]:
         name = thing.name if thing.name is not None else f"{thing.kind}_{number}"
         if name in names:
             raise BadInput(
-                f"{name!r} is also things[{names.index(name)}]; give each its own",
+                f"{name!r} is also the name of things[{names.index(name)}]; names must be unique",
                 key=("things", index, "name"),
             )
         names.append(name)
@@ -133,13 +133,13 @@ def name_things(things: Sequence[ThingConfig]) -> tuple[str, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Furnishing:
-    """A floor on which things are placed one after the other.
+    """A floor on which things are placed in order.
 
     Attributes:
-        plan: the floor.
+        plan: the floor plan.
         ceiling_m: height of the ceiling.
-        air_c: [degC] of the air; None for the usual one.
-        folder: where URDF files of the scenario's own lie.
+        air_c: [degC] air temperature; None for the usual one.
+        folder: folder of the scenario's own URDF files.
         placed: fixtures of the things so far, by name, in order.
     """
 
@@ -150,10 +150,10 @@ class Furnishing:
     placed: dict[str, tuple[Fixture, ...]] = field(default_factory=dict)
 
     def place(self, things: Sequence[ThingConfig]) -> Mapping[str, tuple[Fixture, ...]]:
-        """Build all things, each where it belongs.
+        """Build all things at their positions.
 
         Raises:
-            BadInput: an unknown wall or thing, no place or two, or a URDF that cannot be used.
+            BadInput: a wall or thing is unknown, there is not one position, or a URDF is unusable.
         """
         for index, (name, thing) in enumerate(zip(name_things(things), things, strict=True)):
             with found_in("things", index):
@@ -172,7 +172,7 @@ class Furnishing:
         return build_thing(thing, stance, name=name, size_m=size, air_c=self.air_c, urdf=urdf)
 
     def _usual_extent(self, thing: ThingConfig) -> Extent:
-        """The box around a thing of a known kind, in its own frame: the back of a hung one is at x = 0."""
+        """Return the box around a thing of a known kind, in its frame; a wall-mounted one starts at x = 0."""
         kind = KINDS[thing.kind]
         depth, width, height = kind.size_m if thing.size_m is None else thing.size_m
         if kind.is_to_ceiling and thing.size_m is None:
@@ -185,12 +185,12 @@ class Furnishing:
         return Stance((x, y, self._base(thing, extent)), facing)
 
     def _on_floor(self, thing: ThingConfig, extent: Extent) -> tuple[float, float, float]:
-        """(x, y) [m] on the floor, and the heading of the front [rad]."""
+        """Return (x, y) [m] on the floor, and the heading of the front [rad]."""
         facing = math.radians(thing.facing_deg)
         if thing.wall is not None:
             return self._at_wall(thing, extent)
         if thing.along_m is not None:
-            raise BadInput("it needs the key 'wall' beside it", key=("along_m",))
+            raise BadInput("it needs the key 'wall'", key=("along_m",))
         if thing.at_m is not None:
             return *thing.at_m, facing
         if thing.on_top_of is not None:
@@ -203,12 +203,12 @@ class Furnishing:
         if thing.at_m is not None or thing.on_top_of is not None:
             raise BadInput("give either 'wall' with 'along_m', or 'at_m', or 'on_top_of'", key=("wall",))
         if thing.along_m is None:
-            raise BadInput("missing key 'along_m' beside 'wall'")
+            raise BadInput("missing key 'along_m', which 'wall' needs")
         low, high = wall.side.span(wall.area)
         half = float(extent[1, 1] - extent[0, 1]) / 2.0
         if not low + half <= thing.along_m <= high - half:
             raise BadInput(
-                f"{thing.along_m:g} puts it beyond the end of wall {wall.name!r}, "
+                f"{thing.along_m:g} is beyond the end of wall {wall.name!r}, "
                 f"which reaches from {low:g} to {high:g} m",
                 key=("along_m",),
             )
@@ -224,7 +224,7 @@ class Furnishing:
         return walls[name]
 
     def _base(self, thing: ThingConfig, extent: Extent) -> float:
-        """[m] height of a thing's foot."""
+        """Return the height of a thing's foot [m]."""
         if thing.base_m is not None:
             return thing.base_m
         if thing.on_top_of is not None:
@@ -255,10 +255,10 @@ def _urdf_extent(urdf: str) -> Extent:
 
 
 def _find_urdf(thing: ThingConfig, folder: Path) -> str | None:
-    """The name by which PyBullet finds the file: inside pybullet_data, or in the scenario's own folder."""
+    """Return the name by which PyBullet finds the file, in pybullet_data or in the scenario's folder."""
     if thing.kind != "urdf":
         if thing.urdf is not None:
-            raise BadInput("only a thing of kind 'urdf' takes it", key=("urdf",))
+            raise BadInput("only a thing of kind 'urdf' uses it", key=("urdf",))
         return None
     if thing.urdf is None:
         raise BadInput("missing key 'urdf': a file such as 'table/table.urdf'")

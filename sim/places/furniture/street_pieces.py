@@ -1,4 +1,4 @@
-"""What stands in streets and garages.
+"""Things of streets and garages.
 
 Builders as in `furniture_pieces`: size [m], temperature [degC] and colour of the main piece, which is first.
 """
@@ -154,7 +154,7 @@ def tree(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 
 def _beside(height: float, x: float, y: float, z: float, away_m: float) -> Vector:
-    """The point so far from the middle of a crown, which is somewhat flat, in a direction."""
+    """Return a point at a distance from the centre of a slightly flattened crown, in a direction."""
     return (away_m * x, away_m * y, height + 0.85 * away_m * z)
 
 

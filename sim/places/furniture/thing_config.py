@@ -1,4 +1,4 @@
-"""Every kind of thing by name, and the settings of a thing: where it stands, how it looks, what it does."""
+"""The kinds of things by name, and the settings of a thing: position, appearance and actions."""
 
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
@@ -44,12 +44,12 @@ class PatternConfig:
 class ActionConfig:
     """A move of an object, by itself or by a person's hand."""
 
-    at_s: Annotated[float, Field(le=36000.0, description="when it begins")]
+    at_s: Annotated[float, Field(le=36000.0, description="start of the action")]
     kind: Annotated[
         ActionName,
         Field(
             description="`appear` and `vanish` at once; `glide` to another place, also up and down; `turn` "
-            "about a hinge, as a door; `slide` forth or back along its own front, as a drawer"
+            "about a hinge, as a door; `slide` forwards or backwards, as a drawer"
         ),
     ]
     to_m: Annotated[
@@ -80,9 +80,9 @@ class ActionConfig:
 class ThingConfig:
     """An object on the floor, on another object, or on a wall."""
 
-    kind: Annotated[ThingKind, Field(description="what it is")]
+    kind: Annotated[ThingKind, Field(description="kind of thing")]
     name: Annotated[
-        Name | None, Field(description="defaults to the kind and a number, such as radiator_1")
+        Name | None, Field(description="name; by default the kind and a number, such as radiator_1")
     ] = None
     at_m: Annotated[Point | None, Field(description="position on the floor; not together with `wall`")] = None
     wall: Annotated[Word | None, Field(description="wall on which it hangs or against which it stands")] = (
