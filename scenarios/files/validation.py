@@ -111,7 +111,7 @@ def _camera_model(name: str, kind: CameraKind) -> type[BaseModel]:
     settings = (*geometry, *own)
     extra: dict[str, Any] = {"kind": (Literal[name], Field(description=f"kind of camera: {kind.what}"))}
     if kind.presets:
-        meaning = f"named defaults for omitted keys: {kind.presets_are}"
+        meaning = f"preset for omitted keys: {kind.presets_are}"
         extra["preset"] = (Literal[*kind.presets] | None, Field(default=None, description=meaning))
     return _keys_model(f"{name.capitalize()}Camera", about, settings, shows_defaults=True, extra=extra)
 
