@@ -1,4 +1,4 @@
-"""Calibrations of cameras: where each sits on the robot, and which directions its pixels look in."""
+"""Calibrations of cameras: mounting pose on the robot, and viewing ray of each pixel."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 
 
 class Calibration(Protocol):
-    """What a tracker must know of a camera to tell metres from pixels.
+    """Calibration of a camera, which a tracker needs to convert between metres and pixels.
 
     The robot's frame is x forward, y left, z up, with z = 0 on the floor [m]; pixels are u right, v down from
     the middle of the first one.
@@ -53,7 +53,7 @@ class PinholeCalibration:
     _robot_from_pixel: Floats = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Refuse what is no calibration."""
+        """Refuse invalid values."""
         for name, shape in (("intrinsics", (3, 3)), ("robot_from_camera", (4, 4))):
             matrix = getattr(self, name)
             if np.shape(matrix) != shape or not np.isfinite(matrix).all():
@@ -82,7 +82,7 @@ class PinholeCalibration:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PanoramaCalibration:
-    """Calibration of a camera that sees all round by a cone-shaped mirror over the robot's axis.
+    """Calibration of a panoramic camera with a cone-shaped mirror over the robot's axis.
 
     Columns look in one direction each, the first to the robot's back, then by its left, front and right to
     its back again; a column beyond the last one is the first again. In each the mirror makes a pinhole
@@ -107,13 +107,13 @@ class PanoramaCalibration:
     ring_height_m: float
 
     def __post_init__(self) -> None:
-        """Refuse what is no calibration."""
+        """Refuse invalid values."""
         for name, value in asdict(self).items():
             if not math.isfinite(value):
                 raise BadInput(f"calibration: {name} must be a finite number, got {value}")
         if min(self.width, self.height, self.focal_px) <= 0:
             size = f"{self.width} x {self.height} px"
-            raise BadInput(f"calibration: {size} at a focal length of {self.focal_px} px is no image")
+            raise BadInput(f"calibration: {size} at a focal length of {self.focal_px} px is invalid")
 
     @property
     def position_m(self) -> tuple[float, float, float]:

@@ -1,1 +1,1 @@
-"""Many kinematic worlds at once: their state lies side by side in arrays, which kernels go through."""
+"""Batched simulation: the state of many kinematic worlds in joint arrays, advanced by kernels."""

@@ -1,4 +1,4 @@
-"""The cameras of many worlds: their images of an instant, made by threads ahead of time or on demand."""
+"""The cameras of many worlds: images rendered by threads ahead of time or on demand."""
 
 import os
 from collections.abc import Callable, Mapping, Sequence
@@ -26,7 +26,7 @@ Task = Callable[[], None]
 
 
 class WorkerPool:
-    """A number of threads, of which the one that asks is the first; alone it does all itself.
+    """A pool of threads, which includes the calling one.
 
     Args:
         threads: 1 or more; None for as many as there are processors that this process may run on.
@@ -37,25 +37,25 @@ class WorkerPool:
         self._pool = ThreadPoolExecutor(self.threads - 1) if self.threads > 1 else None
 
     def start(self, tasks: Sequence[Task]) -> "PendingWork":
-        """Begin with tasks that do not need each other; they are done when `PendingWork.finish` returns."""
+        """Start independent tasks; they are done when `PendingWork.finish` returns."""
         return PendingWork(
             [(task, None if self._pool is None else self._pool.submit(task)) for task in tasks]
         )
 
     def close(self) -> None:
-        """Let the threads go."""
+        """Stop the threads."""
         if self._pool is not None:
             self._pool.shutdown()
 
 
 class PendingWork:
-    """Tasks under way."""
+    """Tasks in progress."""
 
     def __init__(self, tasks: Sequence[tuple[Task, Future[None] | None]]) -> None:
         self._tasks = list(tasks)
 
     def finish(self) -> None:
-        """Do the tasks that no thread has begun, the last first, and wait for the rest."""
+        """Do the tasks that no thread has started, the last first, and wait for the others."""
         begun = []
         while self._tasks:
             task, future = self._tasks.pop()
@@ -77,7 +77,7 @@ Start = Callable[[], tuple[Images, PendingWork]]
 
 
 class Exposure:
-    """What one camera takes at an instant in some of G worlds.
+    """Images of one camera at an instant in some of G worlds.
 
     Args:
         name: of the camera.
@@ -94,7 +94,7 @@ class Exposure:
         self.is_asked_for = False
 
     def begin(self) -> tuple[Images, PendingWork]:
-        """Have the images made.
+        """Start rendering.
 
         Raises:
             BadInput: the instant is over, and had not begun them.
@@ -102,24 +102,24 @@ class Exposure:
         if self._begun is None:
             if self._is_over:
                 raise BadInput(
-                    f"camera {self.name!r}: the image of an instant that is over was not asked for while it "
-                    "lasted; read it before the next step or observation"
+                    f"camera {self.name!r}: the image of an earlier instant was not read in "
+                    "time; read it before the next step or observation"
                 )
             self._begun = self._start()
         return self._begun
 
     def end(self) -> None:
-        """Wait for what has begun; nothing else can begin any more."""
+        """Wait for started work, and prevent further rendering."""
         self._is_over = True
         if self._begun is not None:
             self._begun[1].finish()
 
     def images(self) -> NDArray[Any]:
-        """Return those of the camera's own name, of all of its worlds."""
+        """Return the camera's first layer for all of its worlds."""
         return self._finish()[0]
 
     def image(self, name: str, place: int) -> NDArray[Any]:
-        """Return an image of that name, of the world at some place among its own."""
+        """Return one image by name, for the world at an index among the camera's worlds."""
         images = self._finish()
         if name == self.name:
             return np.asarray(images[0][place])
@@ -133,7 +133,7 @@ class Exposure:
 
 
 class Exposures:
-    """All of an instant.
+    """All images of an instant.
 
     Args:
         shots: of each camera that is due anywhere.
@@ -145,15 +145,15 @@ class Exposures:
 
     @classmethod
     def none(cls) -> "Exposures":
-        """Those of no instant yet."""
+        """Return an empty set of images."""
         return cls((), {})
 
     def asked_for(self) -> set[str]:
-        """Names of the cameras whose images were asked for."""
+        """Return the names of the cameras whose images were read."""
         return {shot.name for shot in self._shots if shot.is_asked_for}
 
     def end(self) -> None:
-        """Wait for what has begun, as must be before anything in the worlds changes."""
+        """Wait for started work; call it before the worlds change."""
         for shot in self._shots:
             shot.end()
 
@@ -173,7 +173,7 @@ class Exposures:
         return OnDemand(owners, make)
 
     def of_camera(self, camera: str) -> tuple[Sequence[int], Sequence[NDArray[Any]] | NDArray[Any]]:
-        """Return the images of a camera's own name: in which of the worlds it takes one, and these."""
+        """Return the worlds in which a camera takes an image, and the images of its first layer."""
         return next(((shot.rows, shot.images()) for shot in self._shots if shot.name == camera), ((), ()))
 
 
@@ -234,14 +234,14 @@ class BatchCameras:
                     turned=turn_rad_s[rows] * config.exposure_s,
                 )
                 shots.append(Exposure(name, config, rows, partial(self._render, name, active[rows], poses)))
-        for shot in reversed(shots):  # as who looks at the first of them helps with that
+        for shot in reversed(shots):  # the reader of the first image helps to render it
             if shot.name in asked_for:
                 shot.begin()
         self._shots = Exposures(shots, self._images)
         return self._shots
 
     def finish(self) -> None:
-        """Wait for all images under way, as must be before the worlds change."""
+        """Wait for all images in progress; call it before the worlds change."""
         self._shots.end()
 
     def _render(self, name: str, worlds: Numbers, poses: Poses) -> tuple[Images, PendingWork]:
@@ -252,7 +252,7 @@ class BatchCameras:
 
 
 def shared_cameras(world: World) -> tuple[tuple[str, CameraConfig], ...] | None:
-    """What all worlds must share whose images are made together; None for a world that makes its own."""
+    """Return the key shared by worlds that are rendered together; None for a world that renders alone."""
     config = world.config
     if config.renderer != "raycast" or config.detail != "plain":
         return None

@@ -20,7 +20,7 @@ from peopleboy.sim.world import World
 
 
 class Parts(NamedTuple):
-    """What Q people are made of, one after the other.
+    """The parts of Q people, one person after the other.
 
     Attributes:
         offsets, soles: (Q, 17, 3) and (Q, 3, 3) [m] as in `Frame`.
@@ -38,7 +38,7 @@ class Parts(NamedTuple):
 
 
 class BatchLimbs:
-    """Everybody in B worlds in which people are seen.
+    """The limbs of all people in B worlds with images.
 
     Args:
         worlds: of a batch.
@@ -60,7 +60,7 @@ class BatchLimbs:
         self._parts = self._know_parts(worlds)
 
     def move(self, active: Numbers, times_s: Array, dt_s: float) -> None:
-        """Advance gaits and postures of all in some worlds who walk by records, and have just walked on.
+        """Advance gaits and postures of people in some worlds who have just been moved by kernels.
 
         Args:
             active: (G,) numbers of the worlds.
@@ -77,7 +77,7 @@ class BatchLimbs:
         )  # fmt: skip
 
     def place(self, active: Numbers) -> None:
-        """Put the parts of all who are in some worlds where they are now, but of those who handle a thing."""
+        """Place the parts of all people in some worlds, except people who handle a thing."""
         walks = self._walks
         is_going = np.zeros(len(walks.is_scripted), np.bool_)
         is_going[active] = True

@@ -1,4 +1,4 @@
-"""One control step of many worlds: their joined states, who walks where, and the robots among them."""
+"""One control step of many worlds: joined states, walking people, and robots."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -20,7 +20,7 @@ from peopleboy.sim.world import World
 
 
 class JoinedWorlds(NamedTuple):
-    """B worlds; numbers within them are those of each world by itself.
+    """Joined state of B worlds; indices within them are those of each single world.
 
     Attributes:
         bodies: of all worlds, one world after the other.
@@ -42,7 +42,7 @@ class JoinedWorlds(NamedTuple):
 
 
 def join_worlds(states: Sequence[VehicleState]) -> tuple[JoinedWorlds, list[VehicleState]]:
-    """Copy the states of worlds into arrays of all of them.
+    """Copy the states of worlds into joint arrays.
 
     Returns:
         The arrays, and each world's state anew, which lies in them.
@@ -68,7 +68,7 @@ def _state_in(joined: JoinedWorlds, number: int, before: VehicleState) -> Vehicl
 
 @njit(cache=True, nogil=True)
 def slice_world(joined: JoinedWorlds, number: int) -> tuple[Placements, Solids]:
-    """Bodies and solids of one of the worlds."""
+    """Return the bodies and solids of one world."""
     b, b_end = joined.first_body[number], joined.first_body[number + 1]
     p, p_end = joined.first_part[number], joined.first_part[number + 1]
     s, s_end = joined.tables.shape[number], joined.tables.shape[number + 1]
@@ -85,7 +85,7 @@ def slice_world(joined: JoinedWorlds, number: int) -> tuple[Placements, Solids]:
 
 @njit(cache=True, nogil=True)
 def refresh_worlds(active: Numbers, joined: JoinedWorlds) -> None:
-    """Bring some of the worlds up to date, as `refresh` does with one."""
+    """Update some of the worlds, as `refresh` does for one."""
     for number in active:
         bodies, solids = slice_world(joined, number)
         refresh(bodies, solids)
@@ -98,7 +98,7 @@ _TWO = 2.0  # see `walk_on`
 
 
 class BatchWalks:
-    """The people of B worlds, whose records lie in one array from now on.
+    """The people of B worlds, whose records move to one joint array.
 
     Attributes:
         first: (B + 1,) where the people of each world begin.
@@ -129,7 +129,7 @@ class BatchWalks:
             crowd.rebind(self.records[first:end])
 
     def step(self, active: Numbers, times_s: Array, dt_s: float, robots: Array) -> None:
-        """Let all walk on who are guided by scripts; the others have just walked.
+        """Advance people who only follow scripts; the others have been advanced already.
 
         Args:
             active: (G,) numbers of the worlds.
@@ -141,7 +141,7 @@ class BatchWalks:
 
 
 class JoinedWalks(NamedTuple):
-    """All people and walls of B worlds, as kernels take them; see `BatchWalks`."""
+    """All people and walls of B worlds in the format of the kernels; see `BatchWalks`."""
 
     is_scripted: NDArray[np.bool_]
     first: Numbers
@@ -195,7 +195,7 @@ def drive_step(
     steps: int,
     touched: NDArray[np.bool_],
 ) -> None:
-    """Do what `World.step` does physics step by physics step, for the worlds of some numbers.
+    """Do the physics steps of `World.step` for the given worlds.
 
     Args:
         active: (G,) numbers of the worlds.
@@ -246,7 +246,7 @@ def _gears_of(gears: Gears, world: int) -> Gears:
 
 @njit(cache=True)
 def _move_people(people: BatchCapsules, world: int, share: float, bodies: Placements) -> None:
-    """Put solid people where they are when this share of the step has passed."""
+    """Place solid people at this share of the control step."""
     for q in range(people.first[world], people.first[world + 1]):
         if people.is_solid[q]:
             before, after = people.before[q], people.after[q]
@@ -257,7 +257,7 @@ def _move_people(people: BatchCapsules, world: int, share: float, bodies: Placem
 
 @njit(cache=True)
 def _put_people(people: BatchCapsules, world: int, bodies: Placements) -> None:
-    """Put solid people where they are when the step is over, to the last bit."""
+    """Place solid people at the end of the control step, bit-exactly."""
     for q in range(people.first[world], people.first[world + 1]):
         if people.is_solid[q]:
             _place(bodies, people.body[q], people.after[q, 0], people.after[q, 1], people.middle_m[q])
@@ -272,7 +272,7 @@ def _place(bodies: Placements, body: int, x: float, y: float, z: float) -> None:
 
 
 class BatchDrive:
-    """The robots of B worlds, whose gears lie in arrays of all of them from now on.
+    """The robots of B worlds, whose drive states move to joint arrays.
 
     Args:
         worlds: of a batch.
@@ -302,7 +302,7 @@ class BatchDrive:
         self._dt_s, self._steps = 1.0 / config.physics_hz, config.physics_hz // config.control_hz
 
     def command(self, active: Numbers, commands: Array) -> None:
-        """Ask for velocities (G, 2) [m/s, rad/s] in worlds of some numbers (G,), as `PeopleBot.command`.
+        """Set target velocities (G, 2) [m/s, rad/s] in worlds of some numbers (G,), as `PeopleBot.command`.
 
         Raises:
             BadInput: a command is not finite.
@@ -315,12 +315,12 @@ class BatchDrive:
 
     @property
     def are_solid(self) -> NDArray[np.bool_]:
-        """(Q,) whether each of all people is there to be met."""
+        """Return (Q,) whether each person has a solid capsule."""
         are_solid: NDArray[np.bool_] = ~self._joined.bodies.hidden[self._bodies]
         return are_solid
 
     def drive(self, active: Numbers, before: Array) -> NDArray[np.bool_]:
-        """Let physics do a control step, and count what the wheels have turned.
+        """Do the physics of a control step, and update the odometry.
 
         Args:
             active: (G,) numbers of the worlds.
@@ -344,7 +344,7 @@ class BatchDrive:
 
 
 def _capsules(worlds: Sequence[World], walks: BatchWalks) -> BatchCapsules:
-    """By what people are met; where it is comes with each step."""
+    """Return the solid capsules of people; their positions follow in each step."""
     people = [person for world in worlds for person in world.crowd.people]
     places = walks.records["position"]
     return BatchCapsules(

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 
 class JoinedScene(NamedTuple):
-    """B worlds; numbers within them are those of each world by itself.
+    """Joined scenes of B worlds; indices within them are those of each single world.
 
     Attributes:
         tables: visible shapes of all worlds.
@@ -36,7 +36,7 @@ class JoinedScene(NamedTuple):
 
 
 def join_scenes(tables: Sequence[ShapeTable], materials: Sequence[MaterialTable]) -> JoinedScene:
-    """Copy tables and materials of worlds of plain detail into arrays of all of them."""
+    """Copy tables and materials of worlds of plain detail into joint arrays."""
     joined = materials[0]._replace(
         **{name: np.concatenate([getattr(each, name) for each in materials]) for name in _OF_PARTS}
     )
@@ -48,7 +48,7 @@ _OF_PARTS = ("thermal", "colour", "kind", "period", "phase", "shine")
 
 @njit(cache=True, nogil=True)
 def materials_of(scene: JoinedScene, world: int) -> MaterialTable:
-    """How the parts of one of the worlds look."""
+    """Return the materials of the parts of one world."""
     materials, p, p_end = scene.materials, scene.part[world], scene.part[world + 1]
     return MaterialTable(
         materials.thermal[p:p_end],
@@ -69,7 +69,7 @@ _LEAST_SWEEP_PX = 0.05  # as in `rotation_blur`
 
 
 class Poses(NamedTuple):
-    """Where all is that is to be seen.
+    """Poses of all visible parts.
 
     Attributes:
         part: (P, 4, 4) world from part, of all worlds of a `JoinedScene`.
@@ -85,7 +85,7 @@ class Poses(NamedTuple):
 
 
 class KernelCamera(NamedTuple):
-    """A pinhole camera as kernels take it.
+    """A pinhole camera in the format of the kernels.
 
     Attributes:
         lens: where its pixels look.
@@ -99,7 +99,7 @@ class KernelCamera(NamedTuple):
 
 
 class ViewBatch(NamedTuple):
-    """What the cameras of G worlds look at, one camera each, all alike.
+    """The views of G worlds' cameras, one each, with equal settings.
 
     Attributes:
         worlds: (G,) numbers of the worlds in the scene.
@@ -124,7 +124,7 @@ class Buffers(NamedTuple):
 
 @njit(cache=True)
 def make_buffers(lens: Lens, scene: JoinedScene) -> tuple[Canvas, Buffers]:
-    """Space for one image after the other."""
+    """Return buffers that are reused for each image."""
     shape, surfaces, first = (lens.height, lens.width), 0, scene.tables.surface
     for world in range(len(first) - 1):
         surfaces = max(surfaces, first[world + 1] - first[world])
@@ -163,7 +163,7 @@ def blur_by_rotation(lines: Image, sweep_of_one_rad: Array, turned_rad: float, c
 
 
 class ColourResponse(NamedTuple):
-    """How a colour camera exposes.
+    """Exposure of a colour camera.
 
     Attributes:
         read_noise, shot_noise: as in `LightConfig`.
@@ -189,7 +189,7 @@ def render_colour(
     words: NDArray[np.uint64],
     image: NDArray[np.uint8],
 ) -> None:
-    """Make colour images, as `render_radiance` and `detect_thermal` make thermal ones.
+    """Render colour images, as `render_radiance` and `detect_thermal` do thermal ones.
 
     Args:
         first: row of the first world of these.
@@ -223,7 +223,7 @@ def render_colour(
 
 
 class RadianceTables(NamedTuple):
-    """Tables by which temperatures become radiance and back; see `radiance_image` and `to_apparent_c`."""
+    """Tables from temperature to radiance and back; see `radiance_image` and `to_apparent_c`."""
 
     radiance: Array
     span_c: tuple[float, float]
@@ -269,7 +269,7 @@ def render_radiance(
 
 
 class Detectors(NamedTuple):
-    """The thermal detectors of B worlds, and what they make of an image.
+    """The thermal detectors of B worlds.
 
     Attributes:
         offset_k, dead: (B, H, W) as in `peopleboy.sim.cameras.thermal.Detector`.
@@ -302,7 +302,7 @@ def detect_thermal(
     temperature_c: Image,
     grey: NDArray[np.uint8],
 ) -> None:
-    """Make thermal images of radiance behind the optics.
+    """Make thermal images from radiance behind the optics.
 
     Args:
         first: row of the first world of these.

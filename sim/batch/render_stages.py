@@ -1,4 +1,4 @@
-"""Render stages: what makes the images of one camera of many worlds, some worlds at a time."""
+"""Render stages, which render the images of one camera for several worlds at a time."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol
@@ -48,7 +48,7 @@ class RenderStage(Protocol):
     """One camera, the same in B worlds."""
 
     def render(self, worlds: Numbers, poses: Poses) -> tuple[Images, Fill]:
-        """Return space for the images of worlds of some numbers (G,), and what fills it."""
+        """Return buffers for the images of worlds (G,), and the tasks that fill them."""
         ...
 
 
@@ -117,7 +117,7 @@ class ColourStage:
 
 
 def make_stage(name: str, config: CameraConfig, scene: JoinedScene, worlds: Sequence[World]) -> RenderStage:
-    """Prepare for the images of a camera that `has_stage`."""
+    """Make the render stage of a camera that `has_stage`."""
     if isinstance(config, ThermalConfig):
         return ThermalStage(name, config, scene, worlds)
     assert isinstance(config, ColourConfig)

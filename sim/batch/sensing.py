@@ -1,4 +1,4 @@
-"""What many robots sense together, with what is true at that instant."""
+"""Joint sensing of many robots, with the ground truth of the same instant."""
 
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -23,7 +23,7 @@ Image = NDArray[Any]
 
 
 class BatchSonar:
-    """The sonar rings of B worlds, all of one kind.
+    """The sonar rings of B worlds, with equal settings.
 
     Args:
         worlds: of a batch.
@@ -41,7 +41,7 @@ class BatchSonar:
 
 
 class PeopleVisibility:
-    """The people of B worlds before the thermal cameras of their robots, all of one kind.
+    """Visibility of the people of B worlds for their robots' thermal cameras, with equal settings.
 
     Args:
         worlds: of a batch.
@@ -57,7 +57,7 @@ class PeopleVisibility:
         )
 
     def look(self, active: Numbers, poses: Matrix, robots: Matrix) -> tuple[Records, Numbers]:
-        """Return where all are who are present in some worlds, and how much of them could be seen.
+        """Return positions and visibility of the people who are present in some worlds.
 
         Args:
             active: (G,) numbers of the worlds, rising, which are up to date.
@@ -85,7 +85,7 @@ class PeopleVisibility:
 
 
 def _cast(joined: JoinedWorlds, worlds: Numbers, starts: Matrix, ends: Matrix) -> Matrix:
-    """(G, R) shares of their ways at which rays (G, R, 3) in worlds (G,) hit something besides the robots."""
+    """Return (G, R) fractions at which rays (G, R, 3) in worlds (G,) hit anything but the robots."""
     fraction = np.ones(starts.shape[:2])
     _cast_rays(worlds, joined, starts, ends, fraction)
     return fraction
@@ -99,23 +99,23 @@ def _cast_rays(worlds: Numbers, joined: JoinedWorlds, starts: Array, ends: Array
         cast_into(starts[row], ends[row], bodies, solids, joined.own[worlds[row]], fraction[row], part)
 
 
-# All that is sensed in many worlds at an instant, and what is true then.
+# All sensor readings of many worlds at an instant, and their ground truth.
 
 
 class BatchImages(Protocol):
     """The images of an instant in G worlds; see `Observation.images` for until when they can be had."""
 
     def of_world(self, row: int) -> Mapping[str, Image]:
-        """Images by name of one of the worlds."""
+        """Return the images of one world by name."""
         ...
 
     def of_camera(self, camera: str) -> tuple[Sequence[int], Sequence[Image] | Image]:
-        """Images of a camera's own name: in which of the worlds it takes one, and these."""
+        """Return the worlds in which a camera takes an image, and the images of its first layer."""
         ...
 
 
 class SeparateImages:
-    """Images that each world makes by itself."""
+    """Images that each world renders by itself."""
 
     def __init__(self, images: Sequence[Mapping[str, Image]]) -> None:
         self._images = images
@@ -131,7 +131,7 @@ class SeparateImages:
 
 
 class Snapshot(NamedTuple):
-    """What the robots of G worlds sense, and what is true at the same time.
+    """Sensor readings of the robots of G worlds, and the ground truth of the same instant.
 
     Attributes:
         numbers: (G,) of the worlds.
@@ -150,7 +150,7 @@ class Snapshot(NamedTuple):
     images: BatchImages | None
 
     def senses(self, row: int) -> Senses:
-        """What one robot senses; an `Observation` where there are images."""
+        """Return the readings of one robot, as an `Observation` if there are images."""
         time_s, sonar_m = float(self.scenes.worlds["time_s"][row]), self.sonar_m[row]
         odometry = Pose2(*self.odometry[row].tolist())
         left, right = self.wheel_speeds_m_s[row].tolist()
@@ -165,7 +165,7 @@ class Snapshot(NamedTuple):
 
 
 def take_snapshot(world: World) -> Snapshot:
-    """Sense once in one world, images included where there are any."""
+    """Read the sensors of one world once, including images if there are any."""
     senses, images = world.sense(), SeparateImages([world.take_images()]) if world.has_images else None
     at = senses.odometry
     return Snapshot(

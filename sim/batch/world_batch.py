@@ -1,4 +1,4 @@
-"""Worlds stepped together: kinematic ones of a kind by kernels over all of them, others one by one."""
+"""Worlds stepped together: similar kinematic worlds by joint kernels, others one by one."""
 
 import math
 from collections import defaultdict
@@ -30,7 +30,7 @@ from peopleboy.sim.world import World
 
 
 class KinematicBatch:
-    """B worlds, which give to the byte what each would give by itself.
+    """B worlds whose results are byte-identical to those of single worlds.
 
     Their state is copied side by side into arrays, in which the worlds keep looking at it, so that each may
     be asked for anything between steps. Robots, contacts, sonars and who could see whom are worked out by
@@ -81,13 +81,13 @@ class KinematicBatch:
         if self._limbs is not None:
             self._limbs.place(active)
         touched = self._drives.drive(active, before["position"])
-        # Who was there and is there no more, or the other way round, or waits for the robot to make room.
+        # People who enter or leave, or who wait for the robot to make room.
         are_present = self._walks.records["is_present"]
         is_other = (are_present != before["is_present"]) | (are_present != self._drives.are_solid)
         self._end(active, touched, is_other)
 
     def _walk(self, active: Numbers, commands: Array) -> None:
-        """Let people walk on."""
+        """Advance people."""
         for number, command in zip(active.tolist(), commands.tolist(), strict=True):
             if not self._walks.is_scripted[number]:
                 self._worlds[number].begin_step(*command)
@@ -97,7 +97,7 @@ class KinematicBatch:
             self._limbs.move(active, times_s, self._control_s)
 
     def _robots(self, active: Numbers) -> Array:
-        """(G, 5) where robots are and how they move, as people see them, and how wide they are."""
+        """Return (G, 5) positions, velocities and radii of the robots, as people perceive them."""
         robots = np.zeros((len(active), 5))
         robots[:, :2], robots[:, 4] = self._joined.bodies.places[self._own[active], :2], RADIUS_M
         for row in np.flatnonzero(self._walks.makes_way[active]).tolist():
@@ -105,7 +105,7 @@ class KinematicBatch:
         return robots
 
     def _end(self, active: Numbers, touched: NDArray[np.bool_], is_other: NDArray[np.bool_]) -> None:
-        """Tell worlds what came of the step, by which bodies were touched and which people come or go."""
+        """Finish the step in the worlds, given the bodies touched and the people who enter or leave."""
         changes, any_touched = self._moves_things.copy(), bool(touched.any())
         changes[self._walks.world[is_other]] = True
         for number, is_changed in zip(active.tolist(), changes[active].tolist(), strict=True):
@@ -116,7 +116,7 @@ class KinematicBatch:
             world.end_step(names, is_settled=not is_changed)
 
     def look(self, active: Numbers) -> Snapshot:
-        """Sense and tell the truth in some of the worlds, as `World.sense` and `World.scene` do.
+        """Return readings and truth of some of the worlds, as `World.sense` and `World.scene` do.
 
         Args:
             active: (G,) numbers of the worlds, rising.
@@ -162,7 +162,7 @@ class KinematicBatch:
 
 
 def batch_key(world: World) -> tuple[object, ...] | None:
-    """What all worlds of a batch must share; None for a world that cannot be in one."""
+    """Return the key shared by all worlds of a batch; None for a world that cannot be in one."""
     config = world.config
     if config.physics != "kinematic":
         return None
@@ -183,7 +183,7 @@ def _kinematic(world: World) -> Kinematic:
 
 
 class WorldBatch:
-    """Worlds by number: kinematic ones in a batch for each kind, others each by itself."""
+    """Worlds by number: kinematic worlds in one batch per kind, others separately."""
 
     def __init__(self, worlds: Sequence[World], workers: WorkerPool) -> None:
         self._worlds = tuple(worlds)

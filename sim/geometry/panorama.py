@@ -1,4 +1,4 @@
-"""Panoramic camera geometry: which way the pixels of an unrolled image look, and where points fall in it."""
+"""Panoramic camera geometry: viewing rays of an unrolled image, and projection into it."""
 
 import math
 from dataclasses import dataclass, field
@@ -57,7 +57,7 @@ class Mirror:
         """Refuse a mirror that cannot be used."""
         apex, lens = math.degrees(self.half_apex_rad), math.degrees(self.lens_half_angle_rad)
         if not 45.0 < apex < 90.0:
-            raise BadInput(f"half_apex_deg {apex:g}: shows no floor, or is no cone; must be 45 to 90")
+            raise BadInput(f"half_apex_deg {apex:g}: must be 45 to 90 for a cone that shows the floor")
         if not 0.0 < lens < apex:
             raise BadInput(
                 f"lens_half_angle_deg {lens:g}: must be above 0, and below half_apex_deg, {apex:g}"
@@ -133,7 +133,7 @@ class Panorama:
 
     @property
     def calibration(self) -> PanoramaCalibration:
-        """What a tracker needs to know of the camera."""
+        """Calibration of the camera for a tracker."""
         return _calibration(self)
 
     def bearing(self, columns: ArrayLike) -> Matrix:

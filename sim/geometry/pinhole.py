@@ -1,4 +1,4 @@
-"""What all camera geometries have in common, and the pinhole camera."""
+"""The interface of all camera geometries, and the pinhole camera."""
 
 import dataclasses
 import math
@@ -69,7 +69,7 @@ class Pinhole:
 
     @property
     def calibration(self) -> PinholeCalibration:
-        """What a tracker needs to know of the camera."""
+        """Calibration of the camera for a tracker."""
         return _calibration(self)
 
     def project(self, camera_points: Matrix) -> Matrix:
@@ -122,10 +122,10 @@ def transform(pose: Matrix, points: Matrix) -> Matrix:
 
 
 class CameraGeometry(Protocol):
-    """Size and place of a camera, and where in its image a point falls.
+    """Size and mounting of a camera, and its projection.
 
     It is a frozen dataclass with the fields `width` and `height`. Image and optical frame are as in
-    `Pinhole`; who needs more, such as a focal length, asks for a `Pinhole`.
+    `Pinhole`; code that needs more, such as a focal length, requires a `Pinhole`.
     """
 
     __dataclass_fields__: ClassVar[dict[str, dataclasses.Field[Any]]]
@@ -147,7 +147,7 @@ class CameraGeometry(Protocol):
 
     @property
     def calibration(self) -> Calibration | None:
-        """What a tracker needs to know of the camera; None if trackers cannot use such a geometry."""
+        """Calibration of the camera for a tracker; None if trackers do not support the geometry."""
         ...
 
     def project(self, camera_points: Matrix) -> Matrix:

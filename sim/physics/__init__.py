@@ -1,1 +1,1 @@
-"""The only door to PyBullet: bodies by name, steps, rays, contacts, models and TinyRenderer's images."""
+"""Physics: the interface to PyBullet and a kinematic alternative, with bodies by name."""

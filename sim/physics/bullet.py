@@ -52,7 +52,7 @@ _ALL_BUT_STATIC = -3
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """A point at which a body touches another.
+    """A contact point between two bodies.
 
     Attributes:
         other: name of the other body.
@@ -86,7 +86,7 @@ class _Client:
 
 
 class Bullet(Physics):
-    """A PyBullet world of its own, in which bodies go by name.
+    """A separate PyBullet world with bodies by name.
 
     The frame of a link of a URDF is the link's own, not that of its centre of mass. Shapes beyond the 16 that
     a PyBullet body holds go into further bodies under the same name. Several worlds may be open at once.
@@ -253,7 +253,7 @@ class Bullet(Physics):
         return fraction, part
 
     def contacts(self, name: str) -> list[Contact]:
-        """Where the body touched others during the last step."""
+        """Return the contacts of a body with others during the last step."""
         rows = [row for id_ in self._bodies[name].ids for row in self._client.getContactPoints(bodyA=id_)]
         contacts = [Contact(self._bodies.name_of(row[2]), row[6], row[7], row[9]) for row in rows]
         return [contact for contact in contacts if contact.other != name]
@@ -320,7 +320,7 @@ class Bullet(Physics):
                 self._tell(body, self._base_place(body))
 
     def _make(self, body: BulletBody, shapes: Sequence[Shape], *, visible: bool, solid: bool) -> None:
-        """Let PyBullet have a body of given shapes."""
+        """Create a body of given shapes in PyBullet."""
         starts = range(0, len(shapes), _SHAPES_A_BODY)
         try:
             with quiet():
@@ -359,7 +359,7 @@ class Bullet(Physics):
         return number
 
     def _register(self, name: str, number: int, *, moves_by_itself: bool) -> None:
-        """Take in a body that PyBullet has read from a file."""
+        """Register a body that PyBullet has read from a file."""
         joints = [
             self._client.getJointInfo(number, link) for link in range(self._client.getNumJoints(number))
         ]
@@ -394,14 +394,14 @@ class Bullet(Physics):
             self._tell(body, base)
 
     def _tell(self, body: BulletBody, place: Place) -> None:
-        """Let PyBullet put a body's base somewhere."""
+        """Set the pose of a body's base in PyBullet."""
         if body.base_from_inertia != AT_ORIGIN:
             place = pybullet.multiplyTransforms(*place, *body.base_from_inertia)
         for number in body.ids:
             self._client.resetBasePositionAndOrientation(number, *place)
 
     def _note_move(self, body: BulletBody) -> None:
-        """Look anew at a body of a file."""
+        """Update a body from a file."""
         self._moved[body.name] = body
         self._known.pop(body.name, None)
         self._loaded.forget(body.name)

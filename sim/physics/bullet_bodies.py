@@ -1,4 +1,4 @@
-"""Bodies by name: which parts they have, what PyBullet calls them, and what rays meet without asking it."""
+"""Bodies by name: their parts, their PyBullet ids, and ray tests without PyBullet."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -63,7 +63,7 @@ class BulletBody:
         """The links that the named joints move.
 
         Raises:
-            BadInput: it has no such joint.
+            BadInput: the body has no such joint.
         """
         for joint in joints:
             if joint not in self.joints:
@@ -142,14 +142,14 @@ class BulletBodies:
 
 
 def as_unit(orientation: Quaternion) -> Quaternion:
-    """Return a quaternion its length of 1, as PyBullet does."""
+    """Return a quaternion normalised to length 1, as PyBullet does."""
     x, y, z, w = orientation
     length = math.sqrt(x * x + y * y + z * z + w * w)
     return orientation if abs(length - 1.0) < _ROUNDING else (x / length, y / length, z / length, w / length)
 
 
 def as_units(orientations: ArrayLike) -> NDArray[np.float64]:
-    """Do that with N quaternions (N, 4)."""
+    """Return N quaternions (N, 4) normalised to length 1."""
     given = np.asarray(orientations, np.float64)
     x, y, z, w = given.T
     lengths = np.sqrt(x * x + y * y + z * z + w * w)[:, None]
@@ -162,7 +162,7 @@ _NONE: Final = -1
 
 
 class GivenBodies:
-    """Bodies by name, which are put somewhere from outside; rays meet them by the shapes' own geometry."""
+    """Bodies by name with externally set poses; rays are tested against the exact shapes."""
 
     def __init__(self) -> None:
         self._rows: dict[str, int] = {}

@@ -1,4 +1,4 @@
-"""What passes between Python and PyBullet: shapes, camera matrices, depth images, and printed noise."""
+"""Conversions for PyBullet: shapes, camera matrices, depth images, and suppressed output."""
 
 import contextlib
 import ctypes

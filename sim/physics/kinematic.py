@@ -1,4 +1,4 @@
-"""A world without PyBullet: what stands stays, what rolls on two wheels rolls as they turn."""
+"""Kinematic physics without PyBullet: static bodies, and a vehicle that rolls without slip on two wheels."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -51,7 +51,7 @@ class _Rolling:
 
 
 class Kinematic(Physics):
-    """A world in which bodies go by name.
+    """A kinematic world with bodies by name.
 
     The vehicle, of which there may be one, stays upright on z = 0 and moves at once as its wheels turn,
     without slip, whatever torque they have. At the end of a step it is pushed out of whatever it is in;
@@ -71,7 +71,7 @@ class Kinematic(Physics):
         self._rolling: _Rolling | None = None
 
     def close(self) -> None:
-        """Nothing is held that would have to be freed."""
+        """Do nothing: there is nothing to free."""
 
     def add_urdf(
         self,
@@ -89,7 +89,7 @@ class Kinematic(Physics):
         first = len(self._parts)
         if not fixed:
             if self._rolling is not None:
-                raise BadInput(f"body {name!r}: kinematic physics moves one body, and there is one already")
+                raise BadInput(f"body {name!r}: kinematic physics moves only one body")
             left, right = wheels_of(name, links)
             self._rolling = _Rolling(
                 body=len(self.numbers),
@@ -210,14 +210,14 @@ class Kinematic(Physics):
         return {name for name, number in self.numbers.items() if flags[number]}
 
     def state(self) -> VehicleState:
-        """All that is in the world now, none of it copied; there must be a vehicle."""
+        """Return the state of the world, not copied; there must be a vehicle."""
         assert self._rolling is not None
         bodies, solids = self._bodies.now()
         rolling = self._rolling
         return VehicleState(bodies, solids, rolling.motion, rolling.vehicle, rolling.body)
 
     def rebind(self, state: VehicleState) -> None:
-        """Keep all that is in the world in other arrays from now on, which hold the same already."""
+        """Use other arrays for the state from now on; they must hold the same values already."""
         assert self._rolling is not None
         self._bodies.rebind(state.bodies, state.solids)
         self._rolling.motion = state.motion

@@ -1,4 +1,4 @@
-"""What a world needs of its physics, whatever moves the robot."""
+"""The interface of a world to its physics, for any engine."""
 
 import functools
 import importlib.util
@@ -35,7 +35,7 @@ class ByName(dict[str, B]):
 
     def __missing__(self, name: str) -> B:
         known = ", ".join(self) or "none"
-        raise BadInput(f"no body is called {name!r}; there are: {known}")
+        raise BadInput(f"unknown body {name!r}; known bodies: {known}")
 
     def check_new(self, name: str) -> None:
         """Refuse a name that is taken.
@@ -44,11 +44,11 @@ class ByName(dict[str, B]):
             BadInput: it is.
         """
         if name in self:
-            raise BadInput(f"body {name!r}: there is one already; choose another name")
+            raise BadInput(f"body {name!r} exists already; choose another name")
 
 
 class Physics(ABC):
-    """Bodies by name, of which one may drive, and what they hit; use it as a context manager, or close it.
+    """Physics of bodies by name, one of which can drive; use it as a context manager, or close it.
 
     Parts are numbered in the order in which they were created; the number never changes. The frame of a
     part is the frame in which its shapes were given. Every method that takes a name raises BadInput if no
@@ -80,7 +80,7 @@ class Physics(ABC):
         visible: bool = True,
         solid: bool = True,
     ) -> None:
-        """Add a body of one part that stays where it is put, however hard it is hit.
+        """Add a static body of one part.
 
         An invisible part is drawn by no renderer; one that is not solid is passed by rays and bodies.
 
@@ -89,10 +89,10 @@ class Physics(ABC):
         """
         self._check_new(name)
         if not shapes:
-            raise BadInput(f"body {name!r}: it has no shapes; give at least one")
+            raise BadInput(f"body {name!r} has no shapes; give at least one")
         for shape in shapes:
             if shape.kind == ShapeKind.MESH and not (shape.mesh and shape.mesh.is_file()):
-                raise BadInput(f"body {name!r}: there is no mesh {shape.mesh}; give an OBJ, STL or DAE file")
+                raise BadInput(f"body {name!r}: mesh {shape.mesh} not found; give an OBJ, STL or DAE file")
             if shape.mesh is not None:
                 load_triangles(shape.mesh)
         self._add_shapes(name, shapes, visible, solid)
@@ -194,7 +194,7 @@ class Physics(ABC):
     def cast_rays(
         self, from_m: ArrayLike, to_m: ArrayLike, ignore: str | None = None
     ) -> tuple[Matrix, NDArray[np.int64]]:
-        """Find the nearest solid along rays, which pass through the body called `ignore`.
+        """Return the nearest solid along rays, which pass through the body `ignore`.
 
         Args:
             from_m: (R, 3) [m] where rays start, world frame.
@@ -213,7 +213,7 @@ class Physics(ABC):
 
 @runtime_checkable
 class Rasteriser(Protocol):
-    """Physics that can draw, by a renderer of its own."""
+    """Physics with its own renderer."""
 
     def parts(self) -> tuple[PartKey, ...]:
         """All parts, in the order of their numbers."""

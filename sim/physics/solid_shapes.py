@@ -1,4 +1,4 @@
-"""Solid shapes of a world as arrays for kernels: where they are, and where rays meet them (numba kernels)."""
+"""Solid shapes of a world as arrays for kernels: their poses, and ray intersection (numba kernels)."""
 
 import math
 from collections.abc import Sequence

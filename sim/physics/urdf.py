@@ -1,4 +1,4 @@
-"""Model files: where PyBullet's lie, and what a URDF says of shapes, links, joints and masses."""
+"""Model files: the location of PyBullet's, and shapes, links, joints and masses of URDFs."""
 
 import importlib.util
 import re
@@ -17,10 +17,10 @@ from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind, Vector
 
 MISSING = "PyBullet is not installed: there are wheels for Python 3.11 to 3.13 on Linux, macOS and Windows"
-"""What is said wherever PyBullet or its models are needed and are not there."""
+"""Message where PyBullet or its models are needed but not installed."""
 
 MISSING_PHYSICS = f"{MISSING}; install it, or choose physics kinematic, which needs none"
-"""What is said where PyBullet is to move the robot and is not there."""
+"""Message where PyBullet is needed to move the robot but is not installed."""
 
 
 def data_folder() -> Path:

@@ -23,7 +23,7 @@ from peopleboy.sim.shapes.shapes import UPRIGHT, ShapeKind
 
 
 class Vehicle(NamedTuple):
-    """What kernels must know of it; the frame is that of its root link, midway between the wheels.
+    """A vehicle in the format of the kernels; the frame of its root link is midway between the wheels.
 
     Attributes:
         middles, halves: (K, 2) [m] of the upright boxes that bump into things.
@@ -63,7 +63,7 @@ def wheels_of(name: str, links: Sequence[UrdfLink]) -> tuple[int, int]:
 
 
 def make_vehicle(name: str, links: Sequence[UrdfLink]) -> Vehicle:
-    """Read a vehicle off its links.
+    """Make a vehicle from its links.
 
     Raises:
         BadInput: it does not roll on two wheels, or its root is not of upright boxes.
@@ -97,7 +97,7 @@ def _is_round(link: UrdfLink) -> bool:
 
 
 class VehicleMotion(NamedTuple):
-    """How the vehicle stands and moves.
+    """Pose and motion of the vehicle.
 
     Attributes:
         pose: (3,) x, y [m], heading [rad].
@@ -140,7 +140,7 @@ def advance(
     dt_s: float,
     touched: NDArray[np.bool_],
 ) -> bool:
-    """Let a vehicle roll for one physics step, and push it out of what it is in.
+    """Roll a vehicle for one physics step, and push it out of solids.
 
     Its parts stay where they were until they are refreshed, as it passes through itself.
 
@@ -261,7 +261,7 @@ def _deepest(
     near: NDArray[np.int64],
     touched: NDArray[np.bool_],
 ) -> Contact:
-    """Note what is touched, and tell the deepest contact."""
+    """Record touched bodies, and return the deepest contact."""
     outline = np.empty((MOST_POINTS + 1, 2))
     best: Contact = (-math.inf, 0.0, 0.0, 0.0, 0.0)
     for k in near:

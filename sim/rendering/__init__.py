@@ -1,1 +1,1 @@
-"""What lies behind each pixel: the ray caster, and TinyRenderer beside it."""
+"""Rendering of parts, depths and normals: the ray caster, and TinyRenderer as a reference."""

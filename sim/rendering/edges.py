@@ -1,4 +1,4 @@
-"""Edges without stairs: where surfaces meet within a pixel, each gets the share of it that it fills.
+"""Anti-aliasing of edges: surfaces that meet within a pixel are mixed by their shares of it.
 
 Four rays go through a pixel, none in a row or column with another. Beside a pixel that shows something else,
 the ray nearest to that is tried against what both show, and if it meets the other, the next nearest is; if
@@ -36,7 +36,7 @@ _BEHIND = 1.03  # what is farther than this many times another's depth is behind
 
 
 def smooth(image: NDArray[np.float32], contrast: float, seen: RenderPass, camera: Pinhole) -> None:
-    """Give each edge of an image the mean of what fills it, in place; a view without surfaces keeps its own.
+    """Anti-alias the edges of an image in place; a view without surfaces is unchanged.
 
     Args:
         image: (H, W, C) linear in light or radiance, C-contiguous.
@@ -89,7 +89,7 @@ def _differ(one: NDArray[np.float32], other: NDArray[np.float32], contrast: np.f
 
 @njit(cache=True)
 def _mark(changes: NDArray[np.uint8], v: int, part: Pixels, surface: Pixels) -> None:
-    """Mark the pixels of a row (W,) beside which another surface may be seen: 1 on the right, 2 below."""
+    """Mark the pixels of a row (W,) next to another surface: 1 on the right, 2 below."""
     height, width = part.shape
     for u in range(width - 1):
         changes[u] = (part[v, u] != part[v, u + 1]) | (surface[v, u] != surface[v, u + 1])
@@ -111,7 +111,7 @@ def _smooth(  # noqa: C901 (in one function)
     camera_from_part: Array,
     lens: Lens,
 ) -> None:
-    """Try the rays on both sides of each edge, and mix what they meet.
+    """Cast rays on both sides of each edge, and mix the surfaces that they hit.
 
     No ray is tried where that would look the same.
 

@@ -1,4 +1,4 @@
-"""What makes images of full detail of a view: edges, mirrors, and what touches the floor."""
+"""Extras for images of full detail: anti-aliased edges, mirrors, and contact shadows."""
 
 import math
 from dataclasses import dataclass
@@ -20,10 +20,10 @@ from peopleboy.sim.shapes.shapes import ShapeKind
 
 Array = NDArray[np.float64]
 
-REACH_M = 0.4  # farther from what stands there the floor gets all light
-_HIGHEST_M = 0.3  # what hangs higher makes no shadow of this kind
-_FLAT_M = 0.01  # what ends nearer to the ground is floor
-_LEAST_M = 0.03  # what rises less makes none either
+REACH_M = 0.4  # beyond this distance from an object the floor is fully lit
+_HIGHEST_M = 0.3  # higher objects cast no contact shadow
+_FLAT_M = 0.01  # shapes that end lower belong to the floor
+_LEAST_M = 0.03  # flatter objects cast none either
 
 _SPHERE = int(ShapeKind.SPHERE)
 _CAPSULE = int(ShapeKind.CAPSULE)
@@ -34,7 +34,7 @@ _PLANE = int(ShapeKind.PLANE)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Contacts:
-    """Footprints of what stands on the floor.
+    """Footprints of the objects on the floor.
 
     Attributes:
         prints: (K, 9) [m] each a rounded rectangle: middle x and y, its axis x and y, half its length, half
@@ -114,7 +114,7 @@ def gap(row: Array, x: float, y: float) -> float:
 
 
 class FullDetail:
-    """What goes beyond one point a pixel in what a pinhole camera sees, each found when first asked for.
+    """Extras of a pinhole view beyond one sample per pixel, computed on first access.
 
     Args:
         seen: what it sees.
@@ -130,16 +130,16 @@ class FullDetail:
         self._is_shiny, self._is_mirrored = is_shiny, is_mirrored
 
     def smooth(self, image: NDArray[np.float32], contrast: float) -> None:
-        """Return the edges of an (H, W, C) image of this view no stairs, in place; see `edges.smooth`."""
+        """Anti-alias the edges of an (H, W, C) image of this view in place; see `edges.smooth`."""
         smooth(image, contrast, self._seen, self._camera)
 
     @cached_property
     def reflections(self) -> tuple[Reflection, ...]:
-        """What is mirrored in what is seen."""
+        """The reflections in this view."""
         return find_reflections(self._seen, self._camera, self._is_shiny, self._is_mirrored)
 
     @cached_property
     def contacts(self) -> Contacts:
-        """What stands on the floor."""
+        """The footprints of objects on the floor."""
         scene = self._seen.scene
         return find_contacts(scene.table, scene.world_from_part, scene.hidden)

@@ -1,4 +1,4 @@
-"""How panoramic cameras see: exactly, by the ray caster; what they see may go on over the seam."""
+"""Rendering of panoramic cameras by the ray caster; objects may extend across the seam."""
 
 import math
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ _Key = tuple[Panorama, bytes, bytes]
 
 
 class PanoramicRenderer(Renderer):
-    """How a panoramic camera sees, whatever the scene's renderer: there is one for it alone.
+    """Renderer of panoramic cameras, whatever the scene's renderer.
 
     The depth is the horizontal distance [m] from the camera's upright axis. What spans the seam, where the
     image's right border meets its left one, ends beyond the right border: its right edge lies at most one
@@ -30,7 +30,7 @@ class PanoramicRenderer(Renderer):
         self._outlines = WeakKeyDictionary()
 
     def view(self, scene: Scene, camera: Panorama, world_from_camera: Matrix) -> View:
-        """Draw what a camera sees of a scene."""
+        """Render a camera's view of a scene."""
         drawing, table = make_drawing(camera), scene.table
         shape = (camera.height, camera.width)
         part, depth = np.empty(shape, np.int32), np.empty(shape, np.float32)
@@ -45,7 +45,7 @@ class PanoramicRenderer(Renderer):
         return View(part, depth, normal, np.ascontiguousarray(drawing.cover.T))
 
     def bounds(self, scene: Scene, camera: Panorama, world_from_camera: Matrix, parts: Mask) -> Matrix:
-        """Find rectangles (N, 4) around all pixels that some parts (N, P) would fill if nothing hid them."""
+        """Return rectangles (N, 4) around all pixels of some parts (N, P), ignoring occlusion."""
         bounds = np.full((len(parts), 4), math.nan)
         for one, own in zip(bounds, parts, strict=True):
             filled, wanted = self._outline(scene, camera, world_from_camera, own)
@@ -64,14 +64,14 @@ class PanoramicRenderer(Renderer):
         parts: Mask,
         bounds: Sequence[float],
     ) -> int:
-        """Count the pixels that some parts (P,) would fill if nothing hid them, within `bounds` of theirs."""
+        """Count the pixels of some parts (P,) within their `bounds`, ignoring occlusion."""
         if math.isnan(bounds[0]):
             return 0
         filled, wanted = self._outline(scene, camera, world_from_camera, parts)
         return int(np.count_nonzero(filled.pixels & wanted))
 
     def cover(self, view: View, owner_of_part: NDArray[np.int64], people: int, owners: int) -> Cover:
-        """Count who covers whom; the last column of who is seen on both sides of the seam is beyond it."""
+        """Count occlusions between people; a person across the seam has a last column beyond it."""
         cover = count_cover(view.part, view.cover, owner_of_part, people, owners)
         width = view.part.shape[1]
         for person in np.flatnonzero((cover.bounds[:, 0] == 0) & (cover.bounds[:, 1] == width - 1)):
@@ -82,7 +82,7 @@ class PanoramicRenderer(Renderer):
     def _outline(
         self, scene: Scene, camera: Panorama, world_from_camera: Matrix, parts: Mask
     ) -> tuple[Outline, np.uint64]:
-        """Return the outline of whoever some parts (P,) belong to, drawn once a scene, and their own bits."""
+        """Return the outlines of a scene, drawn once, and the bits of some parts (P,)."""
         person = scene.person_of_part[parts.argmax()]
         of_one = scene.person_of_part == person
         if person == NOBODY or (parts & ~of_one).any():

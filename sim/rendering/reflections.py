@@ -1,4 +1,4 @@
-"""Who is mirrored where: shiny flat surfaces, and what is seen in them.
+"""Reflections in shiny flat surfaces.
 
 What a mirror shows is what a camera behind it would see, its pose reflected by the mirror's plane: so the ray
 caster draws that as well, in the window in which mirrored people and warm or bright things may be. All else
@@ -50,12 +50,12 @@ EVERY = 3  # pixels of the image for one of a reflection, in row and column
 _MOST = 6  # planes that mirror at a time, those of most pixels
 _SAME_M, _SAME_COS = 2e-3, 0.99999  # between surfaces in one plane
 _SUNK_M = 0.03  # how far feet may sink into a mirror
-_HAIR_M = 0.004  # how far things and feet may sink into what they touch, and not be hidden by it
+_HAIR_M = 0.004  # objects and feet may sink this far into a surface without being hidden by it
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reflection:
-    """What is mirrored in one plane.
+    """Reflection in one plane.
 
     Attributes:
         left, top: [px] the window's first column and row in the image.
@@ -77,7 +77,7 @@ class Reflection:
 def find_reflections(
     seen: RenderPass, camera: Pinhole, is_shiny: Mask, is_mirrored: Mask
 ) -> tuple[Reflection, ...]:
-    """Find what is mirrored in what a camera sees.
+    """Find the reflections in a camera's view.
 
     Args:
         seen: by a pinhole camera.
@@ -252,7 +252,7 @@ def _draw_beyond(
     lens: Lens,
     canvas: Canvas,
 ) -> Rectangle:
-    """Draw what is seen in a mirror, and what hides it there, and tell in which pixels that may be.
+    """Draw the view in a mirror with its occluders, and return the pixels that it can cover.
 
     Of what is drawn, the middle lies on the side of the mirror to which it faces. Arguments as in `draw`, but
     for `is_mirrored` (P,), what is wanted, and the mirror's plane as in `_keep`.
@@ -436,7 +436,7 @@ def _keep(
     lens: Lens,
     cosine: NDArray[np.float32],
 ) -> bool:
-    """Keep of what is beyond a mirror what is wanted, and tell whether that is anything.
+    """Keep the wanted parts of the view beyond a mirror, and return whether there are any.
 
     Args:
         canvas: what is drawn; loses what is not wanted, or lies before the mirror.

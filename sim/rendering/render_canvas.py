@@ -29,7 +29,7 @@ _SLACK = 1e-9
 
 
 class Lens(NamedTuple):
-    """A pinhole camera as kernels take it [px]."""
+    """A pinhole camera in the format of the kernels [px]."""
 
     focal: float
     centre_u: float
@@ -39,7 +39,7 @@ class Lens(NamedTuple):
 
 
 class Canvas(NamedTuple):
-    """What the kernels draw on.
+    """The image buffers of the kernels.
 
     Attributes:
         nearness: (H, W) [1/m] of the nearest surface so far, 0 where none.
@@ -60,7 +60,7 @@ class Canvas(NamedTuple):
 
 
 class Brush(NamedTuple):
-    """How a piece of a shape is drawn.
+    """Settings for drawing one piece of a shape.
 
     Attributes:
         bit: what it adds to the cover.
@@ -77,7 +77,7 @@ class Brush(NamedTuple):
 
 @njit(cache=True, nogil=True)
 def make_canvas(lens: Lens, surfaces: int) -> Canvas:
-    """Return an empty canvas for a table of so many surfaces."""
+    """Return an empty canvas for a table with this number of surfaces."""
     shape = (lens.height, lens.width)
     nearness, surface, cover = np.zeros(shape), np.empty(shape, np.int32), np.zeros(shape, np.uint64)
     return Canvas(nearness, surface, cover, np.empty((surfaces, 7)), np.empty((6, 3)), np.empty((3, 4)))
@@ -98,7 +98,7 @@ def pixels(lens: Lens, bounds: Bounds) -> Rectangle:
 
 @njit(cache=True, error_model="numpy")
 def set_shading(canvas: Canvas, surface: int, first: Point, second: Point, curvature: float) -> None:
-    """Store what gives a surface's normals; see `Canvas`."""
+    """Store the data for a surface's normals; see `Canvas`."""
     row = canvas.shading[surface]
     for i in range(3):
         row[i], row[3 + i] = first[i], second[i]

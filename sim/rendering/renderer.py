@@ -1,4 +1,4 @@
-"""What cameras see, drawn by one of two renderers, and the outlines of what stands alone before them."""
+"""Rendering of camera views by one of two renderers, and outlines without occlusion."""
 
 import math
 from abc import ABC, abstractmethod
@@ -61,7 +61,7 @@ def normals_from_depth(depth: Depth, lens: Lens, rotation: Array) -> Depth:
 
 @njit(cache=True, error_model="numpy")
 def _point(depth: Depth, lens: Lens, u: int, v: int) -> Point:
-    """What lies behind a pixel, optical frame; very far off outside the image or where nothing is."""
+    """Return the point behind a pixel, optical frame; very far away outside the image or without surface."""
     z = 1e9
     if 0 <= u < lens.width and 0 <= v < lens.height and math.isfinite(depth[v, u]):
         z = float(depth[v, u])
@@ -87,14 +87,14 @@ def render(scene: "Scene", camera: Pinhole, world_from_camera: Matrix) -> View:
     """
     persons, hidden = scene.person_of_part, scene.hidden
     if persons.max(initial=0) >= _MOST_PEOPLE:
-        raise BadInput(f"person number {persons.max()}: a view tells at most {_MOST_PEOPLE} people apart")
+        raise BadInput(f"person number {persons.max()}: a view supports at most {_MOST_PEOPLE} people")
     if scene.renderer == "raycast":
         return cast(scene.table, camera, world_from_camera, scene.world_from_part, persons, hidden)
     if scene.renderer == "bullet":
         if not isinstance(scene.physics, Rasteriser):
-            raise BadInput("renderer 'bullet': draws worlds of PyBullet only; choose raycast")
+            raise BadInput("renderer 'bullet' needs physics bullet; choose raycast")
         return rasterise(scene.physics, camera, world_from_camera, np.where(hidden, NOBODY, persons))
-    raise BadInput(f"renderer {scene.renderer!r}: there is none of that name; choose raycast or bullet")
+    raise BadInput(f"unknown renderer {scene.renderer!r}; choose raycast or bullet")
 
 
 def cast(
@@ -141,7 +141,7 @@ def rasterise(
 
 
 def silhouette_bounds(camera: Pinhole, table: ShapeTable, camera_from_part: Matrix, parts: Mask) -> Array:
-    """Find the rectangles around all that the camera would see of sets of parts if nothing hid them.
+    """Return the rectangles around sets of parts in the image, ignoring occlusion.
 
     They may lie outside the image. What is nearer than 0.05 m along the optical axis does not count.
 
@@ -165,7 +165,7 @@ def silhouette_bounds(camera: Pinhole, table: ShapeTable, camera_from_part: Matr
 def silhouette_area(
     camera: Pinhole, table: ShapeTable, camera_from_part: Matrix, parts: Mask, bounds: Sequence[float]
 ) -> int:
-    """Count the pixels that some parts (P,) would fill if nothing hid them, the image's border neither.
+    """Count the pixels of some parts (P,), ignoring occlusion and the image's border.
 
     The image is continued by its own width and height beyond each border; arguments are as in
     `silhouette_bounds`, and what that says of the parts.
@@ -213,7 +213,7 @@ def _bounds(table: ShapeTable, camera_from_part: Array, parts: Mask, found: Arra
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, weakref_slot=True)
 class Scene:
-    """All that there is to be seen at an instant.
+    """All visible shapes at an instant.
 
     Attributes:
         renderer: name of what draws it for pinhole cameras.
@@ -232,12 +232,12 @@ class Scene:
     hidden: Mask
 
     def only(self, parts: Mask) -> "Scene":
-        """The same scene with some parts (P,) alone, as those of one person."""
+        """Return the scene with only some parts (P,), such as those of one person."""
         return replace(self, person_of_part=np.where(parts, 0, NOBODY), hidden=~parts)
 
 
 class Renderer(ABC):
-    """How the cameras of one geometry see; what `PinholeRenderer` does is for pinholes alone.
+    """Renderer for cameras of one geometry.
 
     A new one has to say `view`. Its outlines follow from that, in whole pixels and no farther than the image;
     one that can say more of them, or says it sooner, does.
@@ -245,10 +245,10 @@ class Renderer(ABC):
 
     @abstractmethod
     def view(self, scene: Scene, camera: Any, world_from_camera: Matrix) -> View:
-        """Draw what a camera sees of a scene; its pose is (4, 4), optical frame to world."""
+        """Render a camera's view of a scene; its pose is (4, 4), optical frame to world."""
 
     def bounds(self, scene: Scene, camera: Any, world_from_camera: Matrix, parts: Mask) -> Matrix:
-        """Find rectangles around all that a camera would see of some parts (N, P) if nothing hid them.
+        """Return rectangles around some parts (N, P) in the image, ignoring occlusion.
 
         Returns:
             (N, 4) left, top, right, bottom [px]; all NaN where it would see nothing of them.
@@ -263,18 +263,18 @@ class Renderer(ABC):
     def area(
         self, scene: Scene, camera: Any, world_from_camera: Matrix, parts: Mask, bounds: Sequence[float]
     ) -> int:
-        """Count the pixels that some parts (P,) would fill if nothing hid them, within `bounds` of theirs."""
+        """Count the pixels of some parts (P,) within their `bounds`, ignoring occlusion."""
         if math.isnan(bounds[0]):
             return 0
         return int(np.count_nonzero(self.view(scene.only(parts), camera, world_from_camera).cover))
 
     def cover(self, view: View, owner_of_part: NDArray[np.int64], people: int, owners: int) -> Cover:
-        """Count who covers whom, and find each person's visible pixels; arguments as in `count_cover`."""
+        """Count occlusions between people, and their visible pixels; arguments as in `count_cover`."""
         return count_cover(view.part, view.cover, owner_of_part, people, owners)
 
 
 class PinholeRenderer(Renderer):
-    """How a pinhole camera sees; its outlines go on beyond the image."""
+    """Renderer for pinhole cameras; outlines continue beyond the image."""
 
     def __init__(self) -> None:
         # Poses in a camera's frame, of each scene that is still looked at: all boxes of a scene want them.
@@ -307,7 +307,7 @@ PINHOLE_RENDERER = PinholeRenderer()
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RenderPass:
-    """What one camera sees of a scene.
+    """The view of a scene by one camera.
 
     Attributes:
         renderer: how it sees.
@@ -333,7 +333,7 @@ class RenderPass:
 
 
 def look(renderer: Renderer, scene: Scene, camera: CameraGeometry, world_from_camera: Matrix) -> RenderPass:
-    """Let a camera see a scene."""
+    """Render a scene for a camera."""
     view = renderer.view(scene, camera, world_from_camera)
     return RenderPass(
         renderer=renderer, scene=scene, camera=camera, world_from_camera=world_from_camera, view=view

@@ -41,7 +41,7 @@ class Ring(NamedTuple):
 
 
 class Pieces(NamedTuple):
-    """Shapes, and of boxes their faces, that may be seen in some columns.
+    """Shapes, and faces of boxes, that are potentially visible in some columns.
 
     Attributes:
         shape: (N,) number of the shape.
@@ -59,7 +59,7 @@ class Pieces(NamedTuple):
 
 
 class Drawing(NamedTuple):
-    """What the columns are drawn on, one below the other; see `Canvas`.
+    """The buffers of the columns, stacked; see `Canvas`.
 
     Attributes:
         nearness, surface, cover: (W, H).
@@ -93,7 +93,7 @@ def make_drawing(camera: Panorama) -> Drawing:
 
 
 class Outline(NamedTuple):
-    """What parts fill of a panorama that goes on beyond its top and bottom, as bits of the parts.
+    """Pixels of parts in a panorama that continues beyond its top and bottom, as bits of the parts.
 
     Attributes:
         pixels: (N,) those that fill a pixel, for each that any does.
@@ -109,7 +109,7 @@ class Outline(NamedTuple):
 
 
 def outline(table: ShapeTable, ring_from_part: Array, bits: NDArray[np.uint64], camera: Panorama) -> Outline:
-    """Find what some parts would fill if nothing hid them, the image's top and bottom neither.
+    """Return the pixels of some parts, ignoring occlusion and the image's top and bottom.
 
     The image is continued by its own height upwards, and downwards as well or to where it would look straight
     down, if that is nearer.

@@ -1,4 +1,4 @@
-"""What lies behind the pixels of one image."""
+"""Views: parts, depths and normals behind the pixels of one image."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ BLIND = "none"  # in place of a renderer's name: a world without images
 
 @dataclass(frozen=True, slots=True, eq=False)
 class View:
-    """What lies behind each pixel's centre, from 0.05 m to 100 m.
+    """Surface behind each pixel's centre, from 0.05 m to 100 m.
 
     Attributes:
         part: (H, W) part number, -1 where nothing is.
@@ -36,12 +36,12 @@ def person_bits(person_of_part: NDArray[np.int64]) -> NDArray[np.uint64]:
     return np.where(person_of_part == NOBODY, np.uint64(0), bits)
 
 
-# Who covers how many pixels of whom in a view (a numba kernel).
+# Occlusion counts of a view (a numba kernel).
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cover:
-    """Who covers how many pixels of whom.
+    """Numbers of pixels that each person hides of each other person.
 
     Attributes:
         seen: (N, M) pixels of person n's silhouette inside the image at which owner m is seen.
@@ -59,7 +59,7 @@ def count_cover(
     people: int,
     owners: int,
 ) -> Cover:
-    """Count, for each person's silhouette, what is seen there.
+    """Count the visible owners on each person's silhouette.
 
     Args:
         part: (H, W) part seen.

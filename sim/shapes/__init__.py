@@ -1,1 +1,1 @@
-"""What things are made of: shapes, their materials, and all of a world's as one table."""
+"""Shapes and their materials, and the table of all shapes of a world."""

@@ -1,4 +1,4 @@
-"""How surfaces look to the thermal and the colour camera, and colours by name."""
+"""Materials of surfaces for thermal and colour cameras, and colours by name."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ from pydantic import Discriminator, Field, Tag
 
 from peopleboy.settings import Share, word_or_list
 
-# What a surface carries beside its material: folds, a face, straps, on a grid wrapped round its part.
+# Details of a surface in addition to its material: folds, a face, straps, on a grid wrapped round its part.
 
 Grid = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ class PatternKind(IntEnum):
 
 
 class Covering(IntEnum):
-    """What covers a surface, which `detail: full` paints."""
+    """Covering of a surface, painted with `detail: full`."""
 
     BARE = 0
     PLASTER = 1  # inner walls
@@ -86,7 +86,7 @@ class Pattern:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Material:
-    """One surface, as both cameras need it.
+    """Material of one surface, for thermal and colour cameras.
 
     Attributes:
         temperature_c: [degC] mean surface temperature.
@@ -100,8 +100,8 @@ class Material:
         colour_pattern: where the second colour applies.
         glow: share of light that the surface gives out itself (a lamp or a monitor), whatever the room's
             light; 0 for everything else.
-        finish: what the surface carries beside; None for nothing.
-        shine: how much of what the surface reflects it mirrors as a mirror does, 0..1: 0 is dull, 1 is glass.
+        finish: details of the surface, or None.
+        shine: specular share of the reflection, 0..1: 0 is dull, 1 is glass.
             Only images of full detail show it.
         covering: what `detail: full` paints on it.
         gradient_k_per_m: [K/m] how much warmer it is above than below, by `detail: full`.

@@ -1,4 +1,4 @@
-"""What things are made of: primitive shapes, grouped into parts that share a pose and a look."""
+"""Primitive shapes, grouped into parts that share a pose and an appearance."""
 
 from dataclasses import dataclass
 from enum import IntEnum
@@ -53,7 +53,7 @@ class Shape:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
-    """Shapes that move as one and look alike, such as a forearm, a wall or a robot's wheel.
+    """Shapes with a common pose and material, such as a forearm, a wall or a robot's wheel.
 
     Attributes:
         name: unique within its owner, such as "left_forearm".

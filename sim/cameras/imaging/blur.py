@@ -1,4 +1,4 @@
-"""What optics and rotation do to an image: point spread and motion blur."""
+"""Optical blur and motion blur by rotation."""
 
 import math
 from functools import lru_cache

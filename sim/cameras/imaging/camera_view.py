@@ -1,4 +1,4 @@
-"""What one camera sees at an instant, with the materials of all that it may see as arrays for kernels."""
+"""The view of one camera at an instant, with all materials as arrays for kernels."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -115,7 +115,7 @@ def make_paint_table(
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CameraView:
-    """What one camera sees at an instant, and all that forms its images from that.
+    """The view of one camera at an instant, with everything that image formation needs.
 
     Attributes:
         view: what lies behind each pixel.

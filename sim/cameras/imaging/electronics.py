@@ -1,8 +1,8 @@
-"""From temperatures to grey: which of them is black, which white, and how the greys between are shared out.
+"""Camera electronics: the mapping from temperatures to grey.
 
-A camera with automatic gain looks at the histogram of its image. Its tails tell the span; a linear gain maps
-that to greys, and plateau equalisation gives temperatures that many pixels have more of them, though no more
-than a plateau lets it. Greys 0 and 255 are left to the tails.
+An automatic gain depends on the histogram of the image. The histogram's tails define the span; a linear gain
+maps the span to greys, and plateau equalisation gives frequent temperatures more greys, limited by a plateau.
+Greys 0 and 255 are reserved for the tails.
 """
 
 import math
@@ -37,7 +37,7 @@ def encode_8bit(temperature_c: Temperatures, lowest_c: float = 24.0, highest_c: 
 
 
 class Gain:
-    """Gives one image after another as grey; what is automatic follows the images in time.
+    """Converts successive images to grey; an automatic gain adapts over time.
 
     Args:
         config: which gain, and its settings.
@@ -187,7 +187,7 @@ def _look_up(temperature_c: Temperatures, curve: NDArray[np.float32]) -> Grey:
     return grey
 
 
-# What people are shown of a thermal camera: all of the room, whatever the camera's own gain leaves of it.
+# Display of a thermal image to people: the whole scene, whatever the camera's own gain.
 
 _TAIL: Final = 0.002
 _PLATEAU: Final = 0.004
@@ -202,7 +202,7 @@ def show_scene(temperature_c: Temperatures) -> Grey:
     return apply(temperature_c, grey_curve(rise))
 
 
-# What is done to a thermal image for people to look at: details enhanced before the gain, JPEG after it.
+# Enhancement of thermal images: sharpened details before the gain, JPEG compression after it.
 
 MOST_K: Final = 2.0
 """[K] by which sharpening changes a pixel at most: a lamp would blacken all around it."""

@@ -1,4 +1,4 @@
-"""What shiny surfaces mirror, added to an image that is linear in light or radiance."""
+"""Reflections of shiny surfaces, added to an image that is linear in light or radiance."""
 
 import math
 from collections.abc import Callable
@@ -26,7 +26,7 @@ def add_reflections(
     surroundings: NDArray[np.float64],
     draw: Callable[[View, Matrix], Image],
 ) -> None:
-    """Add what shiny surfaces mirror, in place of the surroundings that they are taken to mirror otherwise.
+    """Add reflections of shiny surfaces, which replace the uniform surroundings.
 
     The share of light that is mirrored rises from normal to grazing by Schlick's approximation, times how
     shiny the surface is. What it emits or scatters itself stays as it is.
@@ -159,7 +159,7 @@ _ALL_AROUND = 0.6  # share of a floor's light that comes from all around, and no
 def add_contact_shadows(
     image: NDArray[np.float32], view: View, camera: Pinhole, world_from_camera: Matrix, contacts: Contacts
 ) -> None:
-    """Darken the floor of an (H, W, 3) image near what stands on it, in place.
+    """Darken the floor of an (H, W, 3) image near objects on it, in place.
 
     Light on the floor's plane is reckoned at every fourth pixel, and is linear between.
     """

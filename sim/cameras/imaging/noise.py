@@ -1,4 +1,4 @@
-"""Gaussian noise for whole images, quickly."""
+"""Fast Gaussian noise for whole images."""
 
 import math
 from typing import Final
@@ -45,13 +45,13 @@ def smooth_gaussian(shape: tuple[int, int], patch_px: int, rng: np.random.Genera
 
 
 def skip_smooth_gaussian(shape: tuple[int, int], patch_px: int, rng: np.random.Generator) -> None:
-    """Leave the generator as `smooth_gaussian` would."""
+    """Advance the generator as `smooth_gaussian` would."""
     rows, columns = (length // patch_px + 2 for length in shape)
     skip_gaussian((rows, columns), rng)
 
 
 def skip_gaussian(shape: tuple[int, ...], rng: np.random.Generator) -> None:
-    """Leave the generator as `gaussian` would."""
+    """Advance the generator as `gaussian` would."""
     random_words(shape, rng)
 
 

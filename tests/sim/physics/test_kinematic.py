@@ -115,7 +115,7 @@ def test_only_one_body_that_rolls_on_two_wheels_can_move() -> None:
     with pytest.raises(BadInput, match="vehicles only"):
         physics.velocity("cube")
     physics.add_urdf("robot", URDF, fixed=False)
-    with pytest.raises(BadInput, match="one already"):
+    with pytest.raises(BadInput, match="moves only one body"):
         physics.add_urdf("other", URDF, fixed=False)
     with pytest.raises(BadInput, match="left_wheel_joint"):
         physics.joint_states("robot", ["elbow"])
