@@ -1,1 +1,1 @@
-"""Tracks and sonar in, velocity command out."""
+"""Behaviours: from tracks and sonar ranges to velocity commands."""

@@ -1,4 +1,4 @@
-"""What every behaviour has in common."""
+"""The interface of behaviours."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.percept import Percept
 from peopleboy.own_code import blamed
 
-# What a behaviour asks of the robot: a forward speed and a turn rate.
+# Output of a behaviour: a forward speed and a turn rate.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Command:
-    """A velocity command in the robot's frame.
+    """A velocity command in the robot frame.
 
     Attributes:
         linear_m_s: [m/s] forward speed, negative drives backwards.
         angular_rad_s: [rad/s] turn rate, positive turns left.
-        is_emergency: whether the robot is to lose its speeds as fast as it can.
+        is_emergency: whether the robot is to stop as fast as it can.
 
     Raises:
         BadInput: a value is not finite.
@@ -33,7 +33,7 @@ class Command:
     is_emergency: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse what no motor can do."""
+        """Refuse values that are not finite."""
         if not (math.isfinite(self.linear_m_s) and math.isfinite(self.angular_rad_s)):
             raise BadInput(
                 f"command must be finite, got {self.linear_m_s} m/s and {self.angular_rad_s} rad/s"
@@ -46,56 +46,56 @@ EMERGENCY_STOP = Command(linear_m_s=0.0, angular_rad_s=0.0, is_emergency=True)
 
 @runtime_checkable
 class Behaviour(Protocol):
-    """Anything that drives the robot.
+    """A controller of the robot.
 
     Attributes:
-        mode: what it is doing, one word for event log and curves: "search", "follow", "wait", "stand", ...
-        reason: why it is doing that, for the event log; empty where there is nothing to decide.
-        following: number of the track that it follows; None if it follows nobody.
+        mode: current activity, one word for event log and curves: "search", "follow", "wait", "stand", ...
+        reason: why the mode was chosen, for the event log; empty if there is no choice.
+        following: id of the followed track; None if there is none.
     """
 
     @property
     def mode(self) -> str:
-        """What it is doing."""
+        """Current activity."""
         ...
 
     @property
     def reason(self) -> str:
-        """Why it is doing that."""
+        """Reason for the mode."""
         ...
 
     @property
     def following(self) -> int | None:
-        """Number of the track that it follows; None if there is none."""
+        """Id of the followed track; None if there is none."""
         ...
 
     def command(self, percept: Percept) -> Command:
-        """Return the command for this sight; called once for every image, in order of time."""
+        """Return the command for a percept; called once for every image, in order of time."""
         ...
 
 
-# A behaviour of a user's own, whose every answer is looked at, so that a mistake is reported where it is.
+# A wrapper that validates a user's behaviour, so that mistakes are reported where they are made.
 
 
 class CheckedBehaviour:
-    """Gives what a behaviour gives, if that is what a behaviour may give.
+    """Returns a behaviour's output after validating it.
 
     Args:
-        behaviour: whose answers they are.
-        who: names it in messages, such as "behaviour 'my_module:MyBehaviour'".
+        behaviour: the wrapped behaviour.
+        who: name for messages, such as "behaviour 'my_module:MyBehaviour'".
     """
 
     def __init__(self, behaviour: Behaviour, who: str) -> None:
         self._behaviour = behaviour
         self._who = who
-        self._tracks: set[int] = set()  # that there were
+        self._tracks: set[int] = set()  # ids that have occurred
         self.mode, self.reason, self.following = behaviour.mode, behaviour.reason, behaviour.following
 
     def command(self, percept: Percept) -> Command:
-        """Let it look, and look at what it wants and says.
+        """Process a percept, and validate command, mode, reason and following.
 
         Raises:
-            BadInput: that is no command, or mode, reason or following are none.
+            BadInput: one of them is invalid.
             OwnCodeFailed: it raised an error.
         """
         with blamed(self._who):
@@ -109,14 +109,14 @@ class CheckedBehaviour:
 
 
 def checked_behaviour(behaviour: object, name: str) -> CheckedBehaviour:
-    """Check that an object is a behaviour, and check each of its answers from then on.
+    """Check that an object is a behaviour, and validate each of its outputs from then on.
 
     Args:
         behaviour: made by a class from outside.
         name: for messages, such as "behaviour 'my_module:MyBehaviour'".
 
     Raises:
-        BadInput: it is no behaviour.
+        BadInput: it is not a behaviour.
         OwnCodeFailed: its mode, reason or following raised an error.
     """
     with blamed(name):
@@ -128,7 +128,7 @@ def checked_behaviour(behaviour: object, name: str) -> CheckedBehaviour:
 def _faults(
     command: object, mode: object, reason: object, following: object, tracks: Set[int]
 ) -> Iterator[str]:
-    """Return what is wrong with a behaviour's answer to these tracks, and what would be right."""
+    """Yield what is wrong with a behaviour's output for these tracks, and what would be right."""
     if not isinstance(command, Command):
         yield f"command(percept) must give a Command, got {command!r}"
     if not (isinstance(mode, str) and mode and mode.isprintable()):

@@ -1,4 +1,4 @@
-"""How the robot moved between two instants, by its wheels: along an arc, at constant speeds."""
+"""Motion of the robot between two instants, by its wheels: an arc at constant speeds."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from peopleboy.geometry.pose2 import Pose2
 
 @dataclass(frozen=True, slots=True)
 class RobotMotion:
-    """A short drive at constant speeds.
+    """A short motion at constant speeds.
 
     Attributes:
         linear_m_s: [m/s] forward positive.
         angular_rad_s: [rad/s] left positive.
-        step_s: [s] how long it took.
+        step_s: [s] duration.
     """
 
     linear_m_s: float
@@ -26,21 +26,21 @@ class RobotMotion:
 
     @classmethod
     def of(cls, percept: Percept, step_s: float) -> Self:
-        """Take the wheels' present speeds for those of the last step_s [s]."""
+        """Make it from the wheels' current speeds, assumed constant over the last step_s [s]."""
         return cls(percept.linear_m_s, percept.angular_rad_s, step_s)
 
     @property
     def way_m(self) -> float:
-        """How far [m] it led."""
+        """Distance driven [m]."""
         return self.linear_m_s * self.step_s
 
     @property
     def turn_rad(self) -> float:
-        """By how much [rad] it turned the robot."""
+        """Rotation [rad]."""
         return self.angular_rad_s * self.step_s
 
     def carry(self, points: Points) -> Points:
-        """Express points (N, 2) [m] of the robot's frame before the drive in its frame after it."""
+        """Transform points (N, 2) [m] from the robot frame before the motion to that after it."""
         turn = self.turn_rad
         after = Pose2(self.way_m * math.cos(turn / 2.0), self.way_m * math.sin(turn / 2.0), turn)
         return after.points_to_local(points)

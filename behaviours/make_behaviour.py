@@ -1,4 +1,4 @@
-"""The behaviours by name; whatever one commands, the sonars limit."""
+"""The behaviours by name; each is wrapped by the safety guard, which limits its commands by the sonars."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ if TYPE_CHECKING:
     from peopleboy.behaviours.safety_limits import SafetyConfig
 
 BEHAVIOURS: Final = Registry("behaviour", "peopleboy.behaviours")
-"""The behaviours by name. One that PeopleBoy ships is called with `BehaviourSettings`, others without any.
+"""The behaviours by name. Built-in ones are called with `BehaviourSettings`, others without arguments.
 
 A behaviour is registered by decorating the function below that makes it.
 """
 SCRIPTED: Final = "scripted"
-"""The behaviour that only a scenario file can ask for, as it holds the commands."""
+"""The behaviour that is only available in scenario files, as they hold the commands."""
 
 _CALL: Final = "without an argument"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BehaviourSettings:
-    """What a scenario says about its behaviour.
+    """Settings of the behaviour in a scenario.
 
     Attributes:
         script: pairs of a time [s] and the command from then on.
-        follow: gains and limits of following a person; None for the defaults.
-        corridor: sense, gains and limits of following a corridor; None for the defaults.
+        follow: gains and limits of person following; None for the defaults.
+        corridor: sense, gains and limits of corridor following; None for the defaults.
     """
 
     script: Sequence[tuple[float, Command]] = ()
@@ -91,7 +91,7 @@ def _scripted(settings: BehaviourSettings) -> Behaviour:
 
 
 def is_own(name: str) -> bool:
-    """Whether a name is that of a behaviour from outside: "module:Class", or one of another package."""
+    """Whether a name is that of an external behaviour: "module:Class", or one of another package."""
     return ":" in name or BEHAVIOURS.is_plugged_in(name)
 
 
@@ -103,7 +103,7 @@ def make_behaviour(
     corridor: FollowCorridorConfig | None = None,
     safety: SafetyConfig | None = None,
 ) -> Guarded:
-    """Make a behaviour by its name; whatever it commands, the sonars limit.
+    """Make a behaviour by its name, limited by the safety guard.
 
     Args:
         name: one of `BEHAVIOURS`; or "module:Class", a class of your own that is called without arguments.
@@ -113,7 +113,7 @@ def make_behaviour(
         safety: the robot's limits and outline.
 
     Raises:
-        BadInput: there is no such behaviour, or the script's times do not rise.
+        BadInput: the name is unknown, or the script's times do not increase.
     """
     from peopleboy.behaviours.behaviour import checked_behaviour
     from peopleboy.behaviours.safety_guard import Guarded

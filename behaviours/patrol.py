@@ -1,4 +1,4 @@
-"""Patrol: go along the corridor, follow who turns up for a while, then go on the way that it was going."""
+"""Patrol: follow the corridor, follow a detected person for a while, then continue along the corridor."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from peopleboy.behaviours.percept import Percept, SeenPerson
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PatrolConfig:
-    """When the robot leaves its round for a person, and when it returns.
+    """When the robot interrupts its patrol for a person, and when it returns.
 
     Attributes:
         notice_height: [image heights] people at least as tall are noticed: 0.25 is 8.7 m for 1.75 m ...
         notice_s: [s] ... when they have been seen for this long.
-        follow_s: [s] nobody is followed for longer.
+        follow_s: [s] longest time for which a person is followed.
         lost_s: [s] a person who is not seen for this long is given up.
-        min_confidence: people of lower confidence are not noticed.
-        return_rad: [rad] the robot has turned back when it is this near to its old heading.
+        min_confidence: people of lower confidence are ignored.
+        return_rad: [rad] greatest remaining angle to the old heading at the end of the return.
         return_gain: [1/s] turn rate per angle on the way back.
         return_rad_s: [rad/s] highest turn rate for that.
-        return_s: [s] a turn back that takes longer is left to the corridor following.
+        return_s: [s] longest time for the return; then corridor following takes over.
     """
 
     notice_height: float = 0.25
@@ -38,7 +38,7 @@ class PatrolConfig:
 
 
 class Patrol:
-    """Composes a behaviour that goes round, such as corridor following, with person following."""
+    """Combines a patrolling behaviour, such as corridor following, with person following."""
 
     def __init__(
         self, round_: Behaviour, follow: FollowConfig | None = None, config: PatrolConfig | None = None
@@ -58,25 +58,25 @@ class Patrol:
 
     @property
     def mode(self) -> str:
-        """That of the part at work, or "return"."""
+        """Mode of the active behaviour, or "return"."""
         if self._follower is not None:
             return self._follower.mode
         return self._round.mode if self._returning_s is None else "return"
 
     @property
     def reason(self) -> str:
-        """Why the robot left its round, returns to it, or what the part at work says."""
+        """Why the robot interrupts or resumes the patrol, or the reason of the active behaviour."""
         if self._follower is not None:
             return self._follower.reason
         return self._round.reason if self._returning_s is None else self._why
 
     @property
     def following(self) -> int | None:
-        """Number of the track that the robot follows; None on its round."""
+        """Id of the followed track; None on patrol."""
         return None if self._follower is None else self._follower.following
 
     def command(self, percept: Percept) -> Command:
-        """Return the command of the part whose turn it is."""
+        """Return the command of the active behaviour."""
         step_s = 0.0 if self._time_s is None else max(percept.time_s - self._time_s, 0.0)
         self._time_s = percept.time_s
         self._away_rad = math.remainder(self._away_rad + percept.angular_rad_s * step_s, math.tau)
@@ -107,7 +107,7 @@ class Patrol:
         )
 
     def _go_after(self, follower: FollowPerson, percept: Percept, step_s: float) -> Command:
-        """Follow, until it has been long enough or the person is lost; then begin to return."""
+        """Follow until the time is over or the person is lost; then start the return."""
         people = tuple(person for person in percept.people if person.id not in self._known)
         command = follower.command(replace(percept, people=people))
         target = follower.state.target
@@ -123,7 +123,7 @@ class Patrol:
         return self._return(0.0, percept, step_s)
 
     def _return(self, returning_s: float, percept: Percept, step_s: float) -> Command:
-        """Turn back to the heading that the robot had on its round, and go on from there."""
+        """Turn back to the heading before the interruption, and resume the patrol."""
         self._returning_s = returning_s + step_s
         if abs(self._away_rad) < self._config.return_rad or self._returning_s > self._config.return_s:
             self._returning_s = None

@@ -1,4 +1,4 @@
-"""What a behaviour knows at one instant: people in the image, sonar ranges, its own speed."""
+"""Input of a behaviour at one instant: people in the image, sonar ranges, wheel speeds."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from peopleboy.bad_input import BadInput
 
 Ranges = NDArray[np.float64]
-Points = NDArray[np.float64]  # (N, 2) [m] x forward, y left, in the robot's frame
+Points = NDArray[np.float64]  # (N, 2) [m] x forward, y left, in the robot frame
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -20,12 +20,12 @@ class SeenPerson:
     """One tracked person in the thermal image.
 
     Attributes:
-        id: the track's number; it stays with the person.
+        id: track id, constant for a person.
         x: [half image widths] column of the body's middle, -1 at the left border, +1 at the right one.
-        height: [image heights] apparent height from head to feet; above 1 the image shows only a part.
+        height: [image heights] apparent height from head to feet; above 1 only a part is visible.
         top, bottom: [image heights] rows of head and feet, 0 at the upper border, 1 at the lower one.
         confidence: 0..1, that this is a person.
-        is_visible: whether the track rests on this very image, and not on a prediction.
+        is_visible: whether the track is based on this image, and not on a prediction.
     """
 
     id: int
@@ -45,24 +45,24 @@ class SeenPerson:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Percept:
-    """All that a behaviour receives at one control step.
+    """Input of a behaviour at one control step.
 
     Attributes:
         time_s: [s] of the image.
         people: the tracker's people.
         sonar_m: (N,) [m] range in front of each sonar.
-        sonar_angle_rad: (N,) [rad] direction of each sonar in the robot's frame, positive to the left.
+        sonar_angle_rad: (N,) [rad] direction of each sonar in the robot frame, positive to the left.
         linear_m_s: [m/s] forward speed from the wheels.
         angular_rad_s: [rad/s] turn rate from the wheels, positive to the left.
-        images: of the cameras that took one now, by name, such as `colour`, (H, W, 3) uint8 sRGB; each may be
-            made only when it is asked for.
-        image_age_s: [s] since the newest image came in; `people` are those of that image.
-        knows_again: whether a person who comes back has the old number, however long it was away, so that
-            whoever has a new one is another person.
-        fault: why nobody can be seen just now, such as a tracker's error; empty if all is well.
+        images: of the cameras with a new image, by name, such as `colour`, (H, W, 3) uint8 sRGB; each may be
+            rendered on demand.
+        image_age_s: [s] since the newest image; `people` are those of that image.
+        knows_again: whether returning people get their old id, however long they were absent, so that a new
+            id is always another person.
+        fault: why people cannot be detected now, such as a tracker's error; empty if all is well.
 
     Raises:
-        BadInput: there is not one angle for each range.
+        BadInput: numbers of angles and ranges differ.
     """
 
     time_s: float
@@ -77,7 +77,7 @@ class Percept:
     fault: str = ""
 
     def __post_init__(self) -> None:
-        """Keep own, read-only copies of the arrays."""
+        """Store read-only copies of the arrays."""
         for name in ("sonar_m", "sonar_angle_rad"):
             array = np.array(getattr(self, name), dtype=np.float64)
             array.setflags(write=False)

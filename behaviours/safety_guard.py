@@ -1,4 +1,4 @@
-"""Safety last: no command reaches the robot without it."""
+"""Safety guard: validates and limits every command before it reaches the robot."""
 
 from __future__ import annotations
 
@@ -18,18 +18,17 @@ from peopleboy.behaviours.sonar_echoes import (
     remember,
 )
 
-# Sonars that have gone deaf: all report free space as far as they reach, where there cannot be any.
+# Detection of sonar failure: all sonars report free space at full range, although there must be an obstacle.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SonarFailureConfig:
-    """What cannot be.
+    """Conditions under which a silent ring of sonars has failed.
 
     Attributes:
-        sure_m: [m] an obstacle nearer than this does not get out of all sonars' reach from one frame to the
-            next.
-        sure_height: [image heights] a person as tall as this, or taller, is heard: 3.1 m for 1.75 m.
-        ahead: [half image widths] as far off the middle the person may be for that.
+        sure_m: [m] an obstacle nearer than this cannot leave the range of all sonars between two frames.
+        sure_height: [image heights] a person of at least this height is in range: 3.1 m for 1.75 m.
+        ahead: [half image widths] greatest distance of that person from the middle.
     """
 
     sure_m: float = 3.5
@@ -38,14 +37,14 @@ class SonarFailureConfig:
 
 
 class SonarFailure:
-    """Notices when every sonar falls silent at once.
+    """Detects the failure of all sonars.
 
-    A ring that hears nothing reports one and the same range, its reach, for all sonars. In a large hall that
-    is how things are; but not just after an echo from nearby, nor with a person in front.
+    A ring without echoes reports its full range for all sonars. That is normal in a large hall, but not
+    directly after a near echo, nor with a person in front.
 
     Attributes:
-        has_heard: whether any sonar has ever heard anything. A ring that has not may be deaf from the start,
-            or in the middle of a hall; nobody can tell which.
+        has_heard: whether there was ever an echo. A ring without any may have failed from the start, or be in
+            the middle of a hall; the two cannot be distinguished.
     """
 
     def __init__(self, config: SonarFailureConfig | None = None) -> None:
@@ -55,7 +54,7 @@ class SonarFailure:
         self.has_heard = False
 
     def listen(self, percept: Percept) -> bool:
-        """Tell whether the sonars are deaf; once they are, they stay so until one of them hears something."""
+        """Return whether the sonars have failed; this lasts until one of them has an echo."""
         ranges = percept.sonar_m
         if len(ranges) < 2 or not np.all(ranges == ranges[0]):
             self._nearest_m, self._is_deaf = float(np.min(ranges, initial=np.inf)), False
@@ -67,7 +66,7 @@ class SonarFailure:
         return self._is_deaf
 
     def _is_person_near(self, percept: Percept) -> bool:
-        """Return whether a person stands so near in front that there must be an echo."""
+        """Return whether a person is so near in front that there must be an echo."""
         return any(
             person.is_visible
             and person.height >= self._config.sure_height
@@ -76,16 +75,15 @@ class SonarFailure:
         )
 
 
-# As long as something takes from one beam through the gap to the next; people have moved on by then.
+# Time in which an object passes from one beam through the gap to the next; people have moved on by then.
 PASSING = EchoMemoryConfig(keep_s=2.0, within_m=1.1)
 
 
 class Guarded:
-    """A behaviour under guard: it sees sonars without drop-outs, and what it asks for is limited by them.
+    """A wrapper that gives a behaviour sonar ranges without drop-outs, and limits its commands by them.
 
-    The robot stops at once when images stay out, nobody can tell who is in them, or the sonars have gone
-    deaf; the behaviour is not asked then, and goes on afterwards where it was. Until the sonars have heard
-    anything at all, it creeps.
+    The robot stops at once when images are missing, people cannot be detected in them, or the sonars have
+    failed; the behaviour is not called then, and resumes afterwards. Until the first echo, the robot creeps.
 
     Attributes:
         is_limited: whether the last command was changed.
@@ -103,21 +101,21 @@ class Guarded:
 
     @property
     def mode(self) -> str:
-        """The mode of the guarded behaviour, or "stop"."""
+        """Mode of the wrapped behaviour, or "stop"."""
         return "stop" if self._fault else self._behaviour.mode
 
     @property
     def reason(self) -> str:
-        """Why the behaviour is in this mode, or what the robot was stopped for."""
+        """Reason of the mode, or of the stop."""
         return self._fault or self._behaviour.reason
 
     @property
     def following(self) -> int | None:
-        """Whom the behaviour follows; nobody while the robot is stopped."""
+        """Id of the followed track; None while the robot is stopped."""
         return None if self._fault else self._behaviour.following
 
     def command(self, percept: Percept) -> Command:
-        """Return the behaviour's command, as far as it is safe."""
+        """Return the behaviour's command, limited to a safe one."""
         self._fault = self._blindness(percept)
         if self._fault:
             self.is_limited = True
@@ -135,14 +133,14 @@ class Guarded:
         return safe
 
     def _limits(self) -> SafetyConfig:
-        """Creep as long as the sonars have heard nothing at all: they may be deaf."""
+        """Creep until the first echo: the sonars may have failed."""
         config = self._config
         if self._deafness.has_heard:
             return config
         return replace(config, max_linear_m_s=min(config.max_linear_m_s, config.unproven_m_s))
 
     def _blindness(self, percept: Percept) -> str:
-        """Return why the images are of no use; empty if they are."""
+        """Return why the images are unusable; empty if they are usable."""
         if percept.fault:
             return percept.fault
         is_late = not percept.image_age_s <= self._config.latest_image_s

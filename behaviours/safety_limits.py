@@ -1,4 +1,4 @@
-"""The last word on any command: limits of the drive, and what the sonars see in the way."""
+"""Limits of commands: the drive's limits, and obstacles seen by the sonars."""
 
 from __future__ import annotations
 
@@ -13,39 +13,38 @@ from peopleboy.behaviours.sonar_echoes import BESIDE_RAD, echoes
 
 NOTHING_REMEMBERED: Points = np.zeros((0, 2))
 NOTHING_REMEMBERED.setflags(write=False)
-_NEAR_M = (
-    1.6  # [m] what is farther from the robot's origin does not come within the margin on its way to rest
-)
-_ARC_M = np.arange(1, 19) * 0.05  # ways at which room is looked for; from 0.8 m/s it stops in 0.84 m
+_NEAR_M = 1.6  # [m] obstacles farther from the robot's origin cannot enter the margin before it stops
+_ARC_M = np.arange(1, 19) * 0.05  # checked arc lengths; from 0.8 m/s it stops in 0.84 m
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SafetyConfig:
-    """The robot's limits and outline, and the room that it leaves to obstacles.
+    """Limits and outline of the robot, and its clearance from obstacles.
 
     Frame: x forward, y left, origin between the wheels.
 
     Attributes:
         max_linear_m_s: [m/s] forward speed limit, also backwards.
         max_angular_rad_s: [rad/s] turn rate limit.
-        unproven_m_s: [m/s] forward speed limit until the sonars have heard anything at all: slow enough to
-            run into a wall without harm, and a hall in which there is none to hear is left in time.
-        braking_m_s2: [m/s2] deceleration to count on; less than the drive's 0.6, in reserve.
-        reaction_s: [s] from an echo until the brakes act: a frame of latency, and a drive still speeding up.
-        margin_m: [m] room left between the hull and any obstacle by driving; a turn on the spot may swing the
-            tail nearer, as a robot beside a wall must be able to turn off it.
-        noise_m, shallow, closest_m: [m], [m/m], [m] within the margin the room may shrink by the first, and
-            by the second per way, down to the third: sonars are not exact enough to tell a wall beside the
-            way from one that slowly draws near.
-        off_middle_m: [m] in a passage too narrow for the margin the robot keeps this near to the middle.
+        unproven_m_s: [m/s] forward speed limit until the first echo: slow enough for a harmless collision
+            with a wall, and fast enough to leave a hall without echoes in time.
+        braking_m_s2: [m/s2] assumed deceleration; lower than the drive's 0.6, as a reserve.
+        reaction_s: [s] from an echo until the brakes act: a frame of latency, and a drive that still
+            accelerates.
+        margin_m: [m] clearance between the hull and obstacles while driving; a turn on the spot may swing the
+            tail nearer, as a robot next to a wall must be able to turn away from it.
+        noise_m, shallow, closest_m: [m], [m/m], [m] within the margin the clearance may shrink by the first,
+            and by the second per distance driven, down to the third: sonars cannot distinguish a parallel
+            wall from one that slowly approaches.
+        off_middle_m: [m] greatest distance from the middle of a passage too narrow for the margin.
         hull_m: [m] half the hull's width.
         front_m, rear_m: [m] from the origin to the hull's front and rear edge.
         half_width_m: [m] half of the lane that must be free: half the hull plus a hand's breadth.
-        corner_m: [m] from the origin to the farthest corner of the hull, which sweeps round in a turn.
-        free_turn_m: [m] an obstacle farther from the origin than this does not limit turning.
+        corner_m: [m] from the origin to the farthest corner of the hull, which swings out in a turn.
+        free_turn_m: [m] obstacles farther from the origin than this do not limit turning.
         tight_turn_rad_s: [rad/s] turn rate with an obstacle at the corner's distance.
-        latest_image_s: [s] without a new image for longer than this the robot stops: at 15 Hz the first one
-            that stays out.
+        latest_image_s: [s] without a new image after which the robot stops: at 15 Hz the first missing
+            image.
     """
 
     max_linear_m_s: float = 0.8
@@ -75,18 +74,18 @@ def limit(
     remembered: Points = NOTHING_REMEMBERED,
     passing: Points = NOTHING_REMEMBERED,
 ) -> Command:
-    """Change a command as little as needed so that the robot can always stop before what its sonars see.
+    """Change a command as little as needed so that the robot can always stop before obstacles.
 
-    The result is within the drive's limits; its parts keep their sign or are zero. Senseless input stops the
-    robot; a sonar that reads no number counts as an obstacle at the sonar itself.
+    The result is within the drive's limits; its components keep their sign or are zero. Invalid input stops
+    the robot; a sonar range of NaN counts as an obstacle at the sonar itself.
 
     Args:
-        command: what a behaviour asks for.
+        command: of a behaviour.
         percept: with the sonars' ranges.
         config: limits and outline.
         remembered: (N, 2) [m] further obstacles, robot frame, which limit turning: a corner of the hull
             swings through the gaps between the sonars' cones.
-        passing: (M, 2) [m] obstacles of the last moment, robot frame, beside which the robot drives.
+        passing: (M, 2) [m] recent obstacles next to the robot's path, robot frame.
     """
     if not percept.is_sound:
         return STOP
@@ -103,7 +102,7 @@ def limit(
 
 
 def safe_speed(room_m: float, config: SafetyConfig) -> float:
-    """Return the highest speed [m/s] from which the robot stops within a way of room_m [m].
+    """Return the highest speed [m/s] from which the robot stops within a distance room_m [m].
 
     The larger root of reaction * v + v^2 / (2 a) = room, at most the drive's limit.
     """
@@ -114,7 +113,7 @@ def safe_speed(room_m: float, config: SafetyConfig) -> float:
 
 
 def _free_way(points: Points, config: SafetyConfig) -> tuple[float, float]:
-    """Return the room [m] ahead and behind, in the lane of the hull, less the margin."""
+    """Return the free distance [m] ahead and behind, in the lane of the hull, minus the margin."""
     x = points[np.abs(points[:, 1]) < config.half_width_m, 0]
     ahead = np.min(x[x > 0.0], initial=np.inf) - config.front_m
     behind = np.min(-x[x <= 0.0], initial=np.inf) - config.rear_m
@@ -122,9 +121,9 @@ def _free_way(points: Points, config: SafetyConfig) -> tuple[float, float]:
 
 
 def _free_arc(command: Command, points: Points, config: SafetyConfig) -> float:
-    """Return the way [m] along the commanded arc until the hull comes too near to something, or inf.
+    """Return the distance [m] along the commanded arc until the hull comes too near to an obstacle, or inf.
 
-    Too near is nearer than the margin, and nearer than it is now.
+    Too near is nearer than the margin, and nearer than now.
     """
     if command.linear_m_s == 0.0:
         return math.inf
@@ -145,10 +144,10 @@ def _free_arc(command: Command, points: Points, config: SafetyConfig) -> float:
 
 
 def _side_margin(points: Points, config: SafetyConfig) -> float:
-    """Give the margin [m]; in a passage ahead too narrow for it, as a door is, what is left in the middle."""
+    """Return the margin [m]; in a narrow passage ahead, such as a door, half of the remaining width."""
     x, y = points[points[:, 0] > -config.rear_m].T
     if np.any((x > 0.0) & (np.abs(y) < config.half_width_m)):
-        return config.margin_m  # no way leads through there
+        return config.margin_m  # no path leads through
     left = np.min(y[y > 0.0], initial=math.inf)
     right = np.min(-y[y < 0.0], initial=math.inf)
     middle = float(left + right) / 2.0 - config.hull_m
@@ -164,14 +163,14 @@ def _gaps(points: Points, config: SafetyConfig) -> Points:
 
 
 def _safe_turn(wanted_rad_s: float, points: Points, config: SafetyConfig) -> float:
-    """Return the highest turn rate [rad/s] in the wanted direction, with obstacles beside the hull."""
+    """Return the highest turn rate [rad/s] in the wanted direction, given obstacles next to the hull."""
     distance = np.hypot(points[:, 0], points[:, 1])
     room_m = float(np.min(distance)) - config.corner_m
     if room_m > 0.0:
         share = min(room_m / (config.free_turn_m - config.corner_m), 1.0)
         return config.tight_turn_rad_s + share * (config.max_angular_rad_s - config.tight_turn_rad_s)
     x, y = points[distance <= config.corner_m].T
-    # Turning left, the corners swing towards what is ahead-left and behind-right; abreast it is all the same,
-    # and a robot beside a wall must be able to turn off it.
+    # Turning left, the corners swing towards obstacles ahead-left and behind-right; obstacles abreast do not
+    # matter, and a robot next to a wall must be able to turn away from it.
     is_swept = (wanted_rad_s * x * y > 0.0) & (np.abs(x) > 0.5 * np.abs(y))
     return 0.0 if is_swept.any() else config.tight_turn_rad_s

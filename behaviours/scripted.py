@@ -1,4 +1,4 @@
-"""Commands given in advance, each from its time on."""
+"""Predefined commands, each valid from a time on."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from peopleboy.behaviours.percept import Percept
 
 
 class Scripted:
-    """Drives by the clock and looks at nothing.
+    """Drives by the clock and ignores all sensors.
 
     Raises:
-        BadInput: the times are not finite or not rising.
+        BadInput: the times are not finite or not increasing.
     """
 
     mode = "scripted"
@@ -30,7 +30,7 @@ class Scripted:
             raise BadInput(f"script: times must be finite and rise, got {self._from_s}")
 
     def command(self, percept: Percept) -> Command:
-        """Return the last command whose time has come; before the first the robot stands."""
+        """Return the current command; before the first one the robot stands."""
         index = bisect.bisect_right(self._from_s, percept.time_s)
         return self._commands[index - 1] if index else STOP
 
@@ -43,5 +43,5 @@ class Stand:
     following = None
 
     def command(self, percept: Percept) -> Command:  # noqa: ARG002
-        """Stop, whatever there is to see."""
+        """Return the stop command."""
         return STOP

@@ -1,4 +1,4 @@
-"""Where the sonars' echoes lie around the robot."""
+"""Positions of the sonars' echoes around the robot."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from peopleboy.behaviours.dead_reckoning import RobotMotion
 from peopleboy.behaviours.percept import Percept, Points, Ranges
 
 # The PeopleBot's ring: an ellipse within 3 cm of ARIA's peoplebot-sh.p, SonarUnit 0..15, except the four
-# units that look sideways, which sit 11 cm fore and aft of it.
+# sideways units, which are 11 cm in front of and behind it.
 RING_CENTRE_X_M = -0.044
 RING_HALF_AXES_M = (0.21, 0.14)
 BESIDE_RAD = math.radians(7.5)  # half a beam's opening
 
 
 def echoes(percept: Percept, spread_rad: float = 0.0) -> Points:
-    """Place each sonar's echo in its beam: (N, 2) [m], x forward, y left, origin between the wheels.
+    """Return the position of each sonar's echo: (N, 2) [m], x forward, y left, origin between the wheels.
 
-    A range that is no number, or negative, counts as an obstacle at the sonar itself.
+    A range that is NaN or negative counts as an obstacle at the sonar itself.
 
     Args:
         percept: with the sonars' ranges.
-        spread_rad: [rad] how far off the beam's axis, towards the robot's side: BESIDE_RAD places a wall
-            beside the way, whose echo comes from the edge of the beam.
+        spread_rad: [rad] offset from the beam's axis, towards the robot's side: BESIDE_RAD is for a wall
+            parallel to the path, whose echo comes from the edge of the beam.
     """
     ranges = np.where(np.isfinite(percept.sonar_m), np.maximum(percept.sonar_m, 0.0), 0.0)
     angle = percept.sonar_angle_rad + spread_rad * np.sign(np.round(np.sin(2.0 * percept.sonar_angle_rad), 6))
@@ -36,28 +36,27 @@ def echoes(percept: Percept, spread_rad: float = 0.0) -> Points:
 
 
 def fill_drop_outs(ranges: list[Points]) -> Points:
-    """Take each sonar's nearest range of the last few readings: (N,) [m].
+    """Return the minimum of each sonar's last few ranges: (N,) [m].
 
-    A lost echo reads as free space, so the nearest of a few readings is the one to trust. No number stays
-    no number.
+    A lost echo reads as free space, so the nearest of a few readings is the most reliable. NaN stays NaN.
 
     Args:
-        ranges: (N,) [m] each, newest last, at least one; those of another length are left out.
+        ranges: (N,) [m] each, newest last, at least one; those of another length are ignored.
     """
     nearest: Points = np.min([r for r in ranges if r.shape == ranges[-1].shape], axis=0)
     return nearest
 
 
-# Near echoes remembered for a while, because the sonars' cones leave gaps in which a door post vanishes.
+# Near echoes are stored for a while, as a door post can vanish in the gaps between the sonars' cones.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EchoMemoryConfig:
-    """What is remembered.
+    """Settings of the memory of echoes.
 
     Attributes:
         keep_s: [s] time after which an echo is forgotten; people move on, posts do not.
-        within_m: [m] echoes farther from the robot's origin are not remembered.
+        within_m: [m] echoes farther from the robot's origin are not stored.
     """
 
     keep_s: float = 12.0
@@ -66,12 +65,12 @@ class EchoMemoryConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class EchoMemory:
-    """Echoes of the last seconds, moved along with the robot.
+    """Echoes of the last seconds, in the moving robot's frame.
 
     Attributes:
-        time_s: [s] of the last sight.
+        time_s: [s] of the last percept.
         points: (N, 2) [m] robot frame at that time.
-        heard_s: (N,) [s] when each was heard.
+        heard_s: (N,) [s] time of each echo.
     """
 
     time_s: float = math.nan
@@ -82,9 +81,9 @@ class EchoMemory:
 def remember(
     memory: EchoMemory, percept: Percept, config: EchoMemoryConfig, spread_rad: float = 0.0
 ) -> EchoMemory:
-    """Move the echoes by the wheels' motion, forget the old and the far, take in the new.
+    """Move the echoes by the wheels' motion, remove old and far ones, and add new ones.
 
-    Senseless input leaves the memory as it is. Echoes are placed spread_rad [rad] off the beams' axes.
+    Invalid input leaves the memory unchanged. Echoes are placed spread_rad [rad] off the beams' axes.
     """
     if not percept.is_sound:
         return memory

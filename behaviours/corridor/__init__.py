@@ -1,1 +1,1 @@
-"""Corridors: where the robot is in one, by sonar or image, and how it drives along."""
+"""Corridors: localisation by sonar or image, and corridor following."""

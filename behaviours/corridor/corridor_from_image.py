@@ -1,4 +1,4 @@
-"""The corridor as the colour camera sees it: vanishing point and the lines between walls and floor."""
+"""Localisation in a corridor by the colour image: vanishing point and wall-floor lines."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ Image = NDArray[np.uint8]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CorridorCamera:
-    """What must be known of the colour camera, which sits level.
+    """Calibration of the colour camera, which is level.
 
     Attributes:
         focal_px: [px] focal length.
-        position_m: [m] optical centre in the robot's frame: forward, left, up from the floor.
+        position_m: [m] optical centre in the robot frame: forward, left, up from the floor.
     """
 
     focal_px: float
@@ -31,20 +31,20 @@ class CorridorCamera:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ImageCorridorConfig:
-    """What counts as a line, and how many must agree.
+    """Thresholds of line detection and agreement.
 
     Attributes:
         dark: mean grey level below which nothing is measured.
-        shortest: [image heights] lines that are shorter do not count.
-        level_rad, upright_rad: [rad] lines this close to level, or to upright, do not count.
-        below: [image heights] lines within this of the horizon do not count: there all meet.
-        agree: [image widths] lines that cross the horizon within this of the vanishing point agree.
-        least: [image heights] summed length of lines that make a vanishing point.
-        share: of all lines' length, the least that must agree.
-        widest_m: [m] walls farther to the side than this are not looked for.
-        bin_m: [m] lines on the floor within this of each other are one.
-        wall_least: [image heights] length of a wall-floor line, less what runs against it.
-        expected_m: [m] walls farther than this off the expected ones do not agree with them.
+        shortest: [image heights] shorter lines are ignored.
+        level_rad, upright_rad: [rad] lines this close to horizontal, or to vertical, are ignored.
+        below: [image heights] lines within this distance of the horizon are ignored: all meet there.
+        agree: [image widths] lines that cross the horizon within this distance of the vanishing point agree.
+        least: [image heights] least total length of lines for a vanishing point.
+        share: least share of the lines' total length that must agree.
+        widest_m: [m] greatest lateral distance of walls.
+        bin_m: [m] lines on the floor within this distance of each other are merged.
+        wall_least: [image heights] least length of a wall-floor line, minus that of opposite contrast.
+        expected_m: [m] tolerance between measured and expected walls.
         width_m: [m] least and largest width of a corridor.
     """
 
@@ -69,17 +69,17 @@ def corridor_from_image(
     expected: Corridor | None = None,
     config: ImageCorridorConfig | None = None,
 ) -> Corridor | Unknown:
-    """Find the centre line and heading from the lines of one image.
+    """Return the corridor from the lines of one image.
 
-    Lines along the corridor meet at the vanishing point; a level camera has it on the middle row, and its
-    column gives the heading. A line on the floor at d to the left runs from there by -d / (h cos heading)
-    columns a row, h being the camera's height.
+    Lines along the corridor meet at the vanishing point; for a level camera it is on the middle row, and its
+    column gives the heading. A line on the floor at distance d to the left starts there with a slope of -d /
+    (h cos heading) columns per row, where h is the camera's height.
 
     Args:
-        colour: (H, W, 3) sRGB; None where there is no image.
-        camera: the camera that took it.
-        expected: the place by dead reckoning; None where nothing is known.
-        config: what counts.
+        colour: (H, W, 3) sRGB; None without an image.
+        camera: calibration of the camera.
+        expected: the corridor predicted by dead reckoning; None if unknown.
+        config: thresholds.
     """
     config = ImageCorridorConfig() if config is None else config
     if colour is None:
@@ -106,7 +106,7 @@ def corridor_from_image(
 
 
 def _paint(colour: Image) -> Image:
-    """Give the share of red over blue as a grey image; light, shade and a floor's tiles change it little."""
+    """Return the ratio of red to blue as a grey image; light, shadow and floor tiles change it little."""
     red, green, blue = np.moveaxis(colour.astype(np.float32), 2, 0)
     share = (red - blue) / (red + green + blue + 10.0)
     paint: Image = np.clip(64.0 + 1000.0 * share, 0.0, 255.0).astype(np.uint8)
@@ -114,13 +114,13 @@ def _paint(colour: Image) -> Image:
 
 
 def _lines(grey: Image, config: ImageCorridorConfig) -> Points:
-    """Find straight lines that are neither level nor upright: (N, 4) [px] u, v of both ends.
+    """Return straight lines that are neither horizontal nor vertical: (N, 4) [px] u, v of both ends.
 
     Source: von Gioi, Jakubowicz, Morel and Randall, LSD: a line segment detector (2012), in OpenCV. The
-    brighter side is always on the same hand of the way from the first end to the second.
+    brighter side is always on the same side of the direction from the first end to the second.
     """
     found = cv2.createLineSegmentDetector(cv2.LSD_REFINE_NONE).detect(grey)[0]
-    # OpenCV says None where it finds none, whatever its types promise.
+    # OpenCV returns None without lines, contrary to its type stubs.
     lines = np.array([] if found is None else found, dtype=np.float64).reshape(-1, 4)
     du, dv = np.abs(lines[:, 2] - lines[:, 0]), np.abs(lines[:, 3] - lines[:, 1])
     slope = np.arctan2(dv, du)
@@ -131,7 +131,7 @@ def _lines(grey: Image, config: ImageCorridorConfig) -> Points:
 
 
 def _crossing(lines: Points, row: float) -> Points:
-    """Return the column [px] at which each line, drawn on, crosses a row [px]: (N,)."""
+    """Return the column [px] at which each line, extended, crosses a row [px]: (N,)."""
     u0, v0, u1, v1 = lines.T
     columns: Points = u0 + (row - v0) * (u1 - u0) / (v1 - v0)
     return columns
@@ -143,7 +143,7 @@ def _length(lines: Points) -> Points:
 
 
 def _vanishing_column(lines: Points, height: int, width: int, config: ImageCorridorConfig) -> float | Unknown:
-    """Find the column [px] of the horizon through which most lines go, by length."""
+    """Return the column [px] of the horizon that most lines cross, by length."""
     columns, lengths = _crossing(lines, (height - 1) / 2.0), _length(lines)
     if lengths.sum() < config.least * height:
         return Unknown("too few lines")
@@ -159,9 +159,9 @@ def _vanishing_column(lines: Points, height: int, width: int, config: ImageCorri
 def _floor_lines(
     lines: Points, height: int, heading: float, camera: CorridorCamera, config: ImageCorridorConfig
 ) -> Points:
-    """Take lines below the horizon for lines on the floor: (M, 2) [m] to the left of the camera, [px] length.
+    """Project lines below the horizon to the floor: (M, 2) [m] to the left of the camera, [px] length.
 
-    A length is negative where the line's darker side is the other one.
+    A length is negative for the opposite contrast.
     """
     horizon = (height - 1) / 2.0
     low = lines[np.minimum(lines[:, 1], lines[:, 3]) > horizon + config.below * height]
@@ -172,10 +172,10 @@ def _floor_lines(
 
 
 def _wall(floor: Sequence[Points], side: int, height: int, config: ImageCorridorConfig) -> float | None:
-    """Find the wall-floor line of one side: its distance [m] from the camera, None if there is none.
+    """Return the distance [m] of the wall-floor line of one side from the camera, or None.
 
-    The tiles of a floor change from dark to bright and back along their edge, so that its pieces cancel; the
-    line at a wall's foot has the same sign all along, in light and in paint.
+    The tiles of a floor alternate along their edge, so that their contributions cancel; the line at a wall's
+    foot has the same sign everywhere, in light and in paint.
     """
     away = side * np.concatenate([lines[:, 0] for lines in floor])
     tried = away[away > 0.0]
@@ -200,7 +200,7 @@ def _corridor(
     expected: Corridor | None,
     config: ImageCorridorConfig,
 ) -> Corridor | Unknown:
-    """Put the robot between the walls; one that is not seen stands where the known width says."""
+    """Return the robot's pose between the walls; an undetected wall is placed by the known width."""
     if expected is not None and left is None and right is not None:
         left = expected.width_m - right
     if expected is not None and right is None and left is not None:

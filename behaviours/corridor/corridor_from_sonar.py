@@ -1,4 +1,4 @@
-"""The corridor as the sonars hear it: the heading under which the echoes of each side agree on one wall."""
+"""Localisation in a corridor by sonar: the heading at which the echoes of each side agree on one wall."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from peopleboy.behaviours.corridor.corridor_geometry import Corridor, Unknown
 from peopleboy.behaviours.percept import Percept, Points, Ranges
 from peopleboy.behaviours.sonar_echoes import RING_CENTRE_X_M, RING_HALF_AXES_M
 
-# How a sonar's beam hears a straight wall.
+# Range of a sonar's beam to a straight wall.
 
 Flags = NDArray[np.bool_]
 
@@ -22,7 +22,7 @@ class BeamConfig:
     """A sonar's beam.
 
     Attributes:
-        half_cone_rad: [rad] half its opening; the echo comes from where in it the wall is nearest.
+        half_cone_rad: [rad] half its opening; the echo comes from the wall's nearest point in the cone.
         reach_m: [m] a range beyond this is no echo.
         slant_rad: [rad] a beam that meets a wall more obliquely than this is useless.
     """
@@ -33,18 +33,18 @@ class BeamConfig:
 
 
 def wall_distances(percept: Percept, normals_rad: Points, beam: BeamConfig) -> tuple[Points, Flags]:
-    """Turn each reading into a distance [m] from the robot's origin to the wall, and tell whether it can.
+    """Convert each reading to a distance [m] from the robot's origin to the wall, and return its validity.
 
-    A beam whose axis is off the wall's normal by a hears the wall at distance / cos(a - half cone), or at its
-    distance where the cone holds the normal.
+    A beam at an angle a from the wall's normal measures distance / cos(a - half cone), or the distance itself
+    if the cone includes the normal.
 
     Args:
         percept: with the sonars' ranges.
-        normals_rad: (K,) [rad] directions in the robot's frame in which a wall may lie.
+        normals_rad: (K,) [rad] candidate directions of a wall in the robot frame.
         beam: the sonars' beams.
 
     Returns:
-        (K, N) distances, and whether the beam can have heard that wall.
+        (K, N) distances, and whether the beam can have measured that wall.
     """
     off = np.abs(np.angle(np.exp(1j * (percept.sonar_angle_rad - normals_rad[:, None]))))
     slant = np.maximum(off - beam.half_cone_rad, 0.0)
@@ -54,12 +54,12 @@ def wall_distances(percept: Percept, normals_rad: Points, beam: BeamConfig) -> t
 
 
 def without_walls(percept: Percept, walls: Points, tolerance_m: float, beam: BeamConfig) -> Ranges:
-    """Leave only what is in the way: ranges that a wall explains become infinite: (N,) [m].
+    """Keep only obstacles: ranges explained by a wall become infinite: (N,) [m].
 
     Args:
         percept: with the sonars' ranges.
-        walls: (K, 2) direction [rad] in the robot's frame and distance [m] of each wall.
-        tolerance_m: [m] an echo so little before a wall, or behind it, is the wall's.
+        walls: (K, 2) direction [rad] in the robot frame and distance [m] of each wall.
+        tolerance_m: [m] an echo less than this in front of a wall, or behind it, belongs to the wall.
         beam: the sonars' beams.
     """
     distance, _ = wall_distances(percept, walls[:, 0], beam)
@@ -82,17 +82,17 @@ def side_walls(corridor: Corridor) -> Points:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SonarCorridorConfig:
-    """What counts as the echo of a wall.
+    """Thresholds of wall echoes.
 
     Attributes:
-        beam: how a beam hears a wall.
-        search_rad: [rad] headings tried to either side, with nothing expected ...
-        near_rad: [rad] ... and about the expected heading.
-        step_rad: [rad] between tried headings.
-        agree_m: [m] an echo this far off the wall of the others counts as no worse than one farther off.
-        expected_m: [m] an echo this far off the expected wall is a person, a door or a side corridor.
-        least_echoes: echoes that a wall takes.
-        worst_m: [m] walls whose echoes disagree by more, in the mean, are none.
+        beam: model of a beam.
+        search_rad: [rad] range of candidate headings to either side without a prediction ...
+        near_rad: [rad] ... and around a predicted heading.
+        step_rad: [rad] between candidate headings.
+        agree_m: [m] limit of an echo's deviation from the wall of the others.
+        expected_m: [m] an echo this far off the expected wall is from a person, a door or a side corridor.
+        least_echoes: least number of echoes of a wall.
+        worst_m: [m] greatest mean deviation of a wall's echoes.
         width_m: [m] least and largest width of a corridor.
     """
 
@@ -109,11 +109,11 @@ class SonarCorridorConfig:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Walls:
-    """One side's wall under every tried heading.
+    """Wall of one side for every candidate heading.
 
     Attributes:
-        distance_m: (K,) [m] from the robot's origin, NaN where the echoes do not make a wall.
-        spread_m: (K,) [m] mean disagreement of its echoes.
+        distance_m: (K,) [m] from the robot's origin, NaN where the echoes do not form a wall.
+        spread_m: (K,) [m] mean deviation of its echoes.
     """
 
     distance_m: Points
@@ -123,17 +123,17 @@ class _Walls:
 def corridor_from_sonar(
     percept: Percept, expected: Corridor | None = None, config: SonarCorridorConfig | None = None
 ) -> Corridor | Unknown:
-    """Find the centre line and heading from the side readings.
+    """Return the corridor from the side readings.
 
-    Every heading turns each reading into a distance of the wall; the heading that is right is the one under
-    which a side's readings agree.
+    Every candidate heading converts each reading to a distance of the wall; at the right heading a side's
+    readings agree.
 
-    With nothing expected, both walls must be heard; else one will do, and the width is kept.
+    Without a prediction, both walls must be detected; otherwise one suffices, and the width is kept.
 
     Args:
         percept: with the sonars' ranges.
-        expected: the place by dead reckoning; None where nothing is known.
-        config: what counts as a wall.
+        expected: the corridor predicted by dead reckoning; None if unknown.
+        config: thresholds.
     """
     config = SonarCorridorConfig() if config is None else config
     headings = _headings(expected, config)
@@ -145,7 +145,7 @@ def corridor_from_sonar(
         return Unknown("the sonars hear no walls along the way")
     count = has_left.astype(np.float64) + has_right
     spread = np.where(has_left, left.spread_m, 0.0) + np.where(has_right, right.spread_m, 0.0)
-    # A wall less that is heard costs as much as the worst one, so that no heading wins by losing echoes.
+    # An undetected wall costs as much as the worst one, so that no heading wins by losing echoes.
     cost = np.where(enough, spread + (2.0 - count) * config.worst_m, np.inf)
     best = int(np.argmin(cost))
     width = None if expected is None else expected.width_m
@@ -156,7 +156,7 @@ def corridor_from_sonar(
 
 
 def _headings(expected: Corridor | None, config: SonarCorridorConfig) -> Points:
-    """Return the headings to try: (K,) [rad]."""
+    """Return the candidate headings: (K,) [rad]."""
     middle = 0.0 if expected is None else expected.heading_rad
     reach = config.search_rad if expected is None else config.near_rad
     steps = round(reach / config.step_rad)
@@ -167,7 +167,7 @@ def _headings(expected: Corridor | None, config: SonarCorridorConfig) -> Points:
 def _walls(
     percept: Percept, headings: Points, side: int, expected: Corridor | None, config: SonarCorridorConfig
 ) -> _Walls:
-    """Take each side's readings for a wall under every heading; side is +1 for the left, -1 for the right."""
+    """Return each side's wall for every heading; side is +1 for the left, -1 for the right."""
     normals = side * math.pi / 2.0 - headings
     distance, is_echo = wall_distances(percept, normals, config.beam)
     if expected is not None:
@@ -175,7 +175,7 @@ def _walls(
         is_echo &= np.abs(distance - wall_m) < config.expected_m
     enough = is_echo.sum(axis=1) >= config.least_echoes
     heard = np.where(is_echo & enough[:, None], distance, np.nan)
-    heard[~enough, 0] = 0.0  # a row of NaN alone has no median
+    heard[~enough, 0] = 0.0  # a row of NaN has no median
     median = np.nanmedian(heard, axis=1)
     off = np.minimum(np.abs(heard - median[:, None]), config.agree_m)
     spread = np.nanmean(off, axis=1)
@@ -196,7 +196,7 @@ def _finest(headings: Points, cost: Points, best: int) -> float:
 def _corridor(
     heading: float, left: float, right: float, width: float | None, config: SonarCorridorConfig
 ) -> Corridor | Unknown:
-    """Put the robot between its walls; a wall that is not heard stands where the known width says."""
+    """Return the robot's pose between the walls; an undetected wall is placed by the known width."""
     if width is not None and math.isnan(left):
         left = width - right
     if width is not None and math.isnan(right):
@@ -206,16 +206,16 @@ def _corridor(
     return Corridor(offset_m=(right - left) / 2.0, heading_rad=heading, width_m=left + right)
 
 
-# Where the sonars sit on the robot.
+# Positions of the sonars on the robot.
 
-# The PeopleBot's sideways units sit this far fore and aft of the ellipse on which all others lie.
+# The PeopleBot's sideways units are this far in front of and behind the ellipse of all others.
 SIDEWAYS_M = 0.113
 
 
 def mounts(angle_rad: Points) -> Points:
-    """Return the sonars' places by their directions [rad]: (N, 2) [m], x forward, y left.
+    """Return the sonars' positions by their directions [rad]: (N, 2) [m], x forward, y left.
 
-    Of two units that look the same way, which only those do that look sideways, the first sits fore.
+    Of two units of the same direction, which only sideways units have, the first is in front.
 
     Source: ARIA's peoplebot-sh.p, SonarUnit 0..15, within 3 cm.
     """
@@ -227,21 +227,21 @@ def mounts(angle_rad: Points) -> Points:
     return places
 
 
-# Where a corridor ends: a wall across it, and the ways that open beside it.
+# Ends of a corridor: a wall across it, and openings next to it.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EndConfig:
-    """What counts as a wall across, and as an open side.
+    """Thresholds of an end wall, and of an open side.
 
     Attributes:
-        beam: how a beam hears a wall; across, only those that look ahead count.
-        side_beam: the same for the walls at the sides, whose echoes are none of a wall across.
-        farthest_m: [m] a wall across is looked for up to here.
-        agree_m: [m] the echoes of one wall lie within this of their middle.
+        beam: model of a beam; only beams that point ahead can detect an end wall.
+        side_beam: the same for the side walls, whose echoes do not belong to an end wall.
+        farthest_m: [m] greatest distance of an end wall.
+        agree_m: [m] the echoes of one wall lie within this distance of their median.
         least_echoes: of the four sonars ahead; a person is heard by two.
-        open_m: [m] a side is open where the sideways sonars hear nothing up to this far behind its wall.
-        sideways_rad: [rad] those sonars look this close to the side's direction.
+        open_m: [m] a side is open if the sideways sonars have no echo up to this far behind its wall.
+        sideways_rad: [rad] greatest angle of those sonars to the side's direction.
     """
 
     beam: BeamConfig = field(default_factory=lambda: BeamConfig(slant_rad=math.radians(35.0)))
@@ -254,7 +254,7 @@ class EndConfig:
 
 
 def wall_ahead(percept: Percept, corridor: Corridor, config: EndConfig) -> float | None:
-    """Return the distance [m] along the corridor to a wall across it; None if there is none near."""
+    """Return the distance [m] along the corridor to an end wall; None if there is none near."""
     distances, can_be = wall_distances(percept, np.array([-corridor.heading_rad]), config.beam)
     to_sides, can_be_side = wall_distances(percept, side_walls(corridor)[:, 0], config.side_beam)
     is_side = can_be_side & (np.abs(to_sides - side_walls(corridor)[:, 1:]) < config.agree_m)
@@ -267,7 +267,7 @@ def wall_ahead(percept: Percept, corridor: Corridor, config: EndConfig) -> float
 
 
 def open_room(percept: Percept, corridor: Corridor, config: EndConfig) -> tuple[float, float]:
-    """Give how far [m] one can go behind where the left and the right wall should be; 0 for a closed side."""
+    """Return the free distance [m] behind the left and the right wall; 0 for a closed side."""
     left, right = (
         _room(percept, float(direction), float(distance), config)
         for direction, distance in side_walls(corridor)

@@ -1,4 +1,4 @@
-"""Where the robot is in a corridor, or why nobody can tell."""
+"""Pose of the robot in a corridor, or the reason why it is unknown."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from peopleboy.behaviours.percept import Points
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Corridor:
-    """The robot's place in a straight corridor.
+    """Pose of the robot in a straight corridor.
 
     Attributes:
-        offset_m: [m] how far the robot's origin is to the left of the centre line.
-        heading_rad: [rad] direction of the robot's nose off the corridor's, positive to the left.
+        offset_m: [m] distance of the robot's origin to the left of the centre line.
+        heading_rad: [rad] heading relative to the corridor, positive to the left.
         width_m: [m] from wall to wall.
     """
 
@@ -31,14 +31,14 @@ class Unknown:
     """No corridor was recognised.
 
     Attributes:
-        reason: why, for people to read.
+        reason: explanation, for the log.
     """
 
     reason: str
 
 
 def drive_on(corridor: Corridor, motion: RobotMotion) -> Corridor:
-    """Predict the place after the robot has moved."""
+    """Predict the pose after a motion of the robot."""
     mean_heading = corridor.heading_rad + motion.turn_rad / 2.0
     return replace(
         corridor,
@@ -48,7 +48,7 @@ def drive_on(corridor: Corridor, motion: RobotMotion) -> Corridor:
 
 
 def blend(expected: Corridor, seen: Corridor, share: float) -> Corridor:
-    """Move the expected place by a share of the way to the one that was seen."""
+    """Correct the predicted pose by a share of its difference from the measured one."""
     return Corridor(
         offset_m=expected.offset_m + share * (seen.offset_m - expected.offset_m),
         heading_rad=expected.heading_rad + share * (seen.heading_rad - expected.heading_rad),
@@ -56,21 +56,21 @@ def blend(expected: Corridor, seen: Corridor, share: float) -> Corridor:
     )
 
 
-# Which lane of a corridor to drive in, past people who stand in it.
+# Choice of a lane in the corridor, past people who stand in it.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LaneConfig:
-    """Room to leave.
+    """Clearances.
 
     Attributes:
-        ahead_m: [m] up to here people are driven round.
-        behind_m: [m] and until they are this far behind.
-        wish_m: [m] between the robot's middle and the nearest echo of a person, where there is room for it.
-        least_m: [m] the same, the least; a lane with less is blocked ...
-        squeeze_m: [m] ... but one on which the robot is already passing only with less than this: beams are
-            wide, and from nearby a person's echoes spread.
-        wall_m: [m] between the robot's middle and a wall, the least.
+        ahead_m: [m] range ahead in which people are avoided.
+        behind_m: [m] the same behind.
+        wish_m: [m] wished distance between the robot's middle and the nearest echo of a person.
+        least_m: [m] least such distance; a lane with less is blocked ...
+        squeeze_m: [m] ... but while already passing on it, only with less than this: beams are wide, and
+            echoes of a nearby person spread.
+        wall_m: [m] least distance between the robot's middle and a wall.
         step_m: [m] between lanes.
     """
 
@@ -85,11 +85,11 @@ class LaneConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Lane:
-    """A way along the corridor.
+    """A lane along the corridor.
 
     Attributes:
         offset_m: [m] left of the centre line.
-        clearance_m: [m] to the nearest echo beside it, infinite if there is none.
+        clearance_m: [m] to the nearest echo next to it, infinite without one.
     """
 
     offset_m: float
@@ -97,7 +97,7 @@ class Lane:
 
 
 def in_corridor(points: Points, corridor: Corridor) -> Points:
-    """Express echoes in the corridor: (N, 2) [m] ahead of the robot, and left of the centre line."""
+    """Transform echoes to the corridor: (N, 2) [m] ahead of the robot, and left of the centre line."""
     cos, sin = math.cos(corridor.heading_rad), math.sin(corridor.heading_rad)
     ahead = points[:, 0] * cos - points[:, 1] * sin
     left = corridor.offset_m + points[:, 0] * sin + points[:, 1] * cos
@@ -105,7 +105,7 @@ def in_corridor(points: Points, corridor: Corridor) -> Points:
 
 
 def beside(places: Points, corridor: Corridor, config: LaneConfig) -> Points:
-    """Keep those who stand between the walls, and along the part of the way that counts: (M, 2) [m]."""
+    """Return the echoes between the walls, and within range along the corridor: (M, 2) [m]."""
     ahead, left = places.T
     is_near = (ahead > -config.behind_m) & (ahead < config.ahead_m)
     kept: Points = places[is_near & (np.abs(left) < corridor.width_m / 2.0)]
@@ -113,12 +113,12 @@ def beside(places: Points, corridor: Corridor, config: LaneConfig) -> Points:
 
 
 def middle_lane(people: Points) -> Lane:
-    """Take the centre line."""
+    """Return the centre line."""
     return Lane(offset_m=0.0, clearance_m=float(np.min(np.abs(people[:, 1]), initial=np.inf)))
 
 
 def best_lane(people: Points, corridor: Corridor, config: LaneConfig, side: int = 0) -> Lane:
-    """Take the lane with the wished clearance that is nearest to the centre line; else the clearest one.
+    """Return the lane nearest to the centre line with the wished clearance, or else the clearest one.
 
     Args:
         people: (M, 2) [m] ahead of the robot, and left of the centre line.
@@ -131,6 +131,6 @@ def best_lane(people: Points, corridor: Corridor, config: LaneConfig, side: int 
     lanes = config.step_m * np.arange(-steps if side <= 0 else 0, (steps if side >= 0 else 0) + 1)
     clearance = np.abs(lanes[:, None] - people[:, 1]).min(axis=1, initial=np.inf)
     missing = np.maximum(config.wish_m - clearance, 0.0)
-    # First the clearance, then the way to the centre line.
+    # Clearance first, then distance from the centre line.
     best = int(np.lexsort((np.abs(lanes), np.round(missing, 3)))[0])
     return Lane(offset_m=float(lanes[best]), clearance_m=float(clearance[best]))

@@ -1,4 +1,4 @@
-"""Drive along the middle of corridors: round corners, back from dead ends, past people in the way."""
+"""Corridor following: along the middle, round corners, back from dead ends, past people."""
 
 from __future__ import annotations
 
@@ -48,29 +48,29 @@ class FollowCorridorConfig:
 
     Attributes:
         sense: whether walls are measured by the sonars, or by the colour image where it shows them.
-        camera: the colour camera; only the image needs it.
+        camera: the colour camera; only used with the image.
         cruise_m_s: [m/s] speed along a free corridor.
         pass_m_s: [m/s] speed past people.
-        offset_gain: [rad/m] heading towards the lane per metre beside it.
-        steepest_rad: [rad] largest such heading.
+        offset_gain: [rad/m] heading correction per lateral error.
+        steepest_rad: [rad] largest heading correction.
         heading_gain: [1/s] turn rate per heading error.
         max_turn_rad_s: [rad/s] highest turn rate.
-        turn_only_rad: [rad] from this heading error on the robot does not drive.
-        believe: share of what was seen that is believed at once.
-        lost_s: [s] without sight of walls for this long, the corridor is looked for anew.
-        image_s: [s] without a corridor in the image for this long, the mode says that sonars have taken over.
-        stop_m: [m] before people in the way the robot stops, from its middle to the echo.
-        near_m: [m] the same in a narrow corridor where nobody has been seen for unseen_s: it may be the end.
-        narrow_m: [m] width up to which the sides are nearer than the end to all but two sonars when the robot
-            stops, so that the end sounds like a person.
-        unseen_s: [s] nobody has been seen for this long.
-        patience_s: [s] it waits there for them to go on.
-        turn_at_m: [m] least distance to a wall ahead at which the robot turns; else half the width.
+        turn_only_rad: [rad] heading error from which the robot only turns.
+        believe: weight of a measurement in the correction.
+        lost_s: [s] without walls after which the corridor is searched for anew.
+        image_s: [s] without a corridor in the image after which the mode shows that sonars have taken over.
+        stop_m: [m] distance from the robot's middle to the echo of a person at which it stops.
+        near_m: [m] the same in a narrow corridor where nobody was seen for unseen_s: it may be the end.
+        narrow_m: [m] width up to which all but two sonars see the sides nearer than the end when the robot
+            stops, so that the end resembles a person.
+        unseen_s: [s] time without a person in the image.
+        patience_s: [s] waiting time for people to move on.
+        turn_at_m: [m] least distance to a wall ahead at which the robot turns; otherwise half the width.
         brake_gain: [1/s] speed per metre to such a place.
-        sure_frames: images in which a side must be open to be taken for a way.
-        dead_end_s: [s] before a wall with no way beside it the robot turns back after this long.
-        search_rad_s: [rad/s] turn rate where no corridor is recognised.
-        wall_tolerance_m: [m] echoes this little before a wall are the wall's.
+        sure_frames: images in which a side must be open to count as an opening.
+        dead_end_s: [s] after which the robot turns back at a wall without an opening.
+        search_rad_s: [rad/s] turn rate without a recognised corridor.
+        wall_tolerance_m: [m] echoes this little in front of a wall belong to it.
     """
 
     sense: Sense = "sonar"
@@ -105,23 +105,23 @@ class FollowCorridorConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CorridorState:
-    """What the corridor follower remembers from one step to the next.
+    """State of the corridor follower between steps.
 
     Attributes:
-        mode: "corridor", "sonar" (the same, but the image cannot tell), "wait", "pass", "turn", "search" or
-            "blind" (no new, sound input).
-        reason: why.
-        time_s: [s] of the last sound sight.
-        corridor: the place in the corridor, or in the one to turn into; None while it is not known.
-        seen_s: [s] when walls were last seen by any sense ...
+        mode: "corridor", "sonar" (the same without usable image), "wait", "pass", "turn", "search" or "blind"
+            (no new, valid input).
+        reason: of the mode.
+        time_s: [s] of the last valid percept.
+        corridor: pose in the corridor, or in the one to turn into; None while unknown.
+        seen_s: [s] when walls were last measured by any sense ...
         image_s: [s] ... and when by the image.
-        image_fault: why the image could not tell, empty if it could.
-        people_s: [s] when anybody was last in the image.
-        blocked_s: [s] since when people have been in the middle lane; None if nobody is.
-        side: +1 while it passes people on their left, -1 on their right, 0 while it does not.
-        ended_s: [s] since when the robot has stood before a wall; None if it does not.
-        open_frames: images in which the left and the right side were open, since a wall was heard ahead.
-        people: echoes of what is no wall.
+        image_fault: why the image was unusable; empty if it was usable.
+        people_s: [s] when a person was last in the image.
+        blocked_s: [s] since when people have been in the middle lane; None without people.
+        side: +1 while it passes people on their left, -1 on their right, 0 otherwise.
+        ended_s: [s] since when the robot has stood at a wall; None otherwise.
+        open_frames: images in which the left and the right side were open, since a wall was measured ahead.
+        people: echoes that do not belong to walls.
     """
 
     mode: str = "search"
@@ -140,7 +140,7 @@ class CorridorState:
 
 
 class FollowCorridor:
-    """Corridor following as a behaviour: `follow_corridor` with its state kept."""
+    """Corridor following as a behaviour: `follow_corridor` with stored state."""
 
     following = None
 
@@ -150,16 +150,16 @@ class FollowCorridor:
 
     @property
     def mode(self) -> str:
-        """What the robot is doing."""
+        """Current activity."""
         return self.state.mode
 
     @property
     def reason(self) -> str:
-        """Why it is doing that."""
+        """Reason for the mode."""
         return self.state.reason
 
     def command(self, percept: Percept) -> Command:
-        """Return the command for this sight."""
+        """Return the command for a percept."""
         self.state, command = follow_corridor(self.state, percept, self._config)
         return command
 
@@ -167,12 +167,11 @@ class FollowCorridor:
 def follow_corridor(
     state: CorridorState, percept: Percept, config: FollowCorridorConfig
 ) -> tuple[CorridorState, Command]:
-    """Take one step along the corridor.
+    """Return the state and command of one step of corridor following.
 
-    The robot stops on senseless input or when time stands still.
+    The robot stops on invalid input or when time does not increase.
 
-    Source: thesis, section 3.2, names corridor following from sonar readings and says no more; the rest is
-    ours.
+    Source: thesis, section 3.2, only names corridor following from sonar readings; the rest is ours.
     """
     step_s = percept.time_s - state.time_s
     if not (percept.is_sound and step_s > 0.0):
@@ -199,11 +198,11 @@ def follow_corridor(
 def _locate(
     state: CorridorState, percept: Percept, step_s: float, config: FollowCorridorConfig
 ) -> CorridorState:
-    """Move the place by the wheels, and correct it by what is seen of the walls."""
+    """Predict the pose by the wheels, and correct it by the measured walls."""
     expected = state.corridor if percept.time_s - state.seen_s <= config.lost_s else None
     if expected is not None:
         expected = drive_on(expected, RobotMotion.of(percept, step_s))
-        if abs(expected.heading_rad) > config.turn_only_rad:  # turning: the walls are yet to come into view
+        if abs(expected.heading_rad) > config.turn_only_rad:  # turning: the walls are not in view yet
             return replace(state, corridor=expected, seen_s=percept.time_s)
     by_image: Corridor | Unknown = Unknown("")
     if config.sense == "image" and config.camera is not None:
@@ -228,12 +227,12 @@ def _remember_people(
     ahead_m: float | None,
     config: FollowCorridorConfig,
 ) -> EchoMemory:
-    """Keep the echoes that no wall explains."""
+    """Return the echoes that do not belong to walls."""
     walls = side_walls(corridor)
     if ahead_m is not None:
         walls = np.concatenate([walls, [(-corridor.heading_rad, ahead_m)]])
     others = without_walls(percept, walls, config.wall_tolerance_m, config.sonar.beam)
-    # A range beyond reach lies outside of what is remembered.
+    # Ranges at full scale lie outside of the memory.
     heard = replace(percept, sonar_m=np.minimum(others, 2.0 * config.sonar.beam.reach_m))
     return remember(state.people, heard, config.memory)
 
@@ -250,14 +249,14 @@ def _look_aside(
 
 
 def _turning_place(corridor: Corridor, config: FollowCorridorConfig) -> float:
-    """Give the distance [m] to the wall ahead at which to turn: the middle of a corner as wide as the way."""
+    """Return the distance [m] to the wall ahead at which to turn, for a corner as wide as the corridor."""
     return max(corridor.width_m / 2.0, config.turn_at_m)
 
 
 def _end(
     state: CorridorState, corridor: Corridor, percept: Percept, ahead_m: float, config: FollowCorridorConfig
 ) -> tuple[CorridorState, Command]:
-    """Before a wall: turn to an open side, the roomier of two, or turn back."""
+    """At a wall: turn to the wider of the open sides, or turn back."""
     since_s = percept.time_s if state.ended_s is None else state.ended_s
     is_open = [count >= config.sure_frames for count in state.open_frames]
     room = open_room(percept, corridor, config.end)
@@ -289,7 +288,7 @@ def _turn(corridor: Corridor, config: FollowCorridorConfig) -> Command:
 def _go_along(
     state: CorridorState, corridor: Corridor, ahead_m: float | None, config: FollowCorridorConfig
 ) -> tuple[CorridorState, Command]:
-    """Drive in the middle, or wait for people who stand there, and at last drive past them."""
+    """Drive in the middle, wait for people who stand there, and finally drive past them."""
     people = beside(in_corridor(state.people.points, corridor), corridor, config.lane)
     ahead = people[people[:, 0] > 0.0]
     if middle_lane(ahead).clearance_m >= config.lane.least_m:
@@ -314,7 +313,7 @@ def _wait(
     is_free: bool,
     config: FollowCorridorConfig,
 ) -> tuple[CorridorState, Command]:
-    """Stop before who is in the way; in a narrow corridor go on slowly to what nobody was seen at."""
+    """Stop in front of people; in a narrow corridor approach an echo without a visible person slowly."""
     is_unseen = state.time_s - state.people_s > config.unseen_s
     if is_unseen and not is_free and corridor.width_m < config.narrow_m:
         reason = "something unseen is across the way"
@@ -329,7 +328,7 @@ def _wait(
 
 
 def _driving(state: CorridorState, config: FollowCorridorConfig) -> CorridorState:
-    """Name mode and reason of plain driving, by the sense that steers it."""
+    """Return mode and reason of normal driving, by the active sense."""
     state = replace(state, blocked_s=None, side=0)
     if config.sense == "image" and state.time_s - state.image_s > config.image_s:
         reason = f"the image does not tell: {state.image_fault}"
@@ -340,7 +339,7 @@ def _driving(state: CorridorState, config: FollowCorridorConfig) -> CorridorStat
 def _steer(
     corridor: Corridor, lane: Lane, speed_m_s: float, ahead_m: float | None, config: FollowCorridorConfig
 ) -> Command:
-    """Head for the lane, slower the more the robot must turn, and before a wall."""
+    """Head for the lane, slower the more the robot must turn, and in front of a wall."""
     beside_m = lane.offset_m - corridor.offset_m
     heading = _clip(config.offset_gain * beside_m, config.steepest_rad)
     error = heading - corridor.heading_rad

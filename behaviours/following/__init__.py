@@ -1,1 +1,1 @@
-"""Following a person: who it is, where it may be, how to get near."""
+"""Person following: identity, predicted position, and approach of the person."""

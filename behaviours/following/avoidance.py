@@ -1,4 +1,4 @@
-"""Aim past what stands beside the way, so that the robot slides along walls and through doors."""
+"""Obstacle avoidance by aiming past obstacles, so that the robot slides along walls and through doors."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ import numpy as np
 
 from peopleboy.behaviours.percept import Points
 
-# Shares of the largest swerve that are tried, the least first; and what a radian wanted weighs against one
-# swerved.
+# Tested shares of the largest swerve, the least first; and the weight of a missing radian against a swerved
+# one.
 _AIMS = np.array(sorted(np.linspace(-1.0, 1.0, 101), key=abs))
 _INSIST = 3.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AvoidConfig:
-    """How far and how early the robot swerves.
+    """Size and range of the swerve.
 
     Attributes:
-        half_width_m: [m] half of the lane to keep free: half the hull, and what the guard keeps beside it.
-        reach_m: [m] obstacles farther from the robot's origin are of no concern yet.
-        fade_m: [m] over this much of the reach the swerve grows to its full size.
+        half_width_m: [m] half of the free lane: half the hull, and the guard's lateral clearance.
+        reach_m: [m] obstacles farther from the robot's origin are ignored.
+        fade_m: [m] part of the reach over which the swerve grows to its full size.
         widest_rad: [rad] largest swerve; the camera should keep the followed person in view.
     """
 
@@ -32,19 +32,19 @@ class AvoidConfig:
     widest_rad: float = math.radians(24.0)
 
 
-# For a robot that has nobody to keep in view.
+# For a robot without a person to keep in view.
 WIDELY = AvoidConfig(half_width_m=0.75, reach_m=1.7, fade_m=0.5, widest_rad=math.radians(75.0))
 
 
 def swerve(bearing_rad: float, points: Points, config: AvoidConfig) -> float:
-    """Return how far beside the goal [rad, positive left] to aim, so that the lane ahead is free.
+    """Return the angle next to the goal [rad, positive left] at which the lane ahead is free.
 
-    An echo wants the aim off its own direction by asin(half width / distance). That aim is taken which leaves
-    the least to be wanted, weighed against how far off the goal it is; between equal echoes on both sides the
-    aim stays.
+    An echo requires an aim at least asin(half width / distance) off its own direction. The aim minimises the
+    largest violation, weighted against its angle to the goal; between equal echoes on both sides the aim is
+    unchanged.
 
     Args:
-        bearing_rad: [rad] direction of the goal from the robot's nose.
+        bearing_rad: [rad] direction of the goal relative to the robot's heading.
         points: (N, 2) [m] echoes, robot frame.
         config: size of the swerve.
     """
@@ -60,23 +60,23 @@ def swerve(bearing_rad: float, points: Points, config: AvoidConfig) -> float:
     return float(aims[np.argmin(cost)])
 
 
-# Making room for a person who comes back: neither in the way, nor so near that no camera shows who it is.
+# Making room for a returning person: not in the way, and not too near for the cameras to identify the person.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClearanceConfig:
-    """How much room is made.
+    """Settings of making room.
 
     Attributes:
-        ahead_m: [m] way ahead that is to be free for a person who was near when last seen ...
-        close_m: [m] ... and for anybody who was lost ...
+        ahead_m: [m] free distance ahead required for a person who was near when last seen ...
+        close_m: [m] ... and for any lost person ...
         half_width_m: [m] ... so far to either side.
-        longest_s: [s] since the person was seen, after which the robot goes on otherwise.
-        speed_m_s: [m/s] of backing off, and of driving out of a narrow place.
-        cramped_m: [m] from the origin within which something makes a place narrow ...
-        close_by_m: [m] ... and once the robot has gone for farthest_m: a person may come along with it.
-        free_m: [m] way ahead that leads out of it.
-        farthest_m: [m] see above.
+        longest_s: [s] since the last observation, after which the robot continues otherwise.
+        speed_m_s: [m/s] of backing off, and of leaving a narrow place.
+        cramped_m: [m] from the origin within which an obstacle makes a place narrow ...
+        close_by_m: [m] ... and after farthest_m: a person may move along with the robot.
+        free_m: [m] free distance ahead that leads out of it.
+        farthest_m: [m] driven distance, see above.
     """
 
     ahead_m: float = 2.2
@@ -91,23 +91,23 @@ class ClearanceConfig:
 
 
 def is_person_near(around: Points, config: ClearanceConfig, *, was_near: bool) -> bool:
-    """Return whether something is close ahead.
+    """Return whether an obstacle is close ahead.
 
     Args:
-        around: (N, 2) [m] what the sonars hear, robot frame.
+        around: (N, 2) [m] echoes, robot frame.
         was_near: whether the person was near when it was last seen.
-        config: how close.
+        config: distances.
     """
     return _is_taken(around, config.ahead_m if was_near else config.close_m, config.half_width_m)
 
 
 def is_way_out(around: Points, config: ClearanceConfig, gone_m: float) -> bool:
-    """Return whether the robot stands in a narrow place, or beside a person, and heads for a wide one.
+    """Return whether the robot is in a narrow place, or next to a person, and faces a wide one.
 
     Args:
-        around: (N, 2) [m] what the sonars hear, robot frame.
-        config: how narrow, and how wide.
-        gone_m: [m] way that it has gone for this since it began to search.
+        around: (N, 2) [m] echoes, robot frame.
+        config: distances.
+        gone_m: [m] distance driven for this since the search began.
     """
     near_m = config.cramped_m if gone_m < config.farthest_m else config.close_by_m
     is_narrow = bool(np.any(np.hypot(*around.T) < near_m))

@@ -1,4 +1,4 @@
-"""Who among the people in the image is the one that the robot follows."""
+"""Identification of the followed person among the people in the image."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from peopleboy.behaviours.percept import SeenPerson
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FollowIdentityConfig:
-    """When a track under a new number is taken for the followed person.
+    """When a track with a new id is taken for the followed person.
 
     Attributes:
         min_confidence: people of lower confidence are not followed.
-        off_rad: [rad] farthest from where the person should be ...
-        off_rad_s: [rad/s] ... and how fast that grows while the person is out of sight.
-        size: largest ratio of the apparent heights, as its logarithm ...
-        size_1_s: [1/s] ... and how fast that grows.
-        place_s: [s] out of sight for longer than this, a person may come back anywhere.
+        off_rad: [rad] greatest distance from the predicted bearing ...
+        off_rad_s: [rad/s] ... and its growth while the person is out of sight.
+        size: greatest ratio of the apparent heights, as its logarithm ...
+        size_1_s: [1/s] ... and its growth.
+        place_s: [s] out of sight after which a person may return anywhere.
     """
 
     min_confidence: float = 0.5
@@ -40,19 +40,19 @@ def recognise(
     *,
     knows_again: bool = False,
 ) -> SeenPerson | None:
-    """Find the followed person among those in the image; None if it is not seen.
+    """Return the followed person among those in the image; None if not visible.
 
-    With no target it is whoever seems nearest (tallest). A person who is tracked, though hidden just now,
-    is not exchanged for another; and nobody who was seen beside the person is ever taken for it.
+    Without a target it is the person who seems nearest (tallest). A tracked person, even if occluded now, is
+    not exchanged for another; and nobody who was seen together with the person is ever taken for it.
 
     Args:
         people: the tracker's people.
-        target: the followed person, its bearing being predicted for this image; None to choose one.
-        others: tracks that were seen beside the target.
-        gap_s: [s] since the target was seen.
-        config: how far off a track under another number may be.
+        target: the followed person with the bearing predicted for this image; None to choose one.
+        others: tracks that were seen together with the target.
+        gap_s: [s] since the target was last seen.
+        config: tolerances for a track with another id.
         view: bearings of image columns.
-        knows_again: whether the person has its old number when it comes back.
+        knows_again: whether a returning person has the old id.
     """
     seen = [p for p in people if p.is_sound and p.is_visible and p.confidence >= config.min_confidence]
     if target is None:
@@ -68,9 +68,9 @@ def recognise(
 
 
 def company(people: tuple[SeenPerson, ...], target: int, others: frozenset[int]) -> frozenset[int]:
-    """Add everybody else who is seen to those who are another person than the followed person.
+    """Add all other visible people to those who are not the followed person.
 
-    That is true beside the person, and also soon after it was lost, of those who are where it cannot be.
+    This holds next to the person, and soon after the loss for people where the person cannot be.
     """
     return (others | {person.id for person in people if person.is_visible}) - {target}
 
@@ -78,7 +78,7 @@ def company(people: tuple[SeenPerson, ...], target: int, others: frozenset[int])
 def _fits(
     person: SeenPerson, target: Target, gap_s: float, config: FollowIdentityConfig, view: TargetConfig
 ) -> bool:
-    """Return whether a person is where the target should be by now, and about as tall."""
+    """Return whether a person is at the target's predicted bearing, and of similar height."""
     size = abs(math.log(person.height / target.height))
     return (
         _off(person, target, view) < config.off_rad + config.off_rad_s * gap_s

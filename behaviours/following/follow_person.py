@@ -1,4 +1,4 @@
-"""Find a person, go near, keep the distance: all from the person's place and height in the image."""
+"""Person following: search, approach and hold the distance, by position and height in the image."""
 
 from __future__ import annotations
 
@@ -41,48 +41,48 @@ from peopleboy.behaviours.sonar_echoes import EchoMemory, EchoMemoryConfig, echo
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FollowConfig:
-    """Gains and limits of the person-following law.
+    """Gains and limits of person following.
 
-    Speeds are set by the distance error keep_height / height - 1: 0 where the person should be, 1 at twice
-    that distance, whatever the person's size in metres.
+    Speeds depend on the distance error keep_height / height - 1: 0 at the wanted distance, 1 at twice that
+    distance, whatever the person's size in metres.
 
     Attributes:
         keep_height: [image heights] apparent height to hold; 0.58 is 3.7 m for a person of 1.75 m. A level
-            camera at 1.2 m shows people whole from 3 m on; the rest is for those who turn back.
-        stop_height: [image heights] from here on the robot does not drive forwards.
-        near_height: [image heights] from here on the robot backs off.
+            camera at 1.2 m shows whole people from 3 m on; the rest is a margin for those who turn back.
+        stop_height: [image heights] from this height on the robot does not drive forwards.
+        near_height: [image heights] from this height on the robot backs off.
         approach_gain: [m/s] forward speed per distance error.
-        learn_gain: [m/s2] rate per distance error at which the person's walking speed is learnt.
+        learn_gain: [m/s2] rate per distance error at which the person's walking speed is estimated.
         back_off_gain: [m/s] backward speed per share of height beyond near_height.
         back_off_m_s: [m/s] highest backward speed.
         max_linear_m_s: [m/s] highest forward speed.
         facing_gain: [1/s] turn rate per bearing.
-        drift_share: share of the person's own angular speed that the robot turns along.
+        drift_share: share of the person's own angular speed that is added to the turn rate.
         max_turn_rad_s: [rad/s] highest turn rate; faster turns blur the thermal image.
         full_speed_rad: [rad] up to this bearing the robot drives at full speed ...
         turn_only_rad: [rad] ... and from this one on it only turns.
-        swerve_from_m_s: [m/s] forward speed from which the robot swerves fully past obstacles.
+        swerve_from_m_s: [m/s] forward speed from which the robot swerves fully around obstacles.
         search_rad_s: [rad/s] turn rate while nobody is seen.
-        stalled_s: [s] a search that does not turn for this long goes on the other way round.
+        stalled_s: [s] without rotation after which a search changes its direction.
         wait_turn_rad_s: [rad/s] highest turn rate while waiting for a lost person.
-        max_age_s: [s] an older track stops the robot.
-        wait_s: [s] from the last sight of a person who left the image until the search begins.
-        patience_s: [s] how long to wait for a person who is hidden behind another one.
-        gone_s: [s] the same for one lost in the middle of the image with nobody in front: it went behind a
-            wall, or the tracker missed it; then the robot goes to where it was seen last.
+        max_age_s: [s] greatest age of a track that is followed.
+        wait_s: [s] from the last observation of a person who left the image until the search begins.
+        patience_s: [s] waiting time for a person who is occluded by another one.
+        gone_s: [s] the same for one lost in the middle of the image with nobody in front, by a wall or a
+            missed detection; then the robot drives to the last position.
         recover_1_s: [1/s] speed per distance on the way there.
-        give_up_s: [s] a person out of sight for this long is given up; the robot looks for anybody then ...
-        give_up_known_s: [s] ... and this long where people are known again when they come back.
-        leaving_rad: [rad] a person seen farther off the nose, or about to be, has left the image.
-        target: smoothing of what is seen.
-        identity: who is taken for the followed person.
-        hidden: who can hide it.
-        place: where a person was seen last.
+        give_up_s: [s] out of sight after which a person is given up; the robot then follows anybody ...
+        give_up_known_s: [s] ... and the same with a tracker that re-identifies people.
+        leaving_rad: [rad] bearing, measured or predicted, from which a person has left the image.
+        target: smoothing of measurements.
+        identity: which person is taken for the followed one.
+        hidden: which people can occlude it.
+        place: where a person was last seen.
         avoid: steering along walls.
-        avoid_alone: the same on the way to where a person was seen last, when there is nobody to look at.
-        heard: what is remembered of echoes for that: an edge vanishes in the gaps between the sonars' cones.
-        room: what is made for who is lost because it came too near, where people are known again; the robot
-            would stand in the door through which the person comes back.
+        avoid_alone: the same on the way to the last position, without a person to keep in view.
+        heard: memory of echoes for that: an edge vanishes in the gaps between the sonars' cones.
+        room: made for a person lost by being too near, with a tracker that re-identifies people; the robot
+            would block the door through which the person returns.
     """
 
     keep_height: float = 0.58
@@ -122,22 +122,22 @@ class FollowConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FollowState:
-    """What the follower remembers from one step to the next.
+    """State of the follower between steps.
 
     Attributes:
-        mode: "search", "follow", "wait" (just lost the person), "recover" (on the way to where the person was
-            seen last) or "blind" (no new, sound input).
-        reason: why it is in this mode.
-        time_s: [s] of the last sound sight.
-        target: the followed person, None before anybody was seen and after it was given up.
-        others: tracks that were seen beside the followed person, and so are another person.
-        walking_m_s: [m/s] learnt speed at which the person walks away.
-        side: +1 (left) or -1, to which to search: where the person was last seen to go.
-        has_left: whether the person was leaving the image sideways when it was last seen.
+        mode: "search", "follow", "wait" (just lost the person), "recover" (driving to the last position) or
+            "blind" (no new, valid input).
+        reason: of the mode.
+        time_s: [s] of the last valid percept.
+        target: the followed person; None before the first one and after giving up.
+        others: tracks that were seen together with the followed person, and so are other people.
+        walking_m_s: [m/s] estimated speed at which the person walks away.
+        side: +1 (left) or -1, direction of the search: where the person was last moving.
+        has_left: whether the person was leaving the image sideways when last seen.
         place: where the person was last seen; None once the robot has been there.
-        searched_rad: [rad] by how much the search has turned.
-        stalled_s: [s] for how long the search has not turned: an obstacle is in the way.
-        cleared_m: [m] way driven in the search, not to stand in anybody's.
+        searched_rad: [rad] rotation of the search.
+        stalled_s: [s] time without rotation: an obstacle blocks it.
+        cleared_m: [m] distance driven in the search to make room.
         heard: echoes of the last seconds.
     """
 
@@ -157,7 +157,7 @@ class FollowState:
 
 
 class FollowPerson:
-    """Person following as a behaviour: `follow` with its state kept."""
+    """Person following as a behaviour: `follow` with stored state."""
 
     def __init__(self, config: FollowConfig | None = None) -> None:
         self._config = FollowConfig() if config is None else config
@@ -165,34 +165,34 @@ class FollowPerson:
 
     @property
     def mode(self) -> str:
-        """What the robot is doing."""
+        """Current activity."""
         return self.state.mode
 
     @property
     def reason(self) -> str:
-        """Why it is doing that."""
+        """Reason for the mode."""
         return self.state.reason
 
     @property
     def following(self) -> int | None:
-        """Number of the track that it drives after."""
+        """Id of the followed track."""
         target = self.state.target
         return None if target is None or self.state.mode != "follow" else target.id
 
     def command(self, percept: Percept) -> Command:
-        """Return the command for this sight."""
+        """Return the command for a percept."""
         self.state, command = follow(self.state, percept, self._config)
         return command
 
 
 def follow(state: FollowState, percept: Percept, config: FollowConfig) -> tuple[FollowState, Command]:
-    """Take one step of searching, following, waiting or going to where the person was seen last.
+    """Return the state and command of one step of person following.
 
-    The robot drives after a person only while its track is younger than max_age_s, and stops on senseless
-    input or when time stands still.
+    The robot follows a person only while the track is younger than max_age_s, and stops on invalid input or
+    when time does not increase.
 
-    Source: thesis, section 3.2: search by rotating, approach, hold distance; the learnt walking speed,
-    the drift, the wait and the way round corners are ours.
+    Source: thesis, section 3.2: search by rotating, approach, hold distance; the estimated walking speed, the
+    drift, the wait and the way round corners are ours.
     """
     step_s = percept.time_s - state.time_s
     if not (percept.is_sound and step_s > 0.0):
@@ -215,12 +215,12 @@ def follow(state: FollowState, percept: Percept, config: FollowConfig) -> tuple[
 
 
 def distance_error(height: float, config: FollowConfig) -> float:
-    """Return how much too far the person is, as a share of the distance to keep; below 0 is too near."""
+    """Return the relative distance error; below 0 is too near."""
     return config.keep_height / height - 1.0
 
 
 def _update_target(state: FollowState, percept: Percept, step_s: float, config: FollowConfig) -> FollowState:
-    """Predict where the followed person is, look for it, give it up when it stays away."""
+    """Predict the followed person, identify it, and give it up after a long absence."""
     known = state.target if step_s <= config.wait_s else None
     give_up_s = config.give_up_known_s if percept.knows_again else config.give_up_s
     if known is not None and percept.time_s - known.seen_s > give_up_s:
@@ -260,7 +260,7 @@ def _update_target(state: FollowState, percept: Percept, step_s: float, config: 
 def _seen_at(
     state: FollowState, seen: Target, person: SeenPerson, percept: Percept, config: FollowConfig
 ) -> FollowState:
-    """Remember what to do should this be the last sight of the person."""
+    """Store what is needed if this is the last observation of the person."""
     soon = seen.bearing_rad + seen.drift_rad_s * config.max_age_s
     later = seen.bearing_rad + seen.drift_rad_s * config.wait_s
     return replace(
@@ -278,7 +278,7 @@ def _seen_at(
 def _patience(
     state: FollowState, target: Target, percept: Percept, config: FollowConfig
 ) -> tuple[str, float]:
-    """Return how the person was lost, and how long [s] to wait for it where the robot is."""
+    """Return how the person was lost, and the waiting time [s]."""
     if state.has_left:
         return f"track {target.id} left the image", config.wait_s
     front = hider(percept.people, target, config.hidden, config.target)
@@ -290,7 +290,7 @@ def _patience(
 def _search(
     state: FollowState, percept: Percept, step_s: float, config: FollowConfig
 ) -> tuple[FollowState, Command]:
-    """Rotate in place, to the side where the person was last seen; if that is blocked, to the other."""
+    """Rotate in place towards the side where the person was last seen; if blocked, to the other."""
     is_stalled = state.mode == "search" and abs(percept.angular_rad_s) < 0.1 * config.search_rad_s
     stalled_s = state.stalled_s + min(step_s, config.max_age_s) if is_stalled else 0.0
     if stalled_s > config.stalled_s:
@@ -309,13 +309,13 @@ def _search(
 
 
 def _wait(state: FollowState, target: Target, why: str, config: FollowConfig) -> tuple[FollowState, Command]:
-    """Stand, and turn gently towards where the person should be by now."""
+    """Stand, and turn slowly towards the predicted bearing."""
     turn = _clip(_facing_turn(target, config), config.wait_turn_rad_s)
     return replace(state, mode="wait", reason=why), Command(linear_m_s=0.0, angular_rad_s=turn)
 
 
 def _is_too_near(target: Target, gap_s: float, percept: Percept, config: FollowConfig) -> bool:
-    """Return whether the person came too near to be seen: something is close ahead now."""
+    """Return whether the person was lost by being too near: an obstacle is close ahead now."""
     was_near = target.height >= config.near_height
     return gap_s <= config.room.longest_s and is_person_near(echoes(percept), config.room, was_near=was_near)
 
@@ -330,7 +330,7 @@ def _make_room(state: FollowState, target: Target, config: FollowConfig) -> tupl
 def _recover(
     state: FollowState, place: LastPlace, percept: Percept, step_s: float, config: FollowConfig
 ) -> tuple[FollowState, Command]:
-    """Drive to where the person was seen last; from there, search to the side where it went."""
+    """Drive to the person's last position; there, search to the side of the person's motion."""
     place = on_the_way(place, percept, step_s)
     end = end_of_way(place, echoes(percept), config.place)
     if end:
@@ -356,20 +356,20 @@ def _go_after(
 
 
 def _turn(target: Target, speed: float, percept: Percept, config: FollowConfig) -> float:
-    """Return the turn rate [rad/s] that faces the person, or past what stands beside the way there."""
-    # A robot that stands need not avoid anything, and looks straight at the person.
+    """Return the turn rate [rad/s] that faces the person, or avoids obstacles next to the path."""
+    # A standing robot does not avoid obstacles, and faces the person.
     share = min(max(speed, 0.0) / config.swerve_from_m_s, 1.0)
     aside = share * swerve(target.bearing_rad, echoes(percept), config.avoid)
     return _facing_turn(target, config) + config.facing_gain * aside
 
 
 def _facing_turn(target: Target, config: FollowConfig) -> float:
-    """Return the turn rate [rad/s] that brings the person to the middle of the image and keeps it there."""
+    """Return the turn rate [rad/s] that centres the person in the image."""
     return config.facing_gain * target.bearing_rad + config.drift_share * target.drift_rad_s
 
 
 def _speed(target: Target, walking_m_s: float, config: FollowConfig) -> float:
-    """Return the speed [m/s]: forwards when too far, none in between, slowly backwards when much too near."""
+    """Return the speed [m/s]: forwards when too far, zero in between, slowly backwards when much too near."""
     if target.height >= config.near_height:
         beyond = target.height / config.near_height - 1.0
         return -min(config.back_off_gain * beyond, config.back_off_m_s)
@@ -380,7 +380,7 @@ def _speed(target: Target, walking_m_s: float, config: FollowConfig) -> float:
 
 
 def _facing_share(bearing_rad: float, config: FollowConfig) -> float:
-    """Return the share of the speed that the bearing allows: 1 ahead, 0 where the robot should only turn."""
+    """Return the factor on the speed by bearing: 1 ahead, 0 where the robot should only turn."""
     left = config.turn_only_rad - abs(bearing_rad)
     return min(max(left / (config.turn_only_rad - config.full_speed_rad), 0.0), 1.0)
 
@@ -390,8 +390,8 @@ def _learn_walking(
 ) -> float:
     """Integrate the distance error into the person's walking speed [m/s], 0 .. max_linear_m_s.
 
-    It grows only while the robot drives about as fast as it wants to: held up by a wall, a turn or its own
-    inertia, it would learn a speed that nobody walks at.
+    Only while the robot drives about as fast as commanded: held up by a wall, a turn or its own inertia, it
+    would estimate too high a speed.
     """
     error = distance_error(target.height, config)
     wanted = config.approach_gain * error + walking_m_s

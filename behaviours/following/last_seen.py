@@ -1,4 +1,4 @@
-"""Where a person was seen last, carried along by the wheels while the robot goes there."""
+"""Last position of a person, updated by the wheels' motion while the robot drives there."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from peopleboy.behaviours.percept import Percept, Points
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlaceConfig:
-    """How a place is made of an image, and when the robot has got there.
+    """Conversion of an image to a position, and conditions of arrival.
 
     Attributes:
-        whole_m: [m] distance from the camera at which a person is as tall as the image: 1.75 m at 44 degrees.
-        camera_m: [m] the camera is this far before the robot's origin.
-        arrive_m: [m] as near as this, the robot is there.
-        blocked_s: [s] a robot that has not got on for this long goes no farther.
-        longest_s: [s] nor one that has been on its way for this long.
-        narrow_m: [m] nor does it enter a passage narrower than this, as a door is: it could not turn there.
-        narrow_from_m, narrow_to_m: [m] how far ahead the passage is looked for.
-        lane_m: [m] half of the lane ahead that is free if a way leads on.
+        whole_m: [m] distance at which a person is as tall as the image: 1.75 m at 44 degrees.
+        camera_m: [m] distance of the camera in front of the robot's origin.
+        arrive_m: [m] distance at which the robot has arrived.
+        blocked_s: [s] without progress after which the robot stops trying.
+        longest_s: [s] longest drive.
+        narrow_m: [m] least width of a passage that the robot enters, as it could not turn in a narrower one.
+        narrow_from_m, narrow_to_m: [m] range ahead in which passages are detected.
+        lane_m: [m] half of the lane ahead that must be free.
     """
 
     whole_m: float = 1.75 / (2.0 * math.tan(math.radians(22.0)))
@@ -40,12 +40,12 @@ class PlaceConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LastPlace:
-    """A place on the floor in the robot's frame, x forward, y left.
+    """A position on the floor in the robot frame, x forward, y left.
 
     Attributes:
         x_m, y_m: [m].
-        driven_s: [s] for how long the robot has been on its way.
-        blocked_s: [s] for how long it has not got on.
+        driven_s: [s] duration of the drive.
+        blocked_s: [s] time without progress.
     """
 
     x_m: float
@@ -55,29 +55,29 @@ class LastPlace:
 
     @property
     def distance_m(self) -> float:
-        """How far it is [m]."""
+        """Distance [m]."""
         return math.hypot(self.x_m, self.y_m)
 
     @property
     def bearing_rad(self) -> float:
-        """Direction from the robot's nose [rad, positive left]."""
+        """Bearing from the robot's heading [rad, positive left]."""
         return math.atan2(self.y_m, self.x_m)
 
 
 def place_of(target: Target, config: PlaceConfig) -> LastPlace:
-    """Guess where a person of usual height stands from its height in the image."""
+    """Estimate the position of a person of usual height from the height in the image."""
     far = config.camera_m + config.whole_m / target.height
     return LastPlace(x_m=far * math.cos(target.bearing_rad), y_m=far * math.sin(target.bearing_rad))
 
 
 def carry_place(place: LastPlace, motion: RobotMotion) -> LastPlace:
-    """Express a place in the robot's frame after it has moved."""
+    """Transform a position to the robot frame after a motion."""
     ((x, y),) = motion.carry(np.array([[place.x_m, place.y_m]])).tolist()
     return replace(place, x_m=x, y_m=y)
 
 
 def on_the_way(place: LastPlace, percept: Percept, step_s: float) -> LastPlace:
-    """Count the time on the way, and that without getting on."""
+    """Update the duration of the drive, and the time without progress."""
     stands = abs(percept.linear_m_s) < 0.03
     return replace(
         place,
@@ -87,12 +87,12 @@ def on_the_way(place: LastPlace, percept: Percept, step_s: float) -> LastPlace:
 
 
 def end_of_way(place: LastPlace, around: Points, config: PlaceConfig) -> str:
-    """Return why the robot goes no farther; empty while it does.
+    """Return why the robot stops the drive; empty while it continues.
 
     Args:
-        place: where it goes.
-        around: (N, 2) [m] what the sonars hear, robot frame.
-        config: when it has got there.
+        place: the goal.
+        around: (N, 2) [m] echoes, robot frame.
+        config: conditions.
     """
     if place.distance_m < config.arrive_m:
         return "nobody where the person was seen last"
@@ -106,7 +106,7 @@ def end_of_way(place: LastPlace, around: Points, config: PlaceConfig) -> str:
 
 
 def _is_narrow(around: Points, config: PlaceConfig) -> bool:
-    """Return whether a way leads on ahead, and is narrow."""
+    """Return whether there is a narrow passage ahead."""
     x, y = around[(around[:, 0] > 0.0) & (around[:, 0] < config.narrow_to_m)].T
     if np.any(np.abs(y) < config.lane_m):
         return False

@@ -1,4 +1,4 @@
-"""The followed person as the robot remembers it between images: bearing, drift and apparent height."""
+"""State of the followed person between images: bearing, drift and apparent height."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from peopleboy.behaviours.percept import SeenPerson
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TargetConfig:
-    """Smoothing of what the image says about the followed person.
+    """Smoothing of the measurements of the followed person.
 
     Attributes:
         half_view_rad: [rad] bearing of the image's left border; the thermal camera's 320 x 240 at 44 degrees.
-        bearing_gain: share of a bearing's surprise that is believed at once.
-        drift_gain: [1/frame] share of it that is put down to the person's movement.
+        bearing_gain: weight of the innovation in the bearing.
+        drift_gain: [1/frame] weight of the innovation in the drift.
         height_s: [s] time constant over which the apparent height is averaged.
-        drift_s: [s] time constant at which the drift of a person out of sight is forgotten.
+        drift_s: [s] time constant with which the drift of a person out of sight decays.
     """
 
     half_view_rad: float = math.atan(4.0 / 3.0 * math.tan(math.radians(22.0)))
@@ -31,13 +31,13 @@ class TargetConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Target:
-    """One person as seen from the robot; no metric position.
+    """One person as seen from the robot, without a metric position.
 
     Attributes:
-        id: the track's number.
+        id: track id.
         seen_s: [s] time of the last image that showed the person.
-        bearing_rad: [rad] direction from the robot's nose, positive to the left.
-        drift_rad_s: [rad/s] rate at which the bearing would change if the robot did not turn.
+        bearing_rad: [rad] direction relative to the robot's heading, positive to the left.
+        drift_rad_s: [rad/s] rate of the bearing without rotation of the robot.
         height: [image heights] apparent height.
     """
 
@@ -54,7 +54,7 @@ def bearing(x: float, config: TargetConfig) -> float:
 
 
 def first_sight(person: SeenPerson, time_s: float, config: TargetConfig) -> Target:
-    """Start to remember a person."""
+    """Start tracking a person."""
     return Target(
         id=person.id,
         seen_s=time_s,
@@ -65,20 +65,20 @@ def first_sight(person: SeenPerson, time_s: float, config: TargetConfig) -> Targ
 
 
 def carry_on(target: Target, motion: RobotMotion) -> Target:
-    """Predict the bearing after the robot has moved; nothing else changes."""
+    """Predict the bearing after a motion of the robot; nothing else changes."""
     moved = target.bearing_rad + (target.drift_rad_s - motion.angular_rad_s) * motion.step_s
     return replace(target, bearing_rad=math.remainder(moved, math.tau))
 
 
 def forget_drift(target: Target, step_s: float, config: TargetConfig) -> Target:
-    """Trust the drift of a person out of sight less and less."""
+    """Decay the drift of a person out of sight."""
     return replace(target, drift_rad_s=target.drift_rad_s * math.exp(-step_s / config.drift_s))
 
 
 def look_again(
     target: Target, person: SeenPerson, time_s: float, step_s: float, config: TargetConfig
 ) -> Target:
-    """Correct a predicted target by a new image: an alpha-beta filter on bearing, an average on height."""
+    """Update a predicted target with a new image: an alpha-beta filter on bearing, an average on height."""
     surprise = bearing(person.x, config) - target.bearing_rad
     share = 1.0 - math.exp(-step_s / config.height_s)
     return Target(
@@ -90,7 +90,7 @@ def look_again(
     )
 
 
-# A followed person who is hidden by another one: who that is, and where the person can be meanwhile.
+# Occlusion of the followed person by another one: the occluder, and the possible bearings meanwhile.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,8 +98,8 @@ class OccluderConfig:
     """Which people can occlude the followed one.
 
     Attributes:
-        behind_rad: [rad] farthest off the person that a person who hides it can be.
-        nearer: least ratio of that one's apparent height to the person's.
+        behind_rad: [rad] greatest angle between the person and an occluder.
+        nearer: least ratio of the occluder's apparent height to the person's.
         half_width: [rad per image height] half the angle that a person covers, by the apparent height.
     """
 
@@ -111,7 +111,7 @@ class OccluderConfig:
 def hider(
     people: Iterable[SeenPerson], target: Target, config: OccluderConfig, view: TargetConfig
 ) -> SeenPerson | None:
-    """Find who is nearer than the followed person and about where it should be; None if nobody is."""
+    """Return a person who is nearer than the followed one and at about its predicted bearing, or None."""
     in_front = [
         (abs(bearing(other.x, view) - target.bearing_rad), other)
         for other in people
@@ -127,7 +127,7 @@ def hider(
 def keep_behind(
     target: Target, people: Iterable[SeenPerson], config: OccluderConfig, view: TargetConfig
 ) -> Target:
-    """Take the person along with whoever hides it: whoever steps out from behind another one is seen."""
+    """Move the person along with the occluder: anybody who steps out from behind another one is seen."""
     other = hider(people, target, config, view)
     if other is None:
         return target

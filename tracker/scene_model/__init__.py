@@ -1,1 +1,1 @@
-"""The articulated scene model of an observed place: what stands there, what was moved, and who moved it."""
+"""The articulated scene model of an observed place: background, moved objects, and who moved them."""

@@ -1,4 +1,4 @@
-"""Connected pieces of an image, by depth and by the time at which their pixels changed."""
+"""Connected components of an image, by depth and by the time of change."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ Pixels = NDArray[np.intp]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PixelSpan:
-    """When each pixel changed: (H, W) after `first_s` and before `last_s` [s].
+    """Time of change of each pixel: (H, W) after `first_s` and before `last_s` [s].
 
-    `seen_s` is when what is there, or was, was seen last, and `slack_s` how far changes of neighbours that
-    belong together may be apart.
+    `seen_s` is when the present or former surface was last seen, and `slack_s` is the tolerance between the
+    changes of neighbours in one component.
     """
 
     first_s: Metres
@@ -32,13 +32,13 @@ class PixelSpan:
 def pieces_of(
     mask: Bools, depth_m: Metres, gap_m: float, span: PixelSpan | None = None
 ) -> tuple[Labels, int]:
-    """Number the connected pieces of a mask (H, W).
+    """Label the connected components of a mask (H, W).
 
-    Neighbours, of which a pixel has eight, belong together if their depths differ by less than `gap_m`, and
-    if they can have changed at the same time.
+    A pixel is connected with any of its eight neighbours if their depths differ by less than `gap_m`, and if
+    they can have changed at the same time.
 
     Returns:
-        (H, W) numbers from 1 on, 0 outside; and how many there are.
+        (H, W) labels from 1 on, 0 outside; and the number of components.
     """
     nothing = np.zeros((1, 1), np.float32)
     first, last, slack = (
@@ -67,7 +67,7 @@ def _root(parent, k):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def _belongs(depth, gap, first, last, slack, a, b):  # type: ignore[no-untyped-def]
-    """Return whether two neighbouring pixels belong together."""
+    """Return whether two neighbouring pixels are connected."""
     if abs(depth[a] - depth[b]) > gap * max(1.0, depth[a] / 4.0):
         return False
     return slack < 0.0 or max(first[a], first[b]) <= min(last[a], last[b]) + slack
@@ -105,7 +105,7 @@ def _label(mask, depth, gap, first, last, slack):  # type: ignore[no-untyped-def
 
 @njit(cache=True, nogil=True)
 def _numbered(labels, parent, count):  # type: ignore[no-untyped-def]
-    """Number the roots from 1 on, and give every pixel the number of its root."""
+    """Number the roots from 1 on, and label every pixel with its root's number."""
     number = np.zeros(count + 1, np.int32)
     found = 0
     for k in range(1, count + 1):

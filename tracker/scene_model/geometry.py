@@ -1,4 +1,4 @@
-"""Where the pixels of a depth image are in the robot's frame, and how warm the thermal camera sees them."""
+"""Positions of depth pixels in the robot frame, and their temperature in the thermal image."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class Geometry:
     """A calibrated depth camera.
 
     Attributes:
-        calibration: of it.
-        rays: (H, W, 3) direction of each pixel in the robot's frame, of depth 1.
+        calibration: of the camera.
+        rays: (H, W, 3) direction of each pixel in the robot frame, of depth 1.
         focal_px: focal length.
     """
 
@@ -34,10 +34,10 @@ class Geometry:
 
     @classmethod
     def of(cls, frame: Frame) -> Geometry:
-        """Read it from a frame.
+        """Make it from a frame.
 
         Raises:
-            BadInput: no depth image, or no calibration of a flat one.
+            BadInput: there is no depth image, or no calibration of a planar camera.
         """
         calibration = frame.calibrations.get(DEPTH)
         if not isinstance(calibration, PinholeCalibration):
@@ -55,15 +55,15 @@ class Geometry:
         return height, width
 
     def points(self, pixels: NDArray[np.intp], depth_m: Metres) -> Floats:
-        """Return the points (N, 3) [m] in the robot's frame at flat indices (N,) of pixels."""
+        """Return the points (N, 3) [m] in the robot frame of pixels with flat indices (N,)."""
         rays = self.rays.reshape(-1, 3)[pixels].astype(np.float64)
         return np.asarray(self.calibration.robot_from_camera[:3, 3] + rays * depth_m.ravel()[pixels, None])
 
     def warmth(self, depth_m: Metres, frame: Frame, warm: float) -> NDArray[np.int8] | None:
-        """Return (H, W) of each reading whether it is warm, cold, or not seen by the thermal camera.
+        """Return (H, W) whether each reading is warm, cold, or outside the thermal image.
 
         Returns:
-            None if there is no thermal image, or nobody knows where its camera is.
+            None if there is no thermal image, or its camera is not calibrated.
         """
         theirs = frame.calibrations.get(THERMAL)
         if THERMAL not in frame.images or not isinstance(theirs, PinholeCalibration):
@@ -95,7 +95,7 @@ def _look_up(depth, turn, shift, image, warm):  # type: ignore[no-untyped-def]
     return found
 
 
-# What surfaces look like in the pixels of a depth image: their colours, or how much light they send back.
+# Appearance of surfaces in the pixels of a depth image: colours, or reflectance.
 
 Shades = NDArray[np.uint8]
 
@@ -103,10 +103,10 @@ _WHITE_AT_1_M = 10_000.0  # amplitude
 
 
 def shades_of(frame: Frame) -> Shades | None:
-    """Return (H, W, 3) RGB, or (H, W, 1) reflectance of a time-of-flight sensor; None where neither is there.
+    """Return (H, W, 3) RGB, or (H, W, 1) reflectance of a time-of-flight sensor, or None.
 
     Raises:
-        BadInput: its size is not that of the depth image.
+        BadInput: its size differs from that of the depth image.
     """
     if DEPTH_COLOUR in frame.images:
         colour = frame.rgb(DEPTH_COLOUR)
@@ -121,12 +121,12 @@ def shades_of(frame: Frame) -> Shades | None:
 
 
 def grey_of(frame: Frame) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-    """Return (H, W) grey that does not change as things come nearer, and (H, W) amplitude.
+    """Return (H, W) grey that does not depend on the distance, and (H, W) amplitude.
 
-    A camera that sees colour instead of its own light has its grey for amplitude.
+    For a colour camera the grey is also the amplitude.
 
     Raises:
-        BadInput: it sees neither, or of another size.
+        BadInput: there is neither, or the size differs.
     """
     shades = shades_of(frame)
     if shades is None:

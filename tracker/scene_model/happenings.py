@@ -1,4 +1,4 @@
-"""What happened to things: what vanished here and appeared there was moved, by who was at it."""
+"""Changes of objects: an object that disappears and appears elsewhere was moved, by the person near it."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ _BODY_M: Final = 0.7
 _LEAVES_S: Final = 2.5
 _HELD_M: Final = 0.9
 _SHADE: Final = 0.5
-_SLACK_S: Final = 1.0  # by which a thing may seem to appear before it vanished
-_BESIDE_S: Final = 0.7  # before and after a change in which who did it is near
+_SLACK_S: Final = 1.0  # by which an object may seem to appear before it disappears
+_BESIDE_S: Final = 0.7  # before and after a change, in which the person responsible is near
 
 
 @dataclass(slots=True, eq=False)
 class _Half:
-    """A thing that vanished or appeared, until its other half is found."""
+    """An object that disappeared or appeared, until its counterpart is found."""
 
     thing: Thing
     since_s: float
@@ -36,7 +36,7 @@ class _Half:
 
 
 class Ledger:
-    """Holds back what vanished and appeared until it is clear what belongs together.
+    """Delays disappearances and appearances until it is clear which belong together.
 
     Args:
         config: settings.
@@ -51,7 +51,7 @@ class Ledger:
         self._people: deque[tuple[float, tuple[ScenePerson, ...]]] = deque()
 
     def note(self, time_s: float, persons: tuple[ScenePerson, ...]) -> None:
-        """Remember who is where."""
+        """Store the positions of people."""
         self._people.append((time_s, persons))
         while self._people and self._people[0][0] < time_s - _REMEMBERED_S:
             self._people.popleft()
@@ -59,22 +59,22 @@ class Ledger:
             self._first.setdefault(person.id, (time_s, person.place_m))
 
     def finished(self, time_s: float) -> list[Happening]:
-        """Return what is left, as nothing will follow."""
+        """Return the remaining changes, at the end."""
         return self._news(time_s, (), is_over=True)
 
     def reported(
         self, time_s: float, come: Sequence[Thing], gone: Sequence[Thing], unseen: Container[int] = ()
     ) -> list[Happening]:
-        """Take in what settled and what left, and tell what is clear by now.
+        """Add settled and disappeared objects, and return the changes that are certain by now.
 
-        What left before it was reported was only held still by a person who carries it. What is hidden again
-        waits, as it may have left.
+        An object that disappears before it was reported was only held still by a person who carries it. An
+        object that is occluded again waits, as it may have disappeared.
 
         Args:
             time_s: of the frame [s].
-            come: what settled with it.
-            gone: what left with it.
-            unseen: ids of things that are hidden.
+            come: objects that settled.
+            gone: objects that disappeared.
+            unseen: ids of occluded objects.
         """
         halted = {one.thing.id for one in self._come} & {one.id for one in gone}
         self._come = [one for one in self._come if one.thing.id not in halted]
@@ -113,31 +113,31 @@ class Ledger:
         return happenings
 
     def missing(self) -> Thing | None:
-        """Return what vanished last and has not appeared elsewhere; None for nothing."""
+        """Return the last disappeared object that has not reappeared, or None."""
         return self._gone[-1].thing if self._gone else None
 
     def _is_held(self, thing: Thing) -> bool:
-        """Return whether a person is near enough now to have a thing in their hands."""
+        """Return whether a person is near enough to hold an object."""
         if not self._people:
             return False
         _, persons = self._people[-1]
         return any(math.dist(one.place_m, thing.place_m[:2]) < _HELD_M for one in persons)
 
     def _was_person(self, gone: Thing) -> bool:
-        """Return whether what vanished was a person who stood there until the model knew them."""
+        """Return whether a disappeared object was a person who stood still before being detected."""
         return gone.top_m > _TALL_M and any(
             math.dist(place, gone.place_m[:2]) < _BODY_M and abs(time_s - gone.span_s[1]) < _LEAVES_S
             for time_s, place in self._first.values()
         )
 
     def _origin(self, thing: Thing) -> _Half | None:
-        """Find what vanished and may be what appeared: the most alike."""
+        """Return the disappeared object that is most similar to one that appeared."""
         likeness = {k: self._alike(one.thing, thing) for k, one in enumerate(self._gone) if not one.is_paired}
         likely = {k: value for k, value in likeness.items() if value > 0.0}
         return self._gone[max(likely, key=lambda k: likely[k])] if likely else None
 
     def _arrived(self, thing: Thing) -> _Half | None:
-        """Find what appeared and may be what vanished, as a person hid that it did: the most alike."""
+        """Return the most similar object that appeared, for one whose disappearance a person occluded."""
         likeness = {k: self._alike(thing, one.thing) for k, one in enumerate(self._known)}
         likely = {k: value for k, value in likeness.items() if value > 0.0 and not self._known[k].is_paired}
         return self._known[max(likely, key=lambda k: likely[k])] if likely else None
@@ -181,7 +181,7 @@ class Ledger:
         )
 
     def _who(self, things: Sequence[Thing], span_s: tuple[float, float]) -> int | None:
-        """Find who came nearest to a thing about the time of its change."""
+        """Return the person who was nearest to an object around the time of its change."""
         near: dict[int, float] = {}
         for time_s, persons in self._people:
             if not span_s[0] - _BESIDE_S <= time_s <= span_s[1] + _BESIDE_S:
@@ -199,7 +199,7 @@ def _middle(thing: Thing) -> float:
 
 
 def _colours_apart(one: Floats, other: Floats) -> float:
-    """Return the distance of two mean colours (C,); light and shade change brightness more than hue."""
+    """Return the distance of two mean colours (C,); brightness, which shadows change, counts less than hue."""
     apart = one - other
     brightness = float(apart.mean())
     if len(apart) == 1:

@@ -1,4 +1,4 @@
-"""The background behind each pixel, what stands before it, and what may become either: confirmed readings."""
+"""Per-pixel layers: the background, the object in front of it, and candidates for either."""
 
 from __future__ import annotations
 
@@ -11,22 +11,21 @@ from numpy.typing import NDArray
 from peopleboy.tracker.scene_model.readings import Readings
 from peopleboy.tracker.scene_model.scene import Metres
 
-# Surfaces made even: a pixel's neighbours know its depth, too, where they are of one plane.
+# Smoothing of surfaces: neighbours on the same plane contribute to a pixel's depth.
 
 _RADIUS_PX: Final = 2
 
 
 def evened(inverse: Metres, is_sure: NDArray[np.bool_], doubt: Metres) -> Metres:
-    """Average inverse depths (H, W) [1/m] with those of their neighbours, as far as these are of one plane.
+    """Average inverse depths (H, W) [1/m] with those of neighbours on the same plane.
 
     Inverse depth is linear in the image on every plane, so that two neighbours on opposite sides of a pixel
-    have its own on average. Pairs that do not, by their noise, lie across an edge or a fold: they are left
-    out.
+    average to its own. Pairs that do not, given their noise, lie across an edge or a fold, and are left out.
 
     Args:
-        inverse: 0 where nothing is known.
+        inverse: 0 where unknown.
         is_sure: (H, W) which pixels are averaged.
-        doubt: (H, W) how far the mean of a pair may be off [1/m].
+        doubt: (H, W) tolerance of the mean of a pair [1/m].
     """
     return np.asarray(_evened(inverse, is_sure, doubt))
 
@@ -56,39 +55,39 @@ def _evened(inverse, is_sure, doubt):  # type: ignore[no-untyped-def]
 Bools = NDArray[np.bool_]
 
 NEVER: Final = -1e6
-"""[s] When something happened that never did."""
+"""[s] Time of an event that never happened."""
 
-# What is kept of each pixel. Of the background: mean of its readings [1/m], their number, how many had
-# neighbours that agree, when it was seen last.
+# State of each pixel. Background: mean of its readings [1/m], their number, the number of those that agree
+# with neighbours, and the time of the last one.
 _BACK, _BACK_COUNT, _BACK_SURE, _BACK_SEEN = 0, 1, 2, 3
-# Of the thing before it: the same; when it was seen first and last; how often readings changed from the
-# background to it; how many of the background there were before.
+# Object in front: the same; times of the first and the last reading; number of changes from the background to
+# it; number of background readings before.
 _FRONT, _FRONT_COUNT, _FRONT_SINCE, _FRONT_SEEN, _FLIPS, _BEFORE = 4, 5, 6, 7, 8, 9
-# Of readings in a row that fit neither: the same.
+# Consecutive readings that fit neither: the same.
 _OTHER, _OTHER_COUNT, _OTHER_SINCE = 10, 11, 12
-# Readings of the background in a row where a thing is remembered; the kind of the newest reading.
+# Consecutive background readings behind a stored object; kind of the newest reading.
 _GONE, _KIND = 13, 14
-# Of what was taken for background until something farther was seen: [1/m], when it was seen last, what is
-# farther first.
+# Former background in front of a farther one: [1/m], time of the last reading, time of the first farther
+# reading.
 _PAST, _PAST_SEEN, _PAST_GONE = 15, 16, 17
 _ALL = 18
 _TIMES = (_BACK_SEEN, _FRONT_SINCE, _FRONT_SEEN, _OTHER_SINCE, _PAST_SEEN, _PAST_GONE)
 
 _IS_BACK, _IS_FRONT, _IS_NEITHER = 0.0, 1.0, 2.0
-_FORGET: Final = 3000.0  # readings from which on a mean follows the newest ones
-# From a mean; what smoothing removed does not go into it. A limit in metres alone would move a noisy one.
+_FORGET: Final = 3000.0  # number of readings from which a mean follows the newest ones
+# Outliers are removed from a mean. A limit in metres alone would bias a noisy one.
 _OUTLIER: Final = np.float32(1.5)  # reaches
 _OUTLIER_DEVIATIONS: Final = np.float32(3.75)
 _FEW, _OFTENER, _FLIPPED = 25.0, 2.0, 3.0
 _LEAST: Final = 8.0  # readings of a surface that agree with their neighbours
-_SURE: Final = 0.2  # share of them
-_PLANE_DEVIATIONS: Final = np.float32(2.5)  # of a mean, within which neighbours are of one plane
+_SURE: Final = 0.2  # their share
+_PLANE_DEVIATIONS: Final = np.float32(2.5)  # of a mean, within which neighbours are on one plane
 
 
 class Layers:
-    """What is known of every pixel of a standing camera; it changes from frame to frame.
+    """State of every pixel of a standing camera, updated frame by frame.
 
-    Depths are kept inverted, as the noise of sensors is alike there and does not move a mean of raw readings.
+    Depths are stored inverted, because their noise is then uniform and does not bias a mean of raw readings.
 
     Args:
         height, width: of the image.
@@ -106,13 +105,13 @@ class Layers:
 
     @property
     def background_m(self) -> Metres:
-        """(H, W) depth of what is taken for background [m]; 0 where nothing was ever read."""
+        """(H, W) depth of the background [m]; 0 where there was no reading."""
         return inverted(self._state[_BACK])
 
     def surface_m(self, noise: Metres) -> Metres:
-        """Return (H, W) the background [m], made even where it is of one plane.
+        """Return (H, W) the background [m], smoothed on planes.
 
-        It is 0 also where light of several surfaces mixes, or hardly anything is read.
+        It is also 0 where light of several surfaces mixes, or readings are rare.
 
         Args:
             noise: (H, W) standard deviation of a reading of inverse depth [1/m].
@@ -129,75 +128,74 @@ class Layers:
 
     @property
     def is_settled(self) -> Bools:
-        """(H, W) where the background was read often enough to be relied on."""
+        """(H, W) where the background has enough readings to be reliable."""
         return np.asarray(self._state[_BACK_COUNT] >= _LEAST)
 
     @property
     def is_covered(self) -> Bools:
-        """(H, W) where a thing stands before the background."""
+        """(H, W) where an object is in front of the background."""
         return np.asarray(self._state[_FRONT_COUNT] > 0.0)
 
     @property
     def front_m(self) -> Metres:
-        """(H, W) depth of that thing [m]; 0 where there is none."""
+        """(H, W) depth of that object [m]; 0 where there is none."""
         return np.where(self.is_covered, inverted(self._state[_FRONT]), np.float32(0.0))
 
     @property
     def front_since_s(self) -> Metres:
-        """(H, W) when that thing was seen first [s]."""
+        """(H, W) when that object was first seen [s]."""
         return np.asarray(self._state[_FRONT_SINCE])
 
     @property
     def front_seen_s(self) -> Metres:
-        """(H, W) when that thing was seen last [s]."""
+        """(H, W) when that object was last seen [s]."""
         return np.asarray(self._state[_FRONT_SEEN])
 
     @property
     def back_seen_s(self) -> Metres:
-        """(H, W) when the background was seen last [s]."""
+        """(H, W) when the background was last seen [s]."""
         return np.asarray(self._state[_BACK_SEEN])
 
     @property
     def past_m(self) -> Metres:
-        """(H, W) depth of what was background until something farther was seen [m]; 0 for nothing."""
+        """(H, W) depth of the former background in front of a farther one [m]; 0 for none."""
         return inverted(self._state[_PAST])
 
     @property
     def past_seen_s(self) -> Metres:
-        """(H, W) when that was seen last [s]."""
+        """(H, W) when the former background was last seen [s]."""
         return np.asarray(self._state[_PAST_SEEN])
 
     @property
     def past_gone_s(self) -> Metres:
-        """(H, W) when what is farther was seen first [s]."""
+        """(H, W) when the farther background was first seen [s]."""
         return np.asarray(self._state[_PAST_GONE])
 
     def is_before(self, smooth_m: Metres, least_m: Metres) -> Bools:
-        """(H, W) where a reading fits nothing known, and is so much nearer than the background [m]."""
+        """(H, W) where a reading fits no layer, and is this much nearer than the background [m]."""
         state = self._state
         return np.asarray((state[_KIND] == _IS_NEITHER) & (self.background_m - smooth_m > least_m))
 
     def is_opened(self, time_s: float) -> Bools:
-        """(H, W) where something farther became the background with the frame of a time [s]."""
+        """(H, W) where a farther surface became the background in the frame of a given time [s]."""
         state = self._state
         return np.asarray((state[_BACK_SEEN] == np.float32(time_s)) & (state[_KIND] == _IS_NEITHER))
 
     def take_in(
         self, readings: Readings, reach_m: Metres, ignored: Bools, time_s: float, confirm: int
     ) -> None:
-        """Sort the readings of a frame.
+        """Assign the readings of a frame to layers.
 
-        A reading that fits neither background nor thing is believed after some in a row that agree: it
-        becomes the background if it is farther, and a thing before it if it is nearer. What people hide is
-        remembered.
-        The smooth readings are sorted, the raw ones make the means.
+        A reading that fits neither background nor object is accepted after several consecutive ones agree: it
+        becomes the background if it is farther, and an object if it is nearer. Layers behind people are kept.
+        Smoothed readings are assigned, and raw ones are averaged.
 
         Args:
             readings: of the frame.
-            reach_m: (H, W) within which two readings agree [m].
+            reach_m: (H, W) tolerance of two readings [m].
             ignored: (H, W) where people are.
             time_s: of the frame.
-            confirm: readings in a row that are believed.
+            confirm: number of consecutive readings needed.
         """
         raw, smooth, mixed = readings.raw_m, readings.smooth_m, readings.is_mixed
         wide = np.maximum(_OUTLIER * reach_m, _OUTLIER_DEVIATIONS * readings.noise * smooth**2)
@@ -206,7 +204,7 @@ class Layers:
 
 
 def inverted(values: Metres) -> Metres:
-    """Turn depths [m] into inverse ones and back; 0 stays 0."""
+    """Convert depths [m] to inverse depths and back; 0 stays 0."""
     return np.asarray(np.divide(1.0, values, out=np.zeros_like(values), where=values > 0.0), np.float32)
 
 
@@ -238,7 +236,7 @@ def _take(state, v, u, raw, z, is_mixed, near, wide, now, confirm):  # type: ign
 
 @njit(cache=True, nogil=True)
 def _see_front(state, v, u, z, reading, near, wide, now):  # type: ignore[no-untyped-def]
-    """See a thing; what was background at first may have been an outlier, or the far side of an edge."""
+    """Update the object layer; initial background may have been an outlier, or the far side of an edge."""
     _add(state, _FRONT, v, u, reading, wide)
     state[_FLIPS, v, u] += state[_KIND, v, u] == _IS_BACK
     state[_FRONT_SEEN, v, u], state[_GONE, v, u], state[_OTHER_COUNT, v, u] = now, 0.0, 0.0
@@ -253,7 +251,7 @@ def _see_front(state, v, u, z, reading, near, wide, now):  # type: ignore[no-unt
 
 @njit(cache=True, nogil=True)
 def _see_back(state, v, u, reading, is_mixed, wide, now, confirm):  # type: ignore[no-untyped-def]
-    """See the background; a thing that is remembered there is gone after some readings in a row."""
+    """Update the background; a stored object in front is removed after several consecutive readings."""
     _add(state, _BACK, v, u, reading, wide)
     state[_BACK_SURE, v, u] += not is_mixed
     state[_KIND, v, u], state[_OTHER_COUNT, v, u] = _IS_BACK, 0.0
@@ -273,7 +271,7 @@ def _see_other(state, v, u, z, reading, near, wide, now):  # type: ignore[no-unt
 
 @njit(cache=True, nogil=True)
 def _believe(state, v, u, now):  # type: ignore[no-untyped-def]
-    """Take what was read often enough for background if it is farther, and for a thing if it is nearer."""
+    """Make an accepted reading the background if it is farther, or an object if it is nearer."""
     first = state[_OTHER_SINCE, v, u]
     if state[_OTHER, v, u] < state[_BACK, v, u]:
         if state[_FRONT_COUNT, v, u] == 0.0:
@@ -283,7 +281,7 @@ def _believe(state, v, u, now):  # type: ignore[no-untyped-def]
         state[_BACK_SEEN, v, u], state[_BACK_SURE, v, u], state[_FRONT_COUNT, v, u] = now, 0.0, 0.0
     else:
         if state[_FRONT_COUNT, v, u] > 0.0:
-            state[_BACK_SEEN, v, u] = state[_FRONT_SEEN, v, u]  # until then something else stood here
+            state[_BACK_SEEN, v, u] = state[_FRONT_SEEN, v, u]  # until then another surface was here
         state[_FRONT, v, u], state[_FRONT_COUNT, v, u] = state[_OTHER, v, u], state[_OTHER_COUNT, v, u]
         state[_FRONT_SINCE, v, u], state[_FRONT_SEEN, v, u], state[_FLIPS, v, u] = first, now, 0.0
         state[_BEFORE, v, u] = state[_BACK_COUNT, v, u]
@@ -292,7 +290,7 @@ def _believe(state, v, u, now):  # type: ignore[no-untyped-def]
 
 @njit(cache=True, nogil=True)
 def _add(state, mean, v, u, reading, wide):  # type: ignore[no-untyped-def]
-    """Take a raw reading into a mean, whose number of readings is beside it."""
+    """Add a raw reading to a mean, whose number of readings is stored next to it."""
     count = mean + 1
     if abs(1.0 / reading - 1.0 / state[mean, v, u]) < wide:
         state[mean, v, u] += (reading - state[mean, v, u]) / min(state[count, v, u] + 1.0, _FORGET)

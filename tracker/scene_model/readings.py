@@ -1,4 +1,4 @@
-"""Depth images made ready: smoothed for decisions, with the noise of each pixel estimated from the image."""
+"""Preprocessing of depth images: smoothing, and per-pixel noise estimated from the image."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Depth = NDArray[np.uint16]
 
 _PATCH_PX = 7
 _SD_OF_MEAN = np.float32(1.2533)  # standard deviation over mean absolute deviation of a Gaussian
-_FEWEST = 4  # of 8 neighbours that a reading must agree with; at edges light of two surfaces mixes
+_FEWEST = 4  # of 8 neighbours that must agree; at edges light of two surfaces mixes
 _NEAR_M, _NEAR_SHARE, _NEAR_DEVIATIONS = 0.05, 0.03, 3.0
 
 
@@ -24,11 +24,11 @@ class Readings:
     """A depth image.
 
     Attributes:
-        raw_m: (H, W) as read [m]; 0 for none.
-        smooth_m: (H, W) median of the neighbours; 0 where nothing is read.
+        raw_m: (H, W) as read [m]; 0 for no reading.
+        smooth_m: (H, W) median of the neighbours; 0 for no reading.
         is_mixed: (H, W) where light of several surfaces mixes, at edges.
         noise: (H, W) standard deviation of inverse depth [1/m].
-        count: images that the noise was estimated from.
+        count: number of images of the noise estimate.
     """
 
     raw_m: Metres
@@ -39,12 +39,12 @@ class Readings:
 
     @classmethod
     def of(cls, depth: Depth, before: Readings | None, memory: float) -> Readings:
-        """Read an (H, W) depth image [mm].
+        """Make it from an (H, W) depth image [mm].
 
         Args:
             depth: the image.
-            before: the image before of the same place; None at the start.
-            memory: share of its noise that is kept.
+            before: the previous image of the same place; None at the start.
+            memory: weight of its noise estimate.
         """
         raw = depth.astype(np.float32) / np.float32(1000.0)
         middle = cv2.medianBlur(depth, 3).astype(np.float32) / np.float32(1000.0)
@@ -52,20 +52,20 @@ class Readings:
         noise = _noise(raw, cv2.medianBlur(depth, 5).astype(np.float32) / np.float32(1000.0))
         if before is not None:
             noise = np.maximum(noise, _noise(raw, before.raw_m) / np.float32(np.sqrt(2.0)))
-            kept = min(memory, 1.0 - 1.0 / before.count)  # the first knows nothing of time
+            kept = min(memory, 1.0 - 1.0 / before.count)  # the first one has no temporal noise
             noise = kept * before.noise + (1.0 - kept) * noise
         return cls(raw, smooth, _mixed(raw, noise), noise, 1 if before is None else before.count + 1)
 
     def reach_m(self, least_m: float, deviations: float, most_m: float) -> Metres:
-        """Return (H, W) how far two readings of one surface may be apart [m]."""
+        """Return (H, W) the tolerance between two readings of one surface [m]."""
         reach = deviations * self.noise * self.smooth_m**2
         return np.asarray(np.clip(reach, least_m, most_m), np.float32)
 
 
 def _noise(raw_m: Metres, other_m: Metres) -> Metres:
-    """Estimate the noise (H, W) [1/m] by how readings differ from their median, or from those before.
+    """Estimate the noise (H, W) [1/m] from differences of readings to their median, or to previous readings.
 
-    What moves, and edges, hardly count: differences are limited to what most of the image has.
+    Motion and edges have little effect: differences are clipped to the range of most of the image.
     """
     is_read = (raw_m > 0.0) & (other_m > 0.0)
     safe_raw, safe_other = (
@@ -86,7 +86,7 @@ def _noise(raw_m: Metres, other_m: Metres) -> Metres:
 
 @njit(cache=True, nogil=True)
 def _mixed(raw, noise):  # type: ignore[no-untyped-def]
-    """Find readings with which too few of the neighbours agree."""
+    """Return the readings with which too few neighbours agree."""
     height, width = raw.shape
     found = np.zeros((height, width), np.bool_)
     for v in range(height):

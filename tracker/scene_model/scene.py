@@ -1,4 +1,4 @@
-"""What a scene model reports: background, people, movable things, and what happened to them."""
+"""Output of a scene model: background, people, movable objects, and their changes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Place = tuple[float, float, float]
 
 
 class ObjectState(StrEnum):
-    """Where a movable thing is."""
+    """Whether a movable object is present."""
 
     STANDS = "stands"
     HIDDEN = "hidden"
@@ -24,7 +24,7 @@ class ObjectState(StrEnum):
 
 
 class Change(StrEnum):
-    """What happens to things."""
+    """Kinds of changes of objects."""
 
     APPEARED = "appeared"
     VANISHED = "vanished"
@@ -33,15 +33,15 @@ class Change(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SceneObject:
-    """A movable thing: it was put in front of the background, or taken away from it.
+    """A movable object: it was put in front of the background, or removed from it.
 
     Attributes:
         id: from 1 on.
         box: left, top, width, height [px] of the depth image.
-        place_m: its middle, forward and left of where the robot stood first, and up from the floor [m].
-        size_m2: area of its visible surface, seen from the camera [m^2].
-        first_seen_s: when [s].
-        state: where it is.
+        place_m: its middle, forward and left of the robot's first pose, and up from the floor [m].
+        size_m2: visible area, facing the camera [m^2].
+        first_seen_s: time of the first observation [s].
+        state: whether it is present.
     """
 
     id: int
@@ -57,8 +57,8 @@ class ScenePerson:
     """A person in the depth image.
 
     Attributes:
-        id: from 1 on; the same one as long as a person is followed.
-        place_m: on the floor, forward and left of where the robot stood first [m].
+        id: from 1 on, constant while the person is tracked.
+        place_m: position on the floor, forward and left of the robot's first pose [m].
     """
 
     id: int
@@ -67,16 +67,16 @@ class ScenePerson:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Happening:
-    """Something that happened to a thing.
+    """A change of an object.
 
     Attributes:
-        time_s: when [s]: the middle of the time in which nobody saw the place.
-        known_s: when the model was sure [s].
-        change: what.
-        object: whose id.
-        from_m: where it was [m]; None if it was not seen before.
-        to_m: where it is [m]; None if it is not seen any more.
-        person: id of who was there; None for nobody.
+        time_s: time of the change [s]: the middle of the interval without observations.
+        known_s: time at which the model was certain [s].
+        change: kind of the change.
+        object: id of the object.
+        from_m: previous position [m]; None if unknown.
+        to_m: new position [m]; None if it is not visible.
+        person: id of the person nearby, or None.
     """
 
     time_s: float
@@ -89,7 +89,7 @@ class Happening:
 
     @property
     def way_m(self) -> float:
-        """How far it moved [m]; 0 where one of the ends is not known."""
+        """Distance moved [m]; 0 if one of the positions is unknown."""
         if self.from_m is None or self.to_m is None:
             return 0.0
         return float(np.linalg.norm(np.subtract(self.to_m, self.from_m)))
@@ -97,18 +97,18 @@ class Happening:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class VistaScene:
-    """A place after one more frame.
+    """The scene after one more frame.
 
     Attributes:
         time_s: of the frame [s].
-        background_m: (H, W) depth of what stands, along the optical axis [m]; 0 where it was never seen.
-        people: (H, W) ids of the people in the image; 0 for nobody.
-        things: (H, W) ids of the movable things that are seen now; 0 for none.
-        persons: who is there.
-        objects: every movable thing, those that are gone, too.
-        happenings: what the model became sure of with this frame.
-        is_frozen: whether the robot moves, so that nothing is learned.
-        vista: number of the standing place, from 0.
+        background_m: (H, W) depth of the background, along the optical axis [m]; 0 where unknown.
+        people: (H, W) ids of the people in the image; 0 for none.
+        things: (H, W) ids of the visible movable objects; 0 for none.
+        persons: people in the image.
+        objects: all movable objects, including removed ones.
+        happenings: changes that became certain in this frame.
+        is_frozen: whether learning is paused because the robot moves.
+        vista: number of the robot's standing position, from 0.
     """
 
     time_s: float

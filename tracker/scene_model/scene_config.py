@@ -7,14 +7,13 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LayersConfig:
-    """How readings are sorted into background and things.
+    """How readings are assigned to background and objects.
 
     Attributes:
-        confirm: agreeing readings in a row that are believed.
-        least_m, most_m: [m] within which two readings of one surface agree, at least and at most.
-        deviations: the same in standard deviations of the noise of raw readings, of which smoothing leaves
-            half.
-        memory: share of the estimated noise that is kept from frame to frame.
+        confirm: number of consecutive agreeing readings needed.
+        least_m, most_m: [m] limits of the tolerance between two readings of one surface.
+        deviations: the tolerance in standard deviations of raw readings; smoothing halves the noise.
+        memory: weight of the previous noise estimate.
     """
 
     confirm: int = 5
@@ -26,22 +25,22 @@ class LayersConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PeopleMaskConfig:
-    """How people are separated from things.
+    """How people are separated from objects.
 
     Attributes:
-        has_heat: whether the thermal image shows them, as far as it sees; by their shape everywhere if not.
-        warm: grey of the thermal image from which on something is as warm as people are.
-        grown_px: [px] by which what is warm grows over what is connected with it.
-        least_m2: [m^2] area of the smallest piece of a person.
+        has_heat: whether people are detected by the thermal image where it covers them; else by shape.
+        warm: grey of the thermal image from which a surface is as warm as people.
+        grown_px: [px] by which warm regions grow over connected pixels.
+        least_m2: [m^2] area of the smallest part of a person.
         gap_m: [m] of depth between neighbouring pixels of one body.
-        clear_m: [m] that a person stands before the background at least; by shape.
-        top_m, wide_m: [m] a person's head is above, and how wide a person is at most; by shape.
-        column_m: [m] radius in which a known person's pixels lie where a thing is connected with it.
-        below_m: [m] the same below a person who is found.
-        moved_m: [m] way after which something of a person's shape is believed to be one.
-        doubt_s: [s] after which it is taken for a thing if it has not moved.
-        gate_m, gate_m_s: [m] from one frame to the next, and [m/s] for each second without a sight.
-        kept_s: [s] for which a person is remembered who is not seen.
+        clear_m: [m] least distance of a person from the background; by shape.
+        top_m, wide_m: [m] least height of a person's head, and greatest width; by shape.
+        column_m: [m] radius of a known person's pixels in a component that includes an object.
+        below_m: [m] the same below a detected person.
+        moved_m: [m] distance moved after which an object of a person's shape is a person.
+        doubt_s: [s] after which it is an object if it has not moved.
+        gate_m, gate_m_s: [m] between frames, and [m/s] growth without a detection.
+        kept_s: [s] after which an undetected person is forgotten.
     """
 
     has_heat: bool = True
@@ -63,26 +62,26 @@ class PeopleMaskConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThingsConfig:
-    """How pixels become things, and what happens to things becomes known.
+    """How pixels become objects, and how changes are confirmed.
 
     Attributes:
-        off_m: [m] that a thing stands before its background at least.
-        gap_m: [m] of depth between neighbouring pixels of one thing.
-        slack_s: [s] between the times in which two neighbouring pixels may have changed together.
-        least_px: [px] of the smallest thing.
-        least_m2: [m^2] of the smallest thing.
-        beside_m, beside_s: [m] on the floor, and [s], between parts of one thing that are not connected in
+        off_m: [m] least distance of an object from its background.
+        gap_m: [m] of depth between neighbouring pixels of one object.
+        slack_s: [s] tolerance between the changes of neighbouring pixels of one object.
+        least_px: [px] of the smallest object.
+        least_m2: [m^2] of the smallest object.
+        beside_m, beside_s: [m] on the floor, and [s], between parts of one object that are not connected in
             the image.
-        settled_s: [s] for which a thing must stay as it is before it is reported.
+        settled_s: [s] for which an object must stay unchanged before it is reported.
         growth: share by which it may grow meanwhile.
-        left: share of a thing's largest area below which it is gone.
-        pair_s: [s] from a thing's vanishing until it appears elsewhere, at most.
-        wait_s: [s] for which a change is held back for its other half.
-        hold_s: [s] for which what appears beside a person may still be in their hands.
-        unseen_s: [s] out of sight from which on nothing new is reported of a thing.
-        size_ratio: of areas and heights of what may be the same thing.
-        colour: distance of mean colours, of 255, that halves how alike two things are.
-        hand_m: [m] from a person on the floor to what they move.
+        left: share of an object's largest area below which it is gone.
+        pair_s: [s] longest time between an object's disappearance and its reappearance elsewhere.
+        wait_s: [s] for which a change waits for its counterpart.
+        hold_s: [s] for which an object that appears next to a person may still be in the person's hands.
+        unseen_s: [s] out of sight after which no changes of an object are reported.
+        size_ratio: greatest ratio of areas and heights of one object.
+        colour: distance of mean colours, of 255, that halves the similarity of two objects.
+        hand_m: [m] from a person's position on the floor to a moved object.
     """
 
     off_m: float = 0.08
@@ -106,14 +105,14 @@ class ThingsConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SceneConfig:
-    """Settings of the whole model.
+    """Settings of the scene model.
 
     Attributes:
-        layers: of background and things.
-        people: of the mask of people.
-        things: of things and what happens to them.
-        still_m, still_rad: motion of the robot in a frame up to which it stands.
-        still_s: [s] for which it must stand before a new place is learned.
+        layers: settings of background and objects.
+        people: settings of the mask of people.
+        things: settings of objects and their changes.
+        still_m, still_rad: motion in a frame up to which the robot counts as standing.
+        still_s: [s] of standing before a new place is learned.
         joins: whether places are registered with each other, or joined by odometry alone.
     """
 

@@ -1,4 +1,4 @@
-"""The scene model in use: confirmed layers, people by heat or shape, things and what becomes of them."""
+"""The scene model: confirmed layers, people by temperature or shape, objects and their changes."""
 
 from __future__ import annotations
 
@@ -39,20 +39,20 @@ from peopleboy.tracker.scene_model.things import (
 )
 from peopleboy.tracker.scene_model.vista_spaces import StaticMap, Surface
 
-# Which colours what is not there any more had.
+# Colours of surfaces that are no longer visible.
 
 Colours = NDArray[np.uint8]
 
 
 class PastColours:
-    """Remembers the colours of the background, and of what was taken for it until it was seen through."""
+    """Stores the colours of the background, and of the former background."""
 
     def __init__(self) -> None:
         self._now: Colours | None = None
         self._past: Colours | None = None
 
     def update(self, colour: Colours | None, layers: Layers, time_s: float) -> Colours | None:
-        """Take in the (H, W, C) colours of a frame, once its readings are sorted; give those of the past.
+        """Add the (H, W, C) colours of a frame after its readings are assigned; return the past colours.
 
         Returns:
             (H, W, C); None without colours.
@@ -69,7 +69,7 @@ class PastColours:
 
 
 class SceneModel:
-    """Learns what stands in a place, what was moved there, and who moved it.
+    """Learns the background of a place, which objects were moved, and who moved them.
 
     Args:
         config: settings.
@@ -89,16 +89,16 @@ class SceneModel:
         self._readings: Readings | None = None
 
     def update(self, frame: Frame) -> VistaScene:
-        """Take in the next frame.
+        """Process the next frame.
 
-        While the robot moves, and for a moment after, nothing is learned; then a new place begins.
+        While the robot moves, and for a moment after, learning is paused; then a new place begins.
 
         Raises:
-            BadInput: no depth image of the size of the ones before, or no calibration, or no odometry.
+            BadInput: there is no depth image of the previous size, or no calibration, or no odometry.
         """
         geometry = self._geometry_of(frame)
         if not self._stands(frame):
-            assert self._newest is not None  # the first frame stands
+            assert self._newest is not None  # the first frame is standing
             return replace(
                 self._newest, time_s=frame.time_s, is_frozen=True, happenings=(), persons=(),
                 people=np.zeros_like(self._newest.people), things=np.zeros_like(self._newest.things),
@@ -107,13 +107,13 @@ class SceneModel:
         return self._newest
 
     def finish(self) -> tuple[Happening, ...]:
-        """Return what was held back, as no frame will follow."""
+        """Return the delayed changes, at the end."""
         if self._newest is None:
             return ()
         return tuple(self._known(one) for one in self._ledger.finished(self._newest.time_s))
 
     def static_map(self) -> Surface:
-        """Return what stands, seen from every place until now.
+        """Return the surface seen from all places so far.
 
         Raises:
             BadInput: there was no frame yet.
@@ -127,20 +127,20 @@ class SceneModel:
 
     @property
     def geometry(self) -> Geometry:
-        """Of the depth camera; there must have been a frame."""
+        """Geometry of the depth camera; there must have been a frame."""
         assert self._geometry is not None
         return self._geometry
 
     @property
     def pose(self) -> Pose2:
-        """Where the robot stands, in the frame of the first place."""
+        """Pose of the robot, in the frame of the first place."""
         return self._pose
 
     def _stands(self, frame: Frame) -> bool:
-        """Take the odometry in, and tell whether the robot has stood for long enough to learn.
+        """Integrate the odometry, and return whether the robot has been standing for long enough to learn.
 
         Raises:
-            BadInput: nobody knows how it moved.
+            BadInput: the motion is unknown.
         """
         config, way = self.config, frame.odometry
         if self._vista < 0:
@@ -153,7 +153,7 @@ class SceneModel:
         )
         if is_moving and self._stopped_s == -math.inf:
             self._pose = self._added()
-        if is_moving or self._stopped_s != -math.inf:  # what wheels tell of a robot that stands is noise
+        if is_moving or self._stopped_s != -math.inf:  # odometry of a standing robot is noise
             self._pose = self._pose.compose(way.motion)
         if is_moving:
             self._stopped_s = math.inf
@@ -167,7 +167,7 @@ class SceneModel:
         return True
 
     def _added(self) -> Pose2:
-        """Put what stands here onto the map."""
+        """Add the surface of the current place to the map."""
         assert self._newest is not None  # there was a frame
         return self._map.add(Surface.of(self._newest.background_m, self.geometry), self._pose)
 
@@ -190,7 +190,7 @@ class SceneModel:
         return self._geometry
 
     def _begin(self, shape: tuple[int, int]) -> None:
-        """Know nothing of a new place."""
+        """Reset the state for a new place."""
         self._vista += 1
         self._stopped_s = -math.inf
         self._layers = Layers(*shape)
@@ -216,7 +216,7 @@ class SceneModel:
         return tuple(happenings)
 
     def _rename(self, moved: Happening) -> None:
-        """Return a thing that appeared the id of what vanished."""
+        """Give an object that appeared the id of one that disappeared."""
         for number, thing in list(self._standing.things.items()):
             if thing.place_m == moved.to_m and number != moved.object:
                 self._standing.things.pop(moved.object, None)
@@ -247,7 +247,7 @@ class SceneModel:
         )
 
     def _label_carried(self, things: Labels, readings: Readings, reach: Metres, people: PeopleSeen) -> None:
-        """Find what vanished last in a person's hands, and label it."""
+        """Label the last disappeared object in a person's hands."""
         config = self.config.things
         missing = self._opened.newest() or self._ledger.missing()
         if missing is None or not people.persons:

@@ -1,4 +1,4 @@
-"""Who is in a depth image: what is warm; where no thermal camera sees, what has a human's shape and moved."""
+"""Detection of people in a depth image: by temperature, or by shape and motion outside the thermal image."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from peopleboy.tracker.scene_model.scene_config import PeopleMaskConfig
 
 _CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 _AROUND = np.ones((3, 3), np.uint8)
-_SAME_M = 0.45  # between pieces of one body that something hides in part
-_LOWEST_HUMAN_M = 0.9  # height of the top of what is warm before the background is known
+_SAME_M = 0.45  # between parts of one body separated by an occluder
+_LOWEST_HUMAN_M = 0.9  # top of a warm component before the background is known
 _HIGHEST_FOOT_M = 1.6
 _WIDEST_M = 1.1
 _HEAD_M = 0.35
@@ -31,12 +31,12 @@ _FEWEST_PX = 10
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BodyPiece:
-    """A connected piece of the image that may be of a person.
+    """A connected component of the image that may belong to a person.
 
     Attributes:
         pixels: (N,) flat indices.
-        points_m: (N, 3) in the robot's frame.
-        is_warm: whether the thermal image says that it is a person.
+        points_m: (N, 3) in the robot frame.
+        is_warm: whether it is a person by the thermal image.
     """
 
     pixels: Pixels
@@ -55,20 +55,20 @@ class BodyPiece:
 
     @property
     def width_m(self) -> float:
-        """Its extent across, without the outermost pixels."""
+        """Its width, without the outermost pixels."""
         low, high = np.quantile(self.points_m[:, 1], [0.03, 0.97])
         return float(high - low)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Follower:
-    """A person, or something of a person's shape, that is followed from frame to frame.
+    """A tracked person, or an object of a person's shape.
 
     Attributes:
-        id: 0 until it is believed to be a person.
-        place_m: (2,) on the floor.
-        first_m: (2,) where it was first.
-        born_s, seen_s: when it was seen first and last.
+        id: 0 until it is confirmed as a person.
+        place_m: (2,) position on the floor.
+        first_m: (2,) first position.
+        born_s, seen_s: times of the first and the last observation.
     """
 
     id: int
@@ -80,12 +80,12 @@ class Follower:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PeopleSeen:
-    """Who is in a frame.
+    """People in a frame.
 
     Attributes:
-        labels: (H, W) ids; 0 for nobody.
-        ignored: (H, W) where nothing is to be learned of the scene: people, and what may be one.
-        persons: who is seen.
+        labels: (H, W) ids; 0 for none.
+        ignored: (H, W) where nothing is learned of the scene: people, and candidates.
+        persons: visible people.
     """
 
     labels: Labels
@@ -94,7 +94,7 @@ class PeopleSeen:
 
 
 class People:
-    """Finds and follows people.
+    """Detects and tracks people.
 
     Args:
         config: settings.
@@ -106,13 +106,13 @@ class People:
         self._last_id = 0
 
     def forget_places(self) -> None:
-        """Forget where people are, as the robot has moved."""
+        """Forget all positions, after the robot has moved."""
         self._known = ()
 
     def update(
         self, frame: Frame, geometry: Geometry, readings: Readings, layers: Layers, reach_m: Metres
     ) -> PeopleSeen:
-        """Find the people of a frame, before it is learned from."""
+        """Detect the people of a frame, before the scene is learned from it."""
         smooth = readings.smooth_m
         background = layers.background_m
         is_known = layers.is_known
@@ -128,7 +128,7 @@ class People:
     def _warm_pieces(
         self, is_off: Bools, is_known: Bools, warmth: NDArray[np.int8], geometry: Geometry, smooth: Metres
     ) -> Iterable[BodyPiece]:
-        """Find what is warm; before the background is known, only if it has a human's size."""
+        """Return warm components; before the background is known, only those of human size."""
         seeds = is_off & (warmth == WARM)
         if not seeds.any():
             return
@@ -142,7 +142,7 @@ class People:
     def _shapes(
         self, is_unseen: Bools, layers: Layers, geometry: Geometry, smooth: Metres, reach_m: Metres
     ) -> Iterable[BodyPiece]:
-        """Find what may be a person by its shape; known things are none."""
+        """Return components with the shape of a person, except known objects."""
         is_thing = np.abs(smooth - layers.front_m) < reach_m
         background = layers.background_m
         is_off = np.abs(smooth - background) > np.maximum(reach_m, self._config.clear_m)
@@ -173,7 +173,7 @@ class People:
         return BodyPiece(pixels, geometry.points(pixels, smooth), is_warm)
 
     def _human(self, piece: BodyPiece) -> BodyPiece | None:
-        """Give what is below the head of a piece of a human's size: a thing that a person touches is not."""
+        """Return the part below the head of a component of human size, without objects touched by a person."""
         config, across = self._config, piece.points_m[:, :2]
         if piece.top_m < config.top_m or piece.width_m > config.wide_m:
             return None
@@ -181,9 +181,9 @@ class People:
         return _within(piece, np.hypot(*(across - axis).T) < config.wide_m / 2.0)
 
     def _columns(self, piece: BodyPiece, people: Sequence[BodyPiece]) -> Iterable[BodyPiece]:
-        """Return the columns of known people in a piece that has not the size of a human.
+        """Return the columns of known people in a component that does not have human size.
 
-        Of those who are found already only what is below them is theirs.
+        Only the part below people who are already detected is theirs.
         """
         config, across = self._config, piece.points_m[:, :2]
         found = [person.place_m for person in people]
@@ -202,7 +202,7 @@ class People:
                 yield _within(piece, is_own)
 
     def _followed(self, pieces: Sequence[BodyPiece], geometry: Geometry, time_s: float) -> PeopleSeen:
-        """Return every piece to a person."""
+        """Assign every component to a person."""
         config = self._config
         labels, ignored = np.zeros(geometry.shape, np.int32), np.zeros(geometry.shape, np.uint8)
         known = [one for one in self._known if time_s - one.seen_s < config.kept_s]
@@ -258,13 +258,13 @@ def _within(piece: BodyPiece, is_own: Bools) -> BodyPiece:
 
 
 def _is_human(piece: BodyPiece) -> bool:
-    """Return for something warm whether it can be a human: radiators, lamps and windows are none."""
+    """Return whether a warm component can be a human; radiators, lamps and windows cannot."""
     foot = float(np.quantile(piece.points_m[:, 2], 0.02))
     return piece.top_m > _LOWEST_HUMAN_M and foot < _HIGHEST_FOOT_M and piece.width_m < _WIDEST_M
 
 
 def _grown(seeds: Bools, cold: Bools, depth_m: Metres, config: PeopleMaskConfig) -> Bools:
-    """Let what is warm grow over cold pixels that are connected with it."""
+    """Grow warm regions over connected cold pixels."""
     grown = seeds.astype(np.uint8)
     for _ in range(config.grown_px):
         nearest = cv2.dilate(np.where(grown > 0, depth_m, np.float32(0.0)), _CROSS)

@@ -1,4 +1,4 @@
-"""Movable things: pieces of what stands before the background, or stood there until it was seen through."""
+"""Movable objects: components in front of the background, or of a former background."""
 
 from __future__ import annotations
 
@@ -28,33 +28,33 @@ from peopleboy.tracker.track import Box
 Colours = NDArray[np.uint8]
 
 _AROUND = np.ones((3, 3), np.uint8)
-_COMPACT: Final = 0.2  # share of a thing's pixels that are not at its edge; edges of walls are only that
-_FEWEST_PX: Final = 8  # of a part of a thing that is known
-_COVERED: Final = 0.5  # share of a thing's pixels
-_OWN: Final = 0.3  # share of a piece that a thing must have had to keep it
+_COMPACT: Final = 0.2  # share of an object's pixels not at its edge; edges of walls have nothing else
+_FEWEST_PX: Final = 8  # of a part of a known object
+_COVERED: Final = 0.5  # share of an object's pixels
+_OWN: Final = 0.3  # share of a component that an object must have had to keep it
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Thing:
-    """A piece of the image that changed at one time.
+    """A component of the image that changed at one time.
 
     Attributes:
-        id: of the object that it is.
+        id: id of the object.
         box: left, top, width, height [px].
-        pixels: how many it has now.
-        most: the most it had.
-        where: (N,) their flat indices when it was measured.
-        depth_m: middle of their depths then [m].
-        place_m: its middle in the robot's frame [m].
-        size_m2: its area before the camera [m^2].
-        height_m: from its lowest to its highest point [m].
-        top_m: its highest point above the floor [m].
+        pixels: current number.
+        most: greatest number so far.
+        where: (N,) their flat indices at the last measurement.
+        depth_m: median of their depths then [m].
+        place_m: its middle in the robot frame [m].
+        size_m2: area facing the camera [m^2].
+        height_m: from the lowest to the highest point [m].
+        top_m: highest point above the floor [m].
         colour: (3,) mean RGB, or (1,) mean reflectance; None without either.
-        span_s: between which times it changed [s].
-        seen_s: when it was seen last [s].
-        steady_s, steady_px: since when it has not grown, and its pixels then.
-        settled_s, settled_px: when it had stayed as it is for long enough, and its pixels then.
-        is_gone: whether it left.
+        span_s: interval of its change [s].
+        seen_s: time of the last observation [s].
+        steady_s, steady_px: start of the time without growth, and its pixels then.
+        settled_s, settled_px: when it had been unchanged for long enough, and its pixels then.
+        is_gone: whether it disappeared.
     """
 
     id: int
@@ -78,13 +78,13 @@ class Thing:
 
     @property
     def is_settled(self) -> bool:
-        """Whether it stayed as it is for long enough."""
+        """Whether it has been unchanged for long enough."""
         return self.settled_s < math.inf
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ThingMoment:
-    """What both kinds of pieces are found in.
+    """Data in which both kinds of components are detected.
 
     Attributes:
         time_s: of the frame [s].
@@ -98,7 +98,7 @@ class ThingMoment:
 
 
 class ThingPieces:
-    """Things of one kind, followed from frame to frame by the pixels that they share.
+    """Objects of one kind, tracked between frames by common pixels.
 
     Args:
         config: settings.
@@ -114,7 +114,7 @@ class ThingPieces:
     def update(
         self, mask: Bools, depth_m: Metres, span: PixelSpan, moment: ThingMoment, next_id: Iterator[int]
     ) -> tuple[list[Thing], list[Thing]]:
-        """Take in a mask (H, W), depths [m] and times; give the things that settled and those that left."""
+        """Process a mask (H, W), depths [m] and times; return the settled and the disappeared objects."""
         config = self._config
         self.owner[~mask | (span.last_s > self._changed)] = 0
         self._changed = span.last_s.copy()
@@ -155,21 +155,21 @@ class ThingPieces:
         return settled, self._left(set(parts), mask, depth_m, moment)
 
     def rename(self, old: int, new: int) -> None:
-        """Call a thing by the id of the object that it turned out to be."""
+        """Change the id to that of the object that it turned out to be."""
         self.owner[self.owner == old] = new
         self.things[new] = replace(self.things.pop(old), id=new)
 
     def unseen(self, time_s: float) -> set[int]:
-        """Return the ids of things that a person or something hides since a while before a time [s]."""
+        """Return the ids of objects that have been occluded since a while before a time [s]."""
         return {k for k, one in self.things.items() if time_s - one.seen_s > self._config.unseen_s}
 
     def newest(self) -> Thing | None:
-        """Return the newest thing that has not settled; None for none."""
+        """Return the newest object that has not settled, or None."""
         open_ones = [one for one in self.things.values() if not one.is_settled]
         return max(open_ones, key=lambda one: one.id, default=None)
 
     def _owner_of(self, pixels: Pixels, span: PixelSpan) -> int | None:
-        """Find the thing that a piece was part of until now; what came after it settled is none of it."""
+        """Return the object that a component was part of, before it settled."""
         owner = self.owner.ravel()[pixels]
         owners = np.bincount(owner)
         if len(owners) < 2:
@@ -183,7 +183,7 @@ class ThingPieces:
         return best if own >= _OWN * min(len(pixels), most) else None
 
     def _shown_again(self, pixels: Pixels, depth_m: Metres) -> int | None:
-        """Find the thing that something else stood before until now."""
+        """Return the object that was occluded by something else until now."""
         depth = float(np.median(depth_m.ravel()[pixels]))
         for number, thing in self.things.items():
             if thing.is_gone or not thing.is_settled or abs(thing.depth_m - depth) > self._config.gap_m:
@@ -200,7 +200,7 @@ class ThingPieces:
         moment: ThingMoment,
         parts: Mapping[int, Sequence[Pixels]],
     ) -> int | None:
-        """Find the thing beside which a piece appeared at the same time: its leg, or its other half."""
+        """Return the object next to which a component appeared at the same time, as another part of it."""
         points = moment.geometry.points(pixels, depth_m)
         first, last = (float(np.median(times.ravel()[pixels])) for times in (span.first_s, span.last_s))
         for number in {*self.things, *parts}:
@@ -272,7 +272,7 @@ class ThingPieces:
         )
 
     def _left(self, present: set[int], mask: Bools, depth_m: Metres, moment: ThingMoment) -> list[Thing]:
-        """Find the things of which too little is left; forget those that never settled."""
+        """Return the objects that have disappeared; forget those that never settled."""
         left = []
         for number, thing in list(self.things.items()):
             is_less = number not in present or thing.pixels < self._config.left * thing.most
@@ -280,7 +280,7 @@ class ThingPieces:
                 continue
             before = depth_m.ravel()[thing.where] < thing.depth_m + self._config.gap_m
             if thing.is_settled and (mask.ravel()[thing.where] & before).mean() > _COVERED:
-                continue  # something else stands before it
+                continue  # occluded by something else
             if not thing.is_settled:
                 del self.things[number]
                 continue
@@ -291,7 +291,7 @@ class ThingPieces:
 
 
 def standing(layers: Layers, config: ThingsConfig) -> tuple[Bools, Metres, PixelSpan]:
-    """Find what stands before the background: where, at which depth [m], and since when."""
+    """Return the objects in front of the background: mask, depth [m], and time of change."""
     front, since = layers.front_m, layers.front_since_s
     mask = layers.is_covered & (layers.background_m - front > config.off_m)
     return (
@@ -302,7 +302,7 @@ def standing(layers: Layers, config: ThingsConfig) -> tuple[Bools, Metres, Pixel
 
 
 def opened(layers: Layers, config: ThingsConfig) -> tuple[Bools, Metres, PixelSpan]:
-    """Find what stood where something farther is seen since: where, at which depth [m], and until when."""
+    """Return the former background in front of a farther one: mask, depth [m], and time of change."""
     past, gone = layers.past_m, layers.past_gone_s
     mask = (past > 0.0) & (layers.background_m - past > config.off_m)
     first = np.minimum(layers.past_seen_s, gone)
@@ -312,7 +312,7 @@ def opened(layers: Layers, config: ThingsConfig) -> tuple[Bools, Metres, PixelSp
 def pieces_like(
     thing: Thing, mask: Bools, depth_m: Metres, geometry: Geometry, config: ThingsConfig
 ) -> Iterator[tuple[tuple[float, float], Pixels]]:
-    """Find the compact pieces of a mask (H, W) that may be a thing: their places on the floor, and pixels."""
+    """Return the compact components of a mask (H, W): their positions on the floor, and pixels."""
     labels, count = pieces_of(mask, depth_m, config.gap_m)
     cores = np.bincount(labels[cv2.erode(mask.astype(np.uint8), _AROUND) > 0], minlength=count + 1)
     for label, pixels in pixels_by_label(labels, count):

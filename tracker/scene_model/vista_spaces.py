@@ -1,4 +1,4 @@
-"""Places seen from several standing points, joined to one map: by odometry, and by how their surfaces lie."""
+"""Registration of places seen from several standing positions: by odometry, and by their surfaces."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.scene_model.geometry import Geometry
 from peopleboy.tracker.scene_model.scene import Metres
 
-_CELL_M: Final = 0.05  # a map has one point in each
+_CELL_M: Final = 0.05  # one point of the map per cell
 _STEPS: Final = 30
-_REACH_M: Final = 0.4  # of correspondences at first; it shrinks
+_REACH_M: Final = 0.4  # of initial correspondences; it shrinks
 _CLOSEST_M: Final = 0.08
 _FEWEST: Final = 100
-_EDGE: Final = 0.06  # share of depth by which neighbours on one surface differ at most
+_EDGE: Final = 0.06  # greatest share of depth by which neighbours on one surface differ
 _FLOOR_M: Final = 0.08  # the floor does not constrain the position on it
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Surface:
-    """Points that stand, with the directions that their surfaces face.
+    """Points of static surfaces, with normals.
 
     Attributes:
         points_m: (N, 3).
@@ -38,7 +38,7 @@ class Surface:
 
     @classmethod
     def of(cls, depth_m: Metres, geometry: Geometry) -> Surface:
-        """Find the surface of a background (H, W) [m], in the robot's frame; edges are left out."""
+        """Return the surface of a background (H, W) [m], in the robot frame, without edges."""
         origin = geometry.calibration.robot_from_camera[:3, 3]
         points = origin + geometry.rays.astype(np.float64) * depth_m[:, :, None]
         middle, z = points[1:-1, 1:-1], depth_m[1:-1, 1:-1]
@@ -52,29 +52,28 @@ class Surface:
         return cls(middle[kept], normals[kept] / length[kept][:, None]).thinned()
 
     def thinned(self) -> Surface:
-        """Keep one point of each cell."""
+        """Return it with one point per cell."""
         cells = np.floor(self.points_m / _CELL_M).astype(np.int64)
         _, first = np.unique(cells, axis=0, return_index=True)
         return Surface(self.points_m[first], self.normals[first])
 
     def seen_from(self, pose: Pose2) -> Surface:
-        """Map it from the robot's frame."""
+        """Transform it from the robot frame."""
         turn = Pose2(heading=pose.heading)
         return Surface(pose.transform_points(self.points_m), turn.transform_points(self.normals))
 
     def joined(self, other: Surface) -> Surface:
-        """Take two together."""
+        """Return the union of two."""
         return Surface(
             np.concatenate([self.points_m, other.points_m]), np.concatenate([self.normals, other.normals])
         ).thinned()
 
 
 def registered(surface: Surface, known: Surface, guess: Pose2) -> Pose2:
-    """Correct the pose from which a surface was seen until it lies on what is known.
+    """Correct the pose of a surface by registration with the known surface.
 
-    Points are drawn to the planes of their nearest neighbours, on the floor plane only: iterative closest
-    points with three unknowns. Where too little is known, or nothing constrains the position along a wall,
-    the guess stays as it is in that direction.
+    Iterative closest points, point to plane, with three unknowns on the floor. Where too little is known, or
+    nothing constrains the position along a wall, the initial pose is kept in that direction.
     """
     is_upright = known.points_m[:, 2] > _FLOOR_M
     if is_upright.sum() < _FEWEST:
@@ -100,11 +99,11 @@ def registered(surface: Surface, known: Surface, guess: Pose2) -> Pose2:
 
 
 def _stepped(pose: Pose2, points: Floats, targets: Floats, normals: Floats) -> tuple[Pose2, float]:
-    """Move by the least squares of distances to planes; unconstrained directions are left out."""
+    """Take a least-squares step of the distances to planes, without unconstrained directions."""
     apart = ((targets - points) * normals).sum(axis=1)
     x, y = points[:, 0] - pose.x, points[:, 1] - pose.y
     rows = np.stack([normals[:, 0], normals[:, 1], x * normals[:, 1] - y * normals[:, 0]], axis=1)
-    weight = 1.0 / np.maximum(np.abs(apart), 0.02)  # outliers count by their distance, not by its square
+    weight = 1.0 / np.maximum(np.abs(apart), 0.02)  # outliers count by their distance, not its square
     matrix = rows.T @ (rows * weight[:, None])
     values, vectors = symmetric_eigen(matrix)
     known = values > 0.02 * values[-1]
@@ -115,7 +114,7 @@ def _stepped(pose: Pose2, points: Floats, targets: Floats, normals: Floats) -> t
 
 
 class StaticMap:
-    """What stands, seen from everywhere until now, in the frame of the first place.
+    """The static surfaces seen so far, in the frame of the first place.
 
     Args:
         joins: whether places are registered, or joined by odometry alone.
@@ -126,7 +125,7 @@ class StaticMap:
         self.surface: Surface | None = None
 
     def add(self, surface: Surface, guess: Pose2) -> Pose2:
-        """Add what was seen from a pose; give the pose as registration corrects it."""
+        """Add a surface seen from a pose, and return the pose corrected by registration."""
         if self.surface is None:
             self.surface = surface.seen_from(guess)
             return guess

@@ -1,4 +1,4 @@
-"""Small clusters of points that are near each other and move alike, on the ground (SA 3.5)."""
+"""Small clusters of nearby points with similar motion, on the floor (SA 3.5)."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from peopleboy.tracker.scene_model.geometry import Geometry, grey_of
 from peopleboy.tracker.scene_model.printed.printed_config import PrintedConfig
 from peopleboy.tracker.scene_model.scene import Metres
 
-# The points of a frame, cleaned, with their velocities: 6-D data (SA 3.3, 3.4).
+# The filtered points of a frame with their velocities: 6-D data (SA 3.3, 3.4).
 
 Grey = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cloud:
-    """A frame's points, organised as its image.
+    """The points of a frame, organised as its image.
 
     Attributes:
         depth_m: (H, W) depth [m]; 0 where a reading was dropped.
-        points_m: (H, W, 3) in the robot's frame.
-        velocity_m: (H, W, 3) way since the frame before [m]; 0 where it is not known.
-        grey: (H, W) what the flow is found in.
+        points_m: (H, W, 3) in the robot frame.
+        velocity_m: (H, W, 3) displacement since the previous frame [m]; 0 where unknown.
+        grey: (H, W) input of the optical flow.
     """
 
     depth_m: Metres
@@ -38,12 +38,12 @@ class Cloud:
 
     @property
     def speed_m(self) -> Metres:
-        """(H, W) way since the frame before [m]."""
+        """(H, W) displacement since the previous frame [m]."""
         return np.asarray(np.sqrt(np.einsum("hwk,hwk->hw", self.velocity_m, self.velocity_m)), np.float32)
 
 
 class CloudMaker:
-    """Makes the cloud of each frame; it remembers the one before.
+    """Computes the point cloud of each frame; the previous frame is stored.
 
     Args:
         config: settings.
@@ -55,10 +55,10 @@ class CloudMaker:
         self._before: Cloud | None = None
 
     def __call__(self, frame: Frame, geometry: Geometry) -> Cloud:
-        """Clean a frame's readings, and find how each point moved.
+        """Filter a frame's readings, and estimate the motion of each point.
 
         Raises:
-            BadInput: neither colours nor amplitude of the same pixels.
+            BadInput: there are neither colours nor amplitude of the same pixels.
         """
         grey, amplitude = grey_of(frame)
         depth = _cleaned(frame.depth(DEPTH), amplitude, self._config)
@@ -73,7 +73,7 @@ class CloudMaker:
 
 
 def _cleaned(depth: NDArray[np.uint16], amplitude: Metres, config: PrintedConfig) -> Metres:
-    """Smooth (H, W) depths [mm], the nearer the more; drop what is dark or mixed (SA 3.3)."""
+    """Smooth (H, W) depths [mm], nearer ones more; drop dark and mixed readings (SA 3.3)."""
     fine, coarse = (cv2.medianBlur(depth, size) for size in (3, 5))
     smooth = np.where(fine < 1000.0 * config.near_m, coarse, fine).astype(np.float32) / np.float32(1000.0)
     smooth[(depth == 0) | (amplitude < config.dark * float(amplitude.mean()))] = 0.0
@@ -101,7 +101,7 @@ def _without_flying(depth, fewest, near_m, near_share):  # type: ignore[no-untyp
 
 @njit(cache=True, nogil=True)
 def _ways(points, depth, before, depth_before, flow):  # type: ignore[no-untyped-def]
-    """Look up the point that each one was in the frame before; the flow leads there."""
+    """Look up each point's predecessor in the previous frame, by optical flow."""
     height, width = depth.shape
     ways = np.zeros((height, width, 3), np.float32)
     for v in range(height):
@@ -116,11 +116,11 @@ def _ways(points, depth, before, depth_before, flow):  # type: ignore[no-untyped
 
 
 def _smoothed(ways: Metres) -> Metres:
-    """Take the median of 5 x 5 of each component (SA 3.4)."""
+    """Apply a 5 x 5 median to each component (SA 3.4)."""
     return np.stack([cv2.medianBlur(np.ascontiguousarray(ways[:, :, k]), 5) for k in range(3)], axis=2)
 
 
-_STRIDE = 1 << 12  # of cells' numbers, more than there are in a row
+_STRIDE = 1 << 12  # between row numbers of cells, more than the cells in a row
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -128,12 +128,12 @@ class Clusters:
     """The clusters of a frame.
 
     Attributes:
-        place_m: (L, 2) centroids on the ground [m].
-        weight: (L,) their points.
-        velocity_m: (L, 2) mean way since the frame before [m].
+        place_m: (L, 2) centroids on the floor [m].
+        weight: (L,) numbers of points.
+        velocity_m: (L, 2) mean displacement since the previous frame [m].
         is_moving: (L,) whether their points move.
         pixels: (N,) flat indices of the points.
-        points_m: (N, 2) where they are on the ground.
+        points_m: (N, 2) their positions on the floor.
     """
 
     place_m: Floats
@@ -145,7 +145,7 @@ class Clusters:
 
 
 def find_clusters(cloud: Cloud, candidates: Bools, config: PrintedConfig) -> Clusters:
-    """Cluster the points of a mask (H, W): those of a cell on the ground that move, and those that do not.
+    """Cluster the points of a mask (H, W): moving and static points of a cell on the floor.
 
     The source clusters hierarchically by complete linkage, with a metric and a level that it does not print,
     into clusters that are small on purpose; cells are as small, and found in time linear in the points.

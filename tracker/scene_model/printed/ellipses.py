@@ -1,4 +1,4 @@
-"""Moving objects as upright ellipses, each followed by a particle filter with mean shift (SA 3.5)."""
+"""Moving objects as upright ellipses, each tracked by a particle filter with mean shift (SA 3.5)."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from peopleboy.tracker.scene_model.printed.printed_config import EllipseConfig, 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class MovingEllipse:
-    """A hypothesis of something that moves, or did.
+    """A hypothesis of a moving object.
 
     Attributes:
         id: from 1 on.
         state: (6,) x, y [m], heading [rad], speed [m per frame], radii [m] (SA eq. 3.6).
-        unseen: frames in a row without a cluster in it.
+        unseen: consecutive frames without a cluster in it.
     """
 
     id: int
@@ -30,7 +30,7 @@ class MovingEllipse:
 
 
 class MovingEllipses:
-    """Detects and follows everything that moves.
+    """Detects and tracks all moving objects.
 
     Args:
         config: settings.
@@ -43,7 +43,7 @@ class MovingEllipses:
         self.known: tuple[MovingEllipse, ...] = ()
 
     def update(self, clusters: Clusters) -> tuple[MovingEllipse, ...]:
-        """Follow what is known, and detect what is new."""
+        """Update known objects, and detect new ones."""
         followed = [self._followed(one, clusters) for one in self.known]
         kept = [one for one in _without_doubles(followed) if one.unseen <= self._config.ellipse.lost]
         self.known = (*kept, *self._detected(clusters, kept))
@@ -62,7 +62,7 @@ class MovingEllipses:
         return replace(one, state=particles[best], unseen=0)
 
     def _detected(self, clusters: Clusters, known: Sequence[MovingEllipse]) -> list[MovingEllipse]:
-        """Slide an ellipse over clusters that move; 20 points that are near and move alike suffice."""
+        """Search moving clusters with an ellipse; 20 nearby points with similar motion suffice."""
         config = self._config
         is_free = clusters.is_moving.copy()
         for one in known:
@@ -89,17 +89,18 @@ class MovingEllipses:
 
 
 def propagated(state: Floats, config: EllipseConfig, rng: np.random.Generator) -> Floats:
-    """Draw particles (N, 6): a share moves on as before, the others at random (SA eq. 3.7-3.22).
+    """Predict particles (N, 6): a share keeps moving, the others move at random (SA eq. 3.7-3.22).
 
     Corrected: the source blends both motions in every particle; its noise has the old value as its mean,
-    which would double the state; its arc is not divided by the turn, so that nobody would walk straight on.
+        which would
+    double the state; its arc is not divided by the turn, so that nobody could walk straight on.
     """
     count = config.particles
     ordered = round(config.first_order * count)
     particles = np.tile(state, (count, 1))
     x, y, heading, speed = state[:4].tolist()
     turn = rng.normal(0.0, config.turn_sd, ordered)
-    arc = speed * np.sinc(turn / (2.0 * np.pi))  # 2 v/w sin(w/2), which is v where it does not turn
+    arc = speed * np.sinc(turn / (2.0 * np.pi))  # 2 v/w sin(w/2), which is v without a turn
     particles[:ordered, 0] = x + arc * np.cos(heading + turn / 2.0)
     particles[:ordered, 1] = y + arc * np.sin(heading + turn / 2.0)
     particles[:ordered, 2] = heading + turn + rng.normal(0.0, config.turn_sd, ordered)
@@ -112,13 +113,13 @@ def propagated(state: Floats, config: EllipseConfig, rng: np.random.Generator) -
 
 
 def inside(state: Floats, places_m: Floats, scale: float) -> Bools:
-    """Return which places (N, 2) are in an ellipse, made larger by a factor."""
+    """Return which positions (N, 2) are in an ellipse enlarged by a factor."""
     return np.asarray((((places_m - state[:2]) / (scale * state[4:6])) ** 2).sum(axis=1) < 1.0)
 
 
 @njit(cache=True, nogil=True)
 def _rate(particles, place, weight, velocity, shifts, near, alike, thin, wide):  # type: ignore[no-untyped-def]
-    """Shift particles to where clusters are, and rate them (SA eq. 3.23-3.26).
+    """Shift particles to clusters, and weight them (SA eq. 3.23-3.26).
 
     Corrected: the terms of eq. 3.24 are exchanged, as its sign would be negative; clusters count by their
     points, as the text says.
@@ -155,7 +156,7 @@ def _cosines(velocities: Floats, one: Floats) -> Floats:
 
 
 def _without_doubles(ellipses: Sequence[MovingEllipse]) -> list[MovingEllipse]:
-    """Keep the oldest of those that came to the same place."""
+    """Remove duplicates at one position, keeping the oldest."""
     kept: list[MovingEllipse] = []
     for one in ellipses:
         if all(np.hypot(*(one.state[:2] - other.state[:2])) > 0.2 for other in kept):

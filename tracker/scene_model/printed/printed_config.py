@@ -22,7 +22,7 @@ class EllipseConfig:
 
     Attributes:
         particles: number of them.
-        first_order: share N_m that moves on as before; the others move at random (SA eq. 3.7-3.10).
+        first_order: share N_m that keeps moving; the others move at random (SA eq. 3.7-3.10).
         radius_m, radius_sd_m: of a new ellipse [m], and its noise A_1, A_2.
         least_m, most_m: [m] limits of radii.
         place_sd_m, heading_sd, speed_sd_m: noise A_3 to A_7, A_9 of a frame of 1/15 s.
@@ -30,7 +30,7 @@ class EllipseConfig:
         shifts: steps of mean shift.
         near_m, alike_m: widths H_d [m] and H_v [m per frame] (SA eq. 3.25, 3.26).
         thin_m, wide_m: widths H_r of the smallest and the largest radius (SA eq. 3.24).
-        lost: frames without a cluster after which it is forgotten.
+        lost: frames without a cluster after which it is deleted.
     """
 
     particles: int = 60
@@ -57,19 +57,19 @@ class PrintedConfig:
 
     Attributes:
         background: which of the four.
-        same_m: theta_d [m], within which two readings are the same; 10 cm is printed.
-        moving_m: theta_v [m per frame], from which on a point moves.
-        near_m: [m] up to which the median is of 5 x 5 pixels, beyond it of 3 x 3.
+        same_m: theta_d [m], tolerance between two equal readings; 10 cm is printed.
+        moving_m: theta_v [m per frame], least motion of a moving point.
+        near_m: [m] up to which the median has 5 x 5 pixels, beyond it 3 x 3.
         dark: share of the mean amplitude below which a reading is dropped; 0 keeps all.
-        neighbours, edge_m, edge_share: a reading is kept if so many of 8 neighbours are within this [m], or
+        neighbours, edge_m, edge_share: a reading is kept if this many of 8 neighbours are within this [m], or
             this share of its depth.
         cell_m: [m] side of a cluster on the ground.
         least_points: of a cluster.
-        detect_points, detect_m, detect_cosine: of a new object: points that are near and move alike; 20 is
+        detect_points, detect_m, detect_cosine: of a new object: nearby points with similar motion; 20 is
             printed.
-        ellipse: of the filters.
-        thing_px, thing_m, thing_s: of movable objects: smallest size [px], and how near in depth [m] and time
-            [s] neighbouring points belong together.
+        ellipse: settings of the filters.
+        thing_px, thing_m, thing_s: of movable objects: smallest size [px], and tolerances in depth [m] and
+            time [s] between neighbouring points.
     """
 
     background: PrintedBackground = PrintedBackground.ADAPT

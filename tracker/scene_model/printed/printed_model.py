@@ -23,14 +23,14 @@ from peopleboy.tracker.scene_model.scene import (
     VistaScene,
 )
 
-_FEWEST_POINTS = 3  # of a hull
+_FEWEST_POINTS = 3  # of a convex hull
 
 
 class PrintedSceneModel:
-    """Learns a place frame by frame; what happens to things is not its business.
+    """Learns a place frame by frame, without the changes of objects.
 
     Args:
-        config: which background, and settings.
+        config: kind of background, and settings.
         rng: draws particles.
     """
 
@@ -41,10 +41,10 @@ class PrintedSceneModel:
         self._geometry: Geometry | None = None
 
     def update(self, frame: Frame) -> VistaScene:
-        """Take in the next frame.
+        """Process the next frame.
 
         Raises:
-            BadInput: no depth image with colours or amplitude, or no calibration.
+            BadInput: there is no depth image with colours or amplitude, or no calibration.
         """
         if self._geometry is None:
             self._geometry = Geometry.of(frame)
@@ -71,20 +71,20 @@ class PrintedSceneModel:
         )
 
     def finish(self) -> tuple[Happening, ...]:
-        """Tell nothing: the source only marks what is movable."""
+        """Return no changes: the source only marks movable objects."""
         return ()
 
     def _candidates(self, cloud: Cloud) -> Bools:
-        """Find what is before the background (SA eq. 3.3); without one all of it.
+        """Return the foreground (SA eq. 3.3); everything without a background.
 
-        What is behind it is no object, but a background that was hidden.
+        Surfaces behind the background are not objects, but a previously occluded background.
         """
         if self._config.background is not PrintedBackground.ADAPT:
             return np.asarray(cloud.depth_m > 0.0)
         return np.asarray((self._count == 0.0) | (self._static - cloud.depth_m > self._config.same_m))
 
     def _learned(self, cloud: Cloud, dynamic: Bools) -> Bools:
-        """Learn the background, and find what is nearer (SA fig. 3.7)."""
+        """Update the background, and return nearer readings (SA fig. 3.7)."""
         config = self._config
         is_used = cloud.depth_m > 0.0
         if config.background in (PrintedBackground.TRACK, PrintedBackground.ADAPT):
@@ -97,7 +97,7 @@ class PrintedSceneModel:
         return movable
 
     def _things(self, movable: Bools, cloud: Cloud, time_s: float) -> tuple[Labels, tuple[SceneObject, ...]]:
-        """Separate movable objects in space and time (SA 3.6)."""
+        """Segment movable objects in space and time (SA 3.6)."""
         config, geometry = self._config, self._geometry
         assert geometry is not None  # there was a frame
         self._since = np.where(movable, np.minimum(self._since, np.float32(time_s)), self._since)
@@ -139,9 +139,9 @@ class PrintedSceneModel:
 
 @njit(cache=True, nogil=True)
 def _learn(static, count, depth, used, limit, movable):  # type: ignore[no-untyped-def]
-    """Go through fig. 3.7; without a limit everything goes into the mean.
+    """Follow fig. 3.7; without a limit all readings are averaged.
 
-    Corrected: what is farther is a new beginning, so that the number of accumulated values begins again, too.
+    Corrected: a farther reading is a new start, so that the number of accumulated values is reset, too.
     """
     height, width = depth.shape
     for v in range(height):
