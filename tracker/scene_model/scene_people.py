@@ -173,7 +173,7 @@ class People:
         return BodyPiece(pixels, geometry.points(pixels, smooth), is_warm)
 
     def _human(self, piece: BodyPiece) -> BodyPiece | None:
-        """Return the part below the head of a component of human size, without objects touched by a person."""
+        """Return the part below the head of a component of human size, without touched objects."""
         config, across = self._config, piece.points_m[:, :2]
         if piece.top_m < config.top_m or piece.width_m > config.wide_m:
             return None
