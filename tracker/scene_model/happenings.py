@@ -199,7 +199,7 @@ def _middle(thing: Thing) -> float:
 
 
 def _colours_apart(one: Floats, other: Floats) -> float:
-    """Return the distance of two mean colours (C,), with a lower weight for brightness, as shadows change it."""
+    """Return the distance of two mean colours (C,), less for brightness, which shadows change."""
     apart = one - other
     brightness = float(apart.mean())
     if len(apart) == 1:
