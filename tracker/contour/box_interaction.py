@@ -1,14 +1,13 @@
-"""Where people are: their boxes, what it costs a sample to overlap them, and their places on the floor.
+"""Boxes of people: conversion from contours, penalties for overlaps, and positions on the floor.
 
-Seen from a camera h above the floor, the feet of a person of stature S at distance r are h / r below the
-horizon, as a slope, and the head is (S - h) / r above it. Both tell 1 / r: feet by a row that is hard to see,
-the head by a stature that is not known. All errors grow with the apparent height S / r, so that the best mix
-of the two is the same at every distance (weighted least squares), and the error of the distance is a share of
-it.
+For a camera at height h above the floor, the feet of a person of stature S at distance r are at slope h / r
+below the horizon, and the head is at slope (S - h) / r above it. Both give 1 / r: the feet by a row that is
+hard to measure, the head by a stature that is unknown. All errors are proportional to the apparent height S /
+r, so that the optimal weights of the two are the same at every distance (weighted least squares), and the
+error of the distance is a share of it.
 
-In the image of a camera that looks down or up, who stands upright leans, the more so the farther aside. The
-middle column of a box is that of the torso; head and feet lie where a plumb line through the torso meets the
-box's ends.
+In the image of a tilted camera upright people lean, more so farther from the middle. The middle column of a
+box is that of the torso; head and feet lie where a plumb line through the torso meets the box's ends.
 """
 
 from __future__ import annotations
@@ -32,25 +31,25 @@ from peopleboy.tracker.track import Box, FloorPlace, Status
 Regions = Floats
 """(M, 4) left, top, width, height [px] of people."""
 
-Ray = Sequence[float]  # x, y, z of a direction in the robot's frame
+Ray = Sequence[float]  # x, y, z of a direction in the robot frame
 
 PERSON_M: Final = 1.72  # height of people
 
 # The values below were chosen on seeds 10 to 12 of the suite `occlusion`.
 STATURE_SD_M: Final = 0.09
-FOOT_BELOW: Final = 0.02  # how far a box ends below the feet, in box heights
-FOOT_SD: Final = 0.057  # error of the row of the feet, in box heights
-HEAD_SD: Final = 0.02  # error of the row of the head
-CORRELATION: Final = 0.5  # of the two: a box that is too high at one end is at the other
+FOOT_BELOW: Final = 0.02  # distance of the box's lower end below the feet, in box heights
+FOOT_SD: Final = 0.057  # standard deviation of the row of the feet, in box heights
+HEAD_SD: Final = 0.02  # standard deviation of the row of the head, in box heights
+CORRELATION: Final = 0.5  # of the two errors
 FARTHEST_M: Final = 30.0
 
 # Chosen on a scene each with cameras that look down by 8 and 18 degrees.
-TORSO_ROW: Final = 0.38  # of the way from head to feet: its column is that of the box
-LEAN_SD: Final = 0.1  # error of that, which shifts those who lean, in box heights
+TORSO_ROW: Final = 0.38  # share of the height, from the top, whose column is that of the box
+LEAN_SD: Final = 0.1  # its standard deviation, which shifts leaning people, in box heights
 
-PLUMB_M: Final = 0.05  # of a plumb line, at a depth of 1 m
+PLUMB_M: Final = 0.05  # length of a plumb line, at a depth of 1 m
 
-WIDTH_M: Final = 0.5  # of who has no box
+WIDTH_M: Final = 0.5  # of people without a box
 WIDEST_RAD: Final = math.radians(75.0)
 NEAREST_M: Final = 0.3
 
@@ -77,24 +76,24 @@ def box_of(state: NDArray[np.floating], config: BoxConfig) -> Box:
 
 
 def regions_of(states: Sequence[NDArray[np.floating]], config: TrackerConfig) -> Regions:
-    """Return the rectangles (M, 4) [px] that people with these (9,) states take."""
+    """Return the rectangles (M, 4) [px] of people with these (9,) states."""
     state = np.asarray(states, dtype=np.float32).reshape(-1, 9)
     return _regions(state, *_proportions(config.box))
 
 
 def overlap_shares(state: Floats, regions: Regions, config: TrackerConfig) -> Floats:
-    """Measure g_ij (N, M): the share of the rectangle of sample i that lies in region j.
+    """Return g_ij (N, M): the share of the rectangle of sample i that lies in region j.
 
-    Source: thesis, section 5.2, "the amount of overlap between particle i and region j", which is read as a
-    share of the sample's own area.
+    Source: thesis, section 5.2, "the amount of overlap between particle i and region j", read as a share of
+    the sample's own area.
     """
     return shared_parts(_regions(state, *_proportions(config.box)), regions)
 
 
 def detector_factor(state: Floats, regions: Regions, config: TrackerConfig) -> Floats:
-    """Return the factor (N,) on a detector's samples: psi_D, once, for those that overlap anybody.
+    """Return the factor (N,) on a detector's samples: psi_D, once, for samples that overlap anybody.
 
-    The measure is the intersection of sample and region as a share of the smaller of the two.
+    The overlap is the intersection of sample and region as a share of the smaller of the two.
 
     Source: thesis, equation 5.1.
     """
@@ -104,13 +103,13 @@ def detector_factor(state: Floats, regions: Regions, config: TrackerConfig) -> F
 
 
 def person_factor(shares: Floats, strength: NDArray[np.floating]) -> Floats:
-    """Return the factor (N,) on a person's samples: exp(-rho_j g_ij) for the region that costs it most.
+    """Return the factor (N,) on a person's samples: exp(-rho_j g_ij) for the region with the largest penalty.
 
     A sample that overlaps several regions is penalised only once.
 
     Args:
-        shares: (N, M) overlaps with the other people.
-        strength: (M,) rho towards each of them.
+        shares: (N, M) overlaps with other people.
+        strength: (M,) rho for each of them.
 
     Source: thesis, equations 5.3 and 7.5.
     """
@@ -123,12 +122,12 @@ def person_factor(shares: Floats, strength: NDArray[np.floating]) -> Floats:
 def places_on_floor(
     boxes: Sequence[Box], statuses: Sequence[Status], calibration: Calibration
 ) -> list[FloorPlace]:
-    """Return where K people stand, from head and feet of their boxes [px].
+    """Return the positions of K people on the floor, from head and feet of their boxes [px].
 
     Args:
         boxes: left, top, width, height of each.
-        statuses: how well each is seen, which decides how sure its place is.
-        calibration: of the camera that the boxes are seen by.
+        statuses: visibility of each, which determines the uncertainty.
+        calibration: of the boxes' camera.
     """
     ends, leans = _ends(np.array(boxes).reshape(-1, 4), calibration)
     rays = calibration.rays(ends).tolist()
@@ -140,9 +139,9 @@ def places_on_floor(
 
 
 def standing_box(place: FloorPlace, calibration: Calibration) -> Box:
-    """Return left, top, width, height [px] of a person upright at a place, which may lie outside the image.
+    """Return left, top, width, height [px] of an upright person at a position; it may lie outside the image.
 
-    Who is far to the side, or behind the camera, is put at `WIDEST_RAD` of that side.
+    People far to the side, or behind the camera, are placed at `WIDEST_RAD` on that side.
     """
     camera_x, camera_y, _ = calibration.position_m
     forward, aside = place.position_m[0] - camera_x, place.position_m[1] - camera_y
@@ -155,7 +154,7 @@ def standing_box(place: FloorPlace, calibration: Calibration) -> Box:
 
 
 def _ends(boxes: NDArray[np.float64], calibration: Calibration) -> tuple[NDArray[np.float64], list[float]]:
-    """Give the pixels (2 K, 2) of head and feet of people with these boxes (K, 4), and how each leans (K)."""
+    """Return the pixels (2 K, 2) of head and feet of people with boxes (K, 4), and their leaning (K)."""
     left, top, width, height = boxes.T
     middle, foot = left + width / 2.0, top + (1.0 - FOOT_BELOW) * height
     torso = top + TORSO_ROW * (foot - top)
@@ -166,7 +165,7 @@ def _ends(boxes: NDArray[np.float64], calibration: Calibration) -> tuple[NDArray
 
 
 def _lean(pixels: NDArray[np.float64], calibration: Calibration) -> NDArray[np.float64]:
-    """Tell by how many columns a plumb line through pixels (K, 2) moves on from one row to the next, (K,)."""
+    """Return the slope (K,), in columns per row, of a plumb line through pixels (K, 2)."""
     here = calibration.rays(pixels) + calibration.position_m
     plumb = np.array([0.0, 0.0, PLUMB_M])
     below, above = (calibration.project(here + way) for way in (-plumb, plumb))
@@ -178,7 +177,7 @@ def _lean(pixels: NDArray[np.float64], calibration: Calibration) -> NDArray[np.f
 def _place(
     head: Ray, foot: Ray, along_share: float, across_share: float, camera_m: tuple[float, float, float]
 ) -> FloorPlace:
-    """Return where a person stands whose head and feet are seen along two rays."""
+    """Return the position of a person whose head and feet are on two rays."""
     x, y, up = camera_m
     ahead, aside, _ = foot
     away = math.hypot(ahead, aside)
@@ -201,7 +200,7 @@ def _place(
 
 @lru_cache(maxsize=16)
 def _weights(camera_height_m: float) -> tuple[float, float]:
-    """Give the factors of the slopes down to the feet and up to the head whose sum is 1 / distance [1/m]."""
+    """Return the weights of the slopes to the feet and to the head that sum to 1 / distance [1/m]."""
     covariance = np.array(
         [
             [FOOT_SD**2, CORRELATION * FOOT_SD * HEAD_SD],
@@ -215,7 +214,7 @@ def _weights(camera_height_m: float) -> tuple[float, float]:
 
 
 def _proportions(box: BoxConfig) -> tuple[float, float, float]:
-    """Return width per w, height per h, and how many h the top lies above the centre."""
+    """Return width per w, height per h, and the height of the top above the centre in h."""
     return box.width_per_w, box.height_per_h, CROWN + box.hair_per_h
 
 
@@ -233,7 +232,7 @@ def _regions(state: Floats, width_per_w: float, height_per_h: float, top_per_h: 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _kept_off(samples: Regions, regions: Regions, overlap: float, penalty: float) -> Floats:
-    """Give 1, or the penalty, (N,) to samples by whether they share more than that with any region (M, 4)."""
+    """Return 1, or the penalty, (N,) for samples whose overlap with any region (M, 4) exceeds a share."""
     factor, most = np.ones(len(samples), dtype=np.float32), np.float32(overlap)
     for i in range(len(samples)):
         left, top, width, height = samples[i]
@@ -262,7 +261,7 @@ def _dearest_factor(shares: Floats, strength: Floats) -> Floats:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def size_factor(state: Floats, height: float, spread: float) -> Floats:
-    """Penalise samples (N, 9) by how far, as a logarithm, their h [px] is from a known one, (N,)."""
+    """Penalise samples (N, 9) by the log ratio of their h [px] to a known one, (N,)."""
     factor, known, sharp = np.empty(len(state), np.float32), np.float32(height), np.float32(-0.5 / spread**2)
     for i in range(len(state)):
         growth = logarithm(max(state[i, H], np.float32(1)) / known)
@@ -272,7 +271,7 @@ def size_factor(state: Floats, height: float, spread: float) -> Floats:
 
 @njit(cache=True, nogil=True)
 def shared_parts(samples: Regions, regions: Regions) -> Floats:
-    """Measure (N, M) which share of the areas of rectangles (N, 4) lies in regions (M, 4)."""
+    """Return (N, M) the shares of the areas of rectangles (N, 4) inside regions (M, 4)."""
     shares = np.zeros((len(samples), len(regions)), dtype=np.float32)
     for i in range(len(samples)):
         left, top, width, height = samples[i]

@@ -1,4 +1,4 @@
-"""Every choice in describing a person's colours."""
+"""Settings of the description of a person's colours."""
 
 from __future__ import annotations
 
@@ -7,29 +7,29 @@ from dataclasses import dataclass
 
 from peopleboy.bad_input import BadInput
 
-# Refusals of settings that cannot be.
+# Checks of settings.
 
 
 def check_positive(config: object, *names: str) -> None:
-    """Refuse a record in which one of the named numbers is not positive."""
+    """Refuse a record in which one of the named values is not positive."""
     for name in names:
         refuse_unless(getattr(config, name) > 0, config, name, "positive")
 
 
 def check_share(config: object, *names: str) -> None:
-    """Refuse a record in which one of the named numbers is not in 0..1."""
+    """Refuse a record in which one of the named values is not in 0..1."""
     for name in names:
         refuse_unless(0 <= getattr(config, name) <= 1, config, name, "in 0..1")
 
 
 def check_not_negative(config: object, *names: str) -> None:
-    """Refuse a record in which one of the named numbers is negative."""
+    """Refuse a record in which one of the named values is negative."""
     for name in names:
         refuse_unless(getattr(config, name) >= 0, config, name, "0 or more")
 
 
 def refuse_unless(is_right: bool, config: object, name: str, rule: str) -> None:
-    """Refuse a record in which the named value breaks a rule."""
+    """Refuse a record in which the named value violates a rule."""
     if not is_right:
         raise BadInput(f"{type(config).__name__}: {name} must be {rule}, got {getattr(config, name)}")
 
@@ -37,48 +37,48 @@ def refuse_unless(is_right: bool, config: object, name: str, rule: str) -> None:
 Affine = tuple[float, float, float, float, float, float]
 
 THESIS_AFFINE: Affine = (-0.15, 1.20, 0.0, -0.13, 0.0, 1.20)
-"""Equation 6.1 as the thesis gives it, for its own pair of cameras."""
+"""Equation 6.1 as given in the thesis, for its own pair of cameras."""
 
 ROBOT_AFFINE: Affine = (-0.0885, 1.20, 0.0, -0.1, 0.0, 1.20)
 """Equation 6.1 for the simulated robot: a colour camera 6 cm to the left, with a view narrower by 1.2.
 
-The shift that is best on average over people 3 to 10 m away; nearer and farther ones are off by up to 1 %
-of the image's width.
+The shift is best on average over people 3 to 10 m away; nearer and farther ones are off by up to 1 % of the
+image's width.
 """
 
 FAR_AFFINE: Affine = (-0.1, 1.20, 0.0, -0.1, 0.0, 1.20)
-"""The same for things far away; with a `parallax` it holds for people at every distance."""
+"""The same for distant objects; with a `parallax` it holds for people at every distance."""
 
 SAME_VIEW: Affine = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-"""For a picture that shows what the thermal image shows."""
+"""For a picture aligned with the thermal image."""
 
 ROBOT_PARALLAX = 0.147
 """Shift of a person per semi-height h: 1.2 times 6 cm, over the 49 cm that h is of a person of 1.72 m."""
 
 REPRESENTATIONS = {"moments1": 1, "moments2": 2, "moments3": 3, "histogram": 0}
-"""The ways to describe colours, and how many moments each takes."""
+"""Colour representations, and the number of moments of each."""
 
 SPACES = {"rgb": 3, "grey": 1, "hsv": 3}
-"""The colour spaces, and how many channels each has."""
+"""Colour spaces, and the number of channels of each."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ColourDescriptorConfig:
-    """How a person's colours are read, remembered and compared.
+    """How a person's colours are described, stored and compared.
 
     Attributes:
-        affine: p1..p6 that map a place (u, v) in the thermal image to (x, y) = (p1 + p2 u + p3 v,
+        affine: p1..p6 that map a position (u, v) in the thermal image to (x, y) = (p1 + p2 u + p3 v,
             p4 + p5 u + p6 v) in the colour image, all as shares of the image's width and height; the thesis
-            does not name the unit, but its numbers make sense as shares only.
-        parallax: further shift of x by this times a person's semi-height h, as a share of the thermal
-            image's width: who is near, and therefore tall, is displaced more. 0 in the thesis.
+            does not name the unit, but its numbers only make sense as shares.
+        parallax: further shift of x by this times a person's semi-height h, as a share of the thermal image's
+            width: near, and therefore tall, people are shifted more. 0 in the thesis.
         representation: "moments1" to "moments3" or "histogram", of every part and channel.
         space: "rgb", "grey" or "hsv".
-        frames: n_k, how many of the last descriptions make the model.
+        frames: n_k, number of descriptions in the model.
         sharpness: lambda of the likelihood.
 
     Raises:
-        BadInput: a name that does not exist, or a number out of its range.
+        BadInput: an unknown name, or a value out of range.
 
     Source: thesis, sections 6.1 and 6.3.
     """

@@ -1,4 +1,4 @@
-"""People in view: a sequential detector finds them one by one, and each keeps a filter of its own."""
+"""The contour tracker: a sequential detector finds people, and each has its own particle filter."""
 
 from __future__ import annotations
 
@@ -57,11 +57,11 @@ from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, check_frame
 from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 
 FIRST_STEP_S = 1 / 15
-COVERED_RESPONSE = 0.4  # what a point of the contour on people in front counts: neither for nor against
+COVERED_RESPONSE = 0.4  # response of contour points on people in front: neutral
 
 
 class ContourTracker:
-    """Finds people one after the other, keeps each while it is seen, and remembers the hidden.
+    """Finds people one after the other, tracks each while visible, and remembers occluded ones.
 
     Source: thesis, chapters 5 and 7.
     """
@@ -70,7 +70,7 @@ class ContourTracker:
         self._given = config
         self._config = config  # the same with limits for the camera
         self._mount: tuple[Calibration | None, int, Mount] | None = None
-        self._belief: MountBelief | None = None  # of a camera that nobody calibrated
+        self._belief: MountBelief | None = None  # of an uncalibrated camera
         self._rng = rng
         self._order = order or make_order(config.depth)
         self._policy = make_policy(config)
@@ -87,13 +87,13 @@ class ContourTracker:
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """The thermal camera, and the colour one if colours are looked at; without it, heat must do."""
+        """The thermal camera, and the colour camera if colours are used; it is optional."""
         return (THERMAL,) if self._config.colour is None else (THERMAL, COLOUR)
 
     def introduce(self, box: Box) -> None:
         """Report that a person is at this box [px] in the next frame, to initialise it.
 
-        The person's filter starts there, and the detector keeps off it.
+        The person's filter starts there, and the detector avoids it.
         """
         self._introduced = box
 
@@ -111,10 +111,10 @@ class ContourTracker:
         )
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Take in the next frame and tell who is seen.
+        """Process the next frame and return the reported tracks.
 
         Raises:
-            BadInput: time that does not go forward.
+            BadInput: the time does not increase.
         """
         check_frame(frame)
         dt_s = self._time_step(frame.time_s)
@@ -153,7 +153,7 @@ class ContourTracker:
         return self._model.amid(self._clutter)
 
     def _mount_for(self, calibration: Calibration | None, rows: int) -> Mount:
-        """Return how the camera sits, and carry the limits over to it, once for each camera."""
+        """Return the camera's mount, and adapt the limits to it, once for each camera."""
         if self._mount is None or self._mount[0] is not calibration or self._mount[1] != rows:
             mount = mount_of(calibration, rows)
             self._mount = calibration, rows, mount
@@ -166,7 +166,7 @@ class ContourTracker:
         return self._mount[2]
 
     def _learn_mount(self, rows: int) -> None:
-        """Learn from those who are seen well how a camera sits that nobody calibrated."""
+        """Update the estimated mount of an uncalibrated camera from clearly visible people."""
         if self._belief is None:
             return
         telling = [person for person in self._persons if reports_mount(person, rows)]
@@ -176,7 +176,7 @@ class ContourTracker:
             self._config = believed_from(self._given, self._belief)
 
     def _remembered(self, view: FrameView) -> tuple[TrackedPerson, ...]:
-        """Keep the memory of people who are no longer searched, for a limited time."""
+        """Keep people who are no longer searched for in memory for a limited time."""
         later = (
             replace(
                 person,
@@ -189,7 +189,7 @@ class ContourTracker:
         return tuple(person for person in later if person.hidden_s <= FORGET_S)
 
     def _part(self, persons: tuple[TrackedPerson, ...]) -> None:
-        """Divide people into those who are kept, those who are only remembered, and those who are gone."""
+        """Divide people into those who are tracked, only remembered, and deleted."""
         kept, memories = [], []
         for person in persons:
             if self._is_kept(person):
@@ -202,14 +202,14 @@ class ContourTracker:
     def _is_kept(self, person: TrackedPerson) -> bool:
         if person.is_hidden:
             return self._policy.searches(person)
-        # Without confidence no sample is within the limits, and the estimate may be no ellipse at all.
+        # Without confidence no sample is within the limits, and the estimate may not be an ellipse at all.
         return person.missing < self._config.life.death_frames and person.belief.confidence > 0
 
     def _search(self, view: FrameView, time_s: float) -> tuple[TrackedPerson, ...]:
-        """Carry the detector on; a person is born when it has settled on one for long enough.
+        """Update the detector; a track is initiated when it has settled on a person for long enough.
 
         Returns:
-            Who may be born next, tentative; nobody if none is in view.
+            The tentative candidate; empty if there is none.
         """
         config = self._config
         if sum(not person.is_hidden for person in self._persons) >= config.interaction.max_persons:
@@ -230,7 +230,7 @@ class ContourTracker:
         return ()
 
     def _identify(self, view: FrameView, time_s: float) -> None:
-        """Identify people of whom too little was visible when they were found."""
+        """Identify people who were hardly visible when they were found."""
         for person in self._persons:
             if person.is_unidentified and not person.is_hidden:
                 found = self._identified(person, view, time_s)
@@ -238,9 +238,9 @@ class ContourTracker:
                 self._persons = tuple(sorted((*others, found), key=lambda other: other.id))
 
     def _identified(self, found: TrackedPerson, view: FrameView, time_s: float) -> TrackedPerson:
-        """Return a person the identity of the one, lost before it was found, who it is.
+        """Return a person with the identity of the matching person who was lost before.
 
-        Who cannot be compared yet with all of them stays new until then.
+        While comparison with some lost person is impossible, the identity stays undecided.
         """
         hidden = (person for person in self._persons if person.is_hidden)
         before = [one for one in (*self._memories, *hidden) if one.hidden_s >= time_s - found.born_s]
@@ -260,7 +260,7 @@ class ContourTracker:
         )
 
     def _meet(self, box: Box, view: FrameView, time_s: float) -> None:
-        """Start a filter on samples around a person who is pointed out."""
+        """Start a filter on samples around a hinted person."""
         state = draw_around(box, self._config, self._rng)
         belief = weigh(state, view, self._config.person, self._config)
         found = initiate_person(self._born + 1, belief, view, time_s, self._config)
@@ -268,7 +268,7 @@ class ContourTracker:
         self._persons = (*self._persons, found)
 
     def _detected(self, view: FrameView) -> Belief:
-        """Move and weigh the detector's samples, once in each look, kept off those who are tracked."""
+        """Move and weigh the detector's samples in each scan, away from tracked people."""
         config, rng, belief = self._config, self._rng, self._detector
         seen = [person.belief.estimate for person in self._persons if not person.is_hidden]
         regions = regions_of(seen, config)
@@ -284,7 +284,7 @@ class ContourTracker:
         return belief
 
     def _is_shown(self, person: TrackedPerson, view: FrameView) -> bool:
-        """Return whether a hidden person is shown: nobody outside of the image is."""
+        """Return whether an occluded person is output: only inside the image."""
         region = regions_of([person.shown], self._config)[0]
         is_in_image = region[0] <= view.image.shape[1] and region[0] + region[2] >= 0
         return bool(is_in_image) and self._policy.is_shown(person, region, view)
@@ -317,10 +317,10 @@ def _follow(
     policy: OcclusionPolicy,
     rng: np.random.Generator,
 ) -> tuple[TrackedPerson, ...]:
-    """Carry everybody's filter on to this frame.
+    """Update all filters with a frame.
 
-    Source: thesis, algorithm 6; but the order is found on the predictions, before the image is measured, so
-    that those in front can be taken out of the evidence for those behind.
+    Source: thesis, algorithm 6; but the order is determined from the predictions, before the measurement, so
+    that people in front can be excluded from the evidence for those behind.
     """
     figures: Sequence[ExpectedPerson] = expected(persons, view, config)
     if order is not None and len(figures) > 1:
@@ -335,7 +335,7 @@ def _follow(
 
 
 def _shared_filter(config: TrackerConfig, persons: int) -> FilterConfig:
-    """Return everybody N samples, or an equal part of what all share."""
+    """Give everybody N samples, or an equal part of a common number."""
     if config.interaction.total_count == 0 or persons == 0:
         return config.person
     return replace(config.person, count=max(1, config.interaction.total_count // persons))
@@ -350,7 +350,7 @@ def _carried_on(
     policy: OcclusionPolicy,
     rng: np.random.Generator,
 ) -> TrackedPerson:
-    """Predict, weigh and judge one person."""
+    """Predict, weigh and evaluate one person."""
     is_overlapped = bool(surroundings.front) or person.is_hidden
     is_core = samples.resamples_core and not person.is_hidden
     particles = person.belief.core if is_core else person.belief.particles
@@ -370,7 +370,7 @@ def _carried_on(
 
 
 def _height_kept(person: TrackedPerson, state: Floats, spread: float) -> Floats:
-    """Penalise samples (N,) that have not the height that the person had of late when seen whole."""
+    """Penalise samples (N,) whose height differs from the person's height when last fully visible."""
     factor: Floats = size_factor(state, max(float(person.size[1]), 1.0), spread)
     return factor
 
@@ -378,12 +378,12 @@ def _height_kept(person: TrackedPerson, state: Floats, spread: float) -> Floats:
 def _likeness(
     person: TrackedPerson, state: Floats, surroundings: OrderContext, view: FrameView, config: TrackerConfig
 ) -> Floats | None:
-    """Return how likely samples (N,) look like the person (thesis, equation 6.4); None if nobody knows."""
+    """Return the likelihood of samples (N,) by appearance (thesis, equation 6.4); None if unknown."""
     if person.appearance is None or config.colour is None:
         return None
     removes = config.depth.removes_front
     features = view.describe(state, surroundings.hiding if removes else None)
     if features is None:
         return None
-    # Who is not seen at all looks as a person usually does: one spread off in every feature.
+    # An invisible person gets the typical appearance: one standard deviation off in every feature.
     return likelihood(features, person.appearance, config.colour, 1.0 if removes else math.nan)

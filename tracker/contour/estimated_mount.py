@@ -1,8 +1,8 @@
 """Limits of contours for the mount of the camera, known or estimated from the people in its image.
 
-Whoever stands on the floor has the body's centre at row y = a + b h, where h is the body's semi-height, a the
-row of the horizon, and b grows with the camera's height above the floor. Walking people tell both, by
-recursive least squares.
+A person on the floor has the body's centre at row y = a + b h, where h is the body's semi-height, a the row
+of the horizon, and b grows with the camera's height above the floor. Both are estimated from walking people
+by recursive least squares.
 """
 
 from __future__ import annotations
@@ -20,24 +20,24 @@ from peopleboy.tracker.contour.particles import CROWN, FOOT, H, Y
 from peopleboy.tracker.contour.tracked_person import TrackedPerson
 from peopleboy.tracker.track import Status
 
-_HORIZON_SD: Final = 0.2  # [image heights] of the row of the horizon, before anybody was seen
-_SLOPE_SD: Final = 0.8  # [body semi-heights] of b: cameras between knee and well above the head
-_PERSON_SD: Final = 0.4  # [body semi-heights] of a person in one frame; the next frames err in the same way
-_SURE: Final = 0.8  # confidence of who is believed
-_WALKS: Final = 0.5  # [body semi-heights/s] of who walks; what stands may be a thing
+_HORIZON_SD: Final = 0.2  # [image heights] prior of the row of the horizon
+_SLOPE_SD: Final = 0.8  # [body semi-heights] prior of b: cameras between knee and well above the head
+_PERSON_SD: Final = 0.4  # [body semi-heights] of a person in one frame; correlated between frames
+_SURE: Final = 0.8  # confidence of a person who is used
+_WALKS: Final = 0.5  # [body semi-heights/s] of walking people; static ones may be objects
 _MIDDLE: Final = 0.5  # [image heights] row of the horizon for a level camera
-_REACH: Final = 2.0  # standard deviations that the limits are wider by
+_REACH: Final = 2.0  # standard deviations by which the limits are widened
 _TYPICAL: Final = 0.12  # [image heights] semi-height of people in the middle of a room
-_MOST_SAMPLES: Final = 4.0  # times as many, where people may be anywhere
+_MOST_SAMPLES: Final = 4.0  # greatest factor on the number of samples, where people may be anywhere
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MountBelief:
-    """Where the centres of people of each size are.
+    """Estimated line on which the centres of people of each size lie.
 
     Attributes:
-        line: (2,) row of the horizon [image heights], and how many semi-heights below it a centre lies.
-        covariance: (2, 2) of the same.
+        line: (2,) row of the horizon [image heights], and distance of a centre below it in semi-heights.
+        covariance: (2, 2) of the line.
     """
 
     line: NDArray[np.float64]
@@ -45,12 +45,12 @@ class MountBelief:
 
     @classmethod
     def usual(cls, limits: LimitsConfig) -> MountBelief:
-        """Begin with a camera that sits like that for which the limits are given, or otherwise."""
+        """Make the prior, for the standard mount or an unknown one."""
         line = np.array([limits.horizon, sum(limits.y_below_horizon) / 2])
         return cls(line, np.diag([_HORIZON_SD**2, _SLOPE_SD**2]))
 
     def learnt(self, state: NDArray[np.float64], rows: int) -> MountBelief:
-        """Take in a person with a state (9,) in an image of so many rows."""
+        """Update with a person's state (9,) in an image of a height in rows."""
         size = float(state[H]) / rows
         row = np.array([1.0, size])
         along = self.covariance @ row
@@ -59,7 +59,7 @@ class MountBelief:
         return MountBelief(line, self.covariance - np.outer(gain, along))
 
     def limits(self, given: LimitsConfig) -> LimitsConfig:
-        """Carry limits over to where people are believed to be, as wide as that is unsure."""
+        """Transform limits to the estimated line, widened by its uncertainty."""
         horizon, below = self.line.tolist()
         half = (given.y_below_horizon[1] - given.y_below_horizon[0]) / 2
         (first, mixed), (_, last) = (_REACH**2 * self.covariance).tolist()
@@ -71,14 +71,14 @@ class MountBelief:
         )
 
     def width(self, given: LimitsConfig) -> float:
-        """Return how many times as many samples the limits take as those of a camera that is known."""
+        """Return the factor on the number of samples for the widened limits."""
         half = _TYPICAL * (given.y_below_horizon[1] - given.y_below_horizon[0]) / 2
         row = np.array([1.0, _TYPICAL])
         more = _REACH * math.sqrt(row @ self.covariance @ row)
         return min(1 + more / half, _MOST_SAMPLES)
 
     def rows(self, given: LimitsConfig) -> LimitsConfig:
-        """Move the limits of rows, wherever on the floor a person is."""
+        """Widen the limits of rows to all positions on the floor."""
         shift = float(self.line[0]) - _MIDDLE
         more = _REACH * math.sqrt(self.covariance[0, 0])
         lower = max(float(self.line[1]), 0.0) * given.h[1] / 2
@@ -86,12 +86,12 @@ class MountBelief:
 
 
 def is_learnable(config: TrackerConfig) -> bool:
-    """Return whether a tracker looks for people where the floor is."""
+    """Return whether a tracker restricts people to the floor."""
     return all(map(math.isfinite, config.detector.limits.y_below_horizon))
 
 
 def reports_mount(person: TrackedPerson, rows: int) -> bool:
-    """Return whether a person is seen well enough, and is surely one: whole, and walking."""
+    """Return whether a person is clearly visible and confirmed: unoccluded, and walking."""
     state = person.belief.estimate
     top, bottom = state[Y] - CROWN * state[H], state[Y] + FOOT * state[H]
     is_whole = person.status is Status.TRACKED and person.missing == 0 and top > 0 and bottom < rows
@@ -100,7 +100,7 @@ def reports_mount(person: TrackedPerson, rows: int) -> bool:
 
 
 def believed_from(config: TrackerConfig, belief: MountBelief) -> TrackerConfig:
-    """Carry the limits of both filters over to the camera as it is believed to sit; it may cut off heads."""
+    """Transform the limits of both filters to the estimated mount, which may truncate heads."""
     limits = belief.limits(config.detector.limits)
     count = round(belief.width(config.detector.limits) * config.detector.count)
     detector = replace(config.detector, limits=limits, count=count)
@@ -110,7 +110,7 @@ def believed_from(config: TrackerConfig, belief: MountBelief) -> TrackerConfig:
 
 
 def seen_from(config: TrackerConfig, mount: Mount, rows: int) -> TrackerConfig:
-    """Carry the limits of both filters over to a camera that sits elsewhere."""
+    """Transform the limits of both filters to another mount."""
     detector, person = (
         replace(samples, limits=limits_seen_from(samples.limits, mount, rows))
         for samples in (config.detector, config.person)
@@ -122,15 +122,14 @@ def seen_from(config: TrackerConfig, mount: Mount, rows: int) -> TrackerConfig:
 
 
 def limits_seen_from(limits: LimitsConfig, mount: Mount, rows: int) -> LimitsConfig:
-    """Carry limits over to a camera that sits elsewhere, by similar triangles.
+    """Transform limits to another mount, by similar triangles.
 
-    Whoever stands has the feet as far below the horizon as the camera is high, at any distance. A camera
-    higher by a metre therefore sees all of a person of stature S further down by (CROWN + FOOT) / S
-    semi-heights.
+    A standing person's feet are as far below the horizon as the camera is high, at any distance. Raising the
+    camera by a metre therefore shifts a person of stature S down by (CROWN + FOOT) / S semi-heights.
 
     Args:
         limits: for a level camera at the usual height.
-        mount: where the camera sits.
+        mount: of the camera.
         rows: height of its image [px].
     """
     shift = (mount.horizon_px + 0.5) / rows - _MIDDLE

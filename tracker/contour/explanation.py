@@ -1,4 +1,4 @@
-"""A person's contour in numbers."""
+"""Explanations of the contour tracker: contours and particles behind its tracks."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Ellipse:
     Attributes:
         x, y: centre of the body ellipse [px].
         w, h: its semi-axes [px]; the head's semi-height is h/4.4, our reading, and it stands on top of it.
-        d: how far the head's centre lies right of the body's [px].
+        d: offset of the head's centre to the right of the body's [px].
         vx, vy, vw, vh: rates of change of x, y, w and h [px/s].
 
     Source: thesis, section 4.2.
@@ -39,7 +39,7 @@ class Ellipse:
 
 
 def ellipse_of(state: NDArray[np.floating]) -> Ellipse:
-    """Name the entries of one (9,) state."""
+    """Make it from one (9,) state."""
     return Ellipse(
         x=float(state[X]),
         y=float(state[Y]),
@@ -53,21 +53,21 @@ def ellipse_of(state: NDArray[np.floating]) -> Ellipse:
     )
 
 
-# What the contour tracker believes beyond its tracks.
+# Explanation of the contour tracker.
 
 DETECTOR_KEY = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ContourExplanation:
-    """The inner life of the contour tracker at one instant, for those who draw it or ask why.
+    """State of the contour tracker at one instant, for plots and analysis.
 
     Attributes:
-        config: the tracker's settings, by which contours are measured and drawn.
+        config: settings of the tracker, which define contours.
         ellipses: the estimated contour by track id.
         spread_px2: spread of the particles about the estimate, over x and y [px^2], by track id (thesis,
-            equation 4.6).
-        particles: the samples by track id; key 0 is the detector's cloud. Empty where they were not kept.
+            particles: the samples by track id; key 0 is the detector's cloud. Empty where they were not
+                stored.
     """
 
     config: TrackerConfig

@@ -1,4 +1,4 @@
-"""Who a newly found person is: a person new, or one of those who were lost from sight."""
+"""Re-identification of newly found people among those who were lost."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from peopleboy.tracker.contour.particle_filter import FrameView
 from peopleboy.tracker.contour.particles import H, X, Y
 from peopleboy.tracker.contour.tracked_person import TrackedPerson
 
-PLACE_PX = 12.0  # [px] of 240 rows: spread of the place of a person who was just lost
-PLACE_PX_S = 40.0  # [px/s] by which it grows
-FARTHEST = 5.0  # square that place counts at most: people turn back, and come in by another door
-LOOKS2 = 12.0  # squared distance of appearance of the same person, where they are not known
-# Logistic regression over reappearances in the data sets and the library, of the same person and of others.
+PLACE_PX = 12.0  # [px] of 240 rows: standard deviation of the position of a just lost person
+PLACE_PX_S = 40.0  # [px/s] of its growth
+FARTHEST = 5.0  # limit of the squared distance of positions: people turn back, and come in by another door
+LOOKS2 = 12.0  # squared distance of appearance of the same person, where it is unknown
+# Logistic regression over reappearances of the same person and of others, in the data sets and the library.
 PLACE_WEIGHT = 0.56
 APPEARANCE_WEIGHT = 1.76
 WORST = 6.8
-GROWTH = 0.7  # largest change of the logarithm of the height
-COMPARED = 0.5  # share of a known appearance that must be visible to compare it
+GROWTH = 0.7  # greatest change of the logarithm of the height
+COMPARED = 0.5  # least visible share of a known appearance for a comparison
 
 
 def least_mismatch(
@@ -35,9 +35,9 @@ def least_mismatch(
 
 
 def is_comparable(found: TrackedPerson, lost: TrackedPerson) -> bool:
-    """Return whether enough of a newly found person is visible to compare it with a lost one.
+    """Return whether enough of a newly found person is visible for a comparison with a lost one.
 
-    The colour camera sees less to the sides than the thermal one, and heat alone is much the same in all.
+    The colour camera has a narrower view than the thermal one, whose patterns are similar for all people.
     """
     if found.appearance is None or lost.appearance is None:
         return True
@@ -47,7 +47,7 @@ def is_comparable(found: TrackedPerson, lost: TrackedPerson) -> bool:
 
 
 def most_alike_and_nearest(found: TrackedPerson, lost: Sequence[TrackedPerson]) -> TrackedPerson | None:
-    """Take the nearest of those who were lost if nobody else's colours are more like the found one's.
+    """Return the nearest lost person, unless another person's colours are more similar.
 
     Source: thesis, section 7.3.
     """
@@ -57,7 +57,7 @@ def most_alike_and_nearest(found: TrackedPerson, lost: Sequence[TrackedPerson]) 
 
 
 def colour_distance(one: TrackedPerson, other: TrackedPerson) -> float:
-    """Measure the squared distance of colours; infinite where there are none."""
+    """Return the squared distance of colours; infinite without colours."""
     if one.appearance is None or other.appearance is None:
         return float("inf")
     distance = float(squared_distances(one.appearance.mean[None], other.appearance)[0])
@@ -65,9 +65,9 @@ def colour_distance(one: TrackedPerson, other: TrackedPerson) -> float:
 
 
 def mismatch(found: TrackedPerson, person: TrackedPerson, view: FrameView, config: TrackerConfig) -> float:
-    """Add up what speaks against one being the other: their places, and their appearance.
+    """Return the cost of two people being the same, from positions and appearance.
 
-    The logarithm takes into account that the appearance in another pose, or half occluded, can be far off.
+    The logarithm limits the effect of another pose or partial occlusion on the appearance.
     """
     if abs(np.log(max(found.shown[H], 1.0) / max(person.shown[H], 1.0))) > GROWTH:
         return math.inf
@@ -78,7 +78,7 @@ def mismatch(found: TrackedPerson, person: TrackedPerson, view: FrameView, confi
 
 
 def appearance_distance(found: TrackedPerson, person: TrackedPerson, config: TrackerConfig) -> float:
-    """Measure the squared distance of appearance; that of the same person where appearance is unknown."""
+    """Return the squared distance of appearance; if unknown, that of the same person."""
     if config.appearance is None or found.appearance is None or person.appearance is None:
         return LOOKS2
     distance = float(squared_distances(found.appearance.mean[None], person.appearance)[0])

@@ -45,19 +45,19 @@ OUTSIDE_WEIGHT = 1e-6  # factor on the weight of a sample outside the limits: "a
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FrameView:
-    """One frame as the filters see it.
+    """One frame as input of the filters.
 
     Attributes:
-        image: (H, W) prepared grey image.
-        model: the contour laid out for its size.
+        image: (H, W) preprocessed grey image.
+        model: contour model for the image's size.
         dt_s: time since the last frame [s].
-        turn_rad: how the camera turned since then, left positive [rad]; 0 if unknown.
-        mount: how the camera sits.
-        advance_m: how far the camera moved forward since then [m]; 0 if unknown.
+        turn_rad: rotation of the camera since then, left positive [rad]; 0 if unknown.
+        mount: of the camera.
+        advance_m: forward motion of the camera since then [m]; 0 if unknown.
         colour: the colour image; None without one.
-        appearance: colours and thermal pattern together; None if they are not compared.
-        covered: what a point of the contour counts where the image says that a person is in front; None
-            where it says nothing of the kind.
+        appearance: colours and thermal pattern together; None if not used.
+        covered: response of contour points where a person in front is marked in the image; None if there are
+            no marks.
     """
 
     image: NDArray[np.uint8]
@@ -77,17 +77,17 @@ class FrameView:
 
     @property
     def turn(self) -> CameraTurn:
-        """How the camera turned since the last frame, as columns of the image need it."""
+        """The camera's rotation since the last frame, in terms of image columns."""
         return camera_turn(self.turn_rad, self.mount.focal_px, (self.image.shape[1] - 1) / 2)
 
     def column_after_turn(self, x: float) -> float:
-        """Return where a column x [px] of the last frame lies in this one but for people's own motion."""
+        """Return the present column of a column x [px] of the last frame, without people's own motion."""
         return turned(x, self.turn)
 
     def describe(self, state: Floats, hiding: Regions | None = None) -> Floats | None:
-        """Describe people (N, 9) as their models do, (N, F), if that is known.
+        """Describe the appearance of people (N, 9), (N, F); None if not available.
 
-        NaN for parts that lie behind people with regions (M, 4).
+        NaN for parts behind people with regions (M, 4).
         """
         source = self.colour if self.appearance is None else self.appearance
         if source is None:
@@ -99,7 +99,7 @@ class FrameView:
 def view_frame(
     frame: Frame, dt_s: float, model: ContourModel, config: TrackerConfig, mount: Mount | None = None
 ) -> FrameView:
-    """Prepare a frame for all filters; how the camera sits is found out where it is not said."""
+    """Prepare a frame for all filters; without a given mount, it is taken from the calibration."""
     motion = config.motion
     moved = frame.odometry if motion.uses_odometry and frame.odometry is not None else STANDING
     thermal = frame.grey(THERMAL)
@@ -115,11 +115,11 @@ def view_frame(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Belief:
-    """What a filter believes after one frame.
+    """Posterior of a filter after one frame.
 
     Attributes:
         particles: the weighted samples, before resampling.
-        core: those of them that make the estimate.
+        core: the samples that form the estimate.
         estimate: (9,) state, the core's mean.
         confidence: 0..1, the core's mean probability.
         uncertainty_px2: the core's spread over x and y [px^2].
@@ -140,14 +140,14 @@ def weigh(
     factor: Floats | None = None,
     likeness: Floats | None = None,
 ) -> Belief:
-    """Weigh samples (N, 9) by the image and estimate the person from them.
+    """Weigh samples (N, 9) by the image, and estimate the person from them.
 
     Args:
         state: (N, 9) samples.
         view: the image.
-        filter_config: of this filter.
-        config: of the tracker.
-        factor: (N,) on the weights, for keeping off other people; None for 1.
+        filter_config: settings of this filter.
+        config: settings of the tracker.
+        factor: (N,) on the weights, to avoid other people; None for 1.
         likeness: (N,) likelihood of the appearance; None for 1.
 
     Source: thesis, algorithm 3 (update), equations 4.2 and 4.6; 5.1 and 5.2 with the factor, 6.17 with the
@@ -175,11 +175,11 @@ def sample_weights(
     factor: Floats | None = None,
     likeness: Floats | None = None,
 ) -> Floats:
-    """Weigh the samples (N,), to sum to 1.
+    """Return the weights of the samples (N,), which sum to 1.
 
-    The thesis weighs with the probability, which is flat once the fitness is well above the threshold; with a
-    sharpness, the weight goes on growing with the fitness, to which the logarithm of the likeness adds. The
-    paper weighs with the fitness itself.
+    The thesis uses the probability as the weight, which saturates well above the threshold; with a sharpness,
+    the weight keeps growing with the fitness plus the logarithm of the likeness. The paper uses the fitness
+    itself.
 
     Source: thesis, equation 4.5; paper, equation 3.
     """
@@ -195,9 +195,9 @@ def sample_weights(
 
 @njit(cache=True, nogil=True)
 def is_within(state: Floats, limits: Floats) -> NDArray[np.bool_]:
-    """Return which samples (N, 9) have a person's proportions and place, by limits of `limits_px`.
+    """Return which samples (N, 9) are within the limits `limits_px` of proportions and position.
 
-    Compares w / h, d / w, y and h with them, and y with those of the floor.
+    Checks w / h, d / w, y and h, and y against the floor.
 
     Source: thesis, section 4.2 and the table of section 4.4.
     """
@@ -228,10 +228,10 @@ def step(
     config: TrackerConfig,
     rng: np.random.Generator,
 ) -> Belief:
-    """Carry a filter from the last frame to this one.
+    """Advance a filter from the last frame to this one.
 
-    The weighted samples of the last frame are resampled first instead of last, which is the same cycle, cut
-    at another place: what a caller holds between two frames are the weighted samples, before any is lost.
+    The weighted samples of the last frame are resampled first instead of last. The cycle is the same, but
+    between two frames a caller holds the weighted samples before resampling.
 
     Source: thesis, algorithm 3.
     """
@@ -247,16 +247,16 @@ def advance(
     motion: MotionConfig | None = None,
     resizes: bool = True,
 ) -> Floats:
-    """Draw the samples (N, 9) of this frame from those of the last one, some of them from the prior.
+    """Draw the samples (N, 9) of this frame from those of the last one, and a share from the prior.
 
     Args:
-        particles: of the last frame.
+        particles: samples of the last frame.
         view: this frame.
-        filter_config: of this filter.
-        config: of the tracker.
-        rng: source of chance.
-        motion: how the samples move; None for the tracker's own.
-        resizes: whether the filter's share of samples is tried at another size.
+        filter_config: settings of this filter.
+        config: settings of the tracker.
+        rng: random generator.
+        motion: motion model; None for the tracker's own.
+        resizes: whether the filter's share of samples is resized.
     """
     fresh = round(filter_config.fresh_share * filter_config.count)
     kept = resample(particles, filter_config.count - fresh, rng)

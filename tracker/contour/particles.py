@@ -1,4 +1,4 @@
-"""Weighted hypotheses of one person's contour: where they come from, how they move, and what they say."""
+"""Weighted samples of one person's contour: initialisation, motion, resampling and estimation."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ VY: Final = 6
 VW: Final = 7
 VH: Final = 8
 STATE_SIZE: Final = 9
-# A person in body semi-heights, as seen on people who stand. The thesis divides h "by a constant factor" for
-# the head, too, but does not print it (section 4.2): 4.4 is our reading.
+# Proportions of standing people in body semi-heights. The thesis divides h "by a constant factor" for the
+# head, too, but does not print it (section 4.2): 4.4 is our reading.
 HEAD_DIVISOR: Final = 4.4  # body semi-height / head semi-height
 CROWN: Final = 1 + 2 / HEAD_DIVISOR  # top of the head above the body's centre
 FOOT: Final = 2.05  # feet below it
 
-RESIZING = 0.3  # spread of the logarithm of the size of samples that are made larger or smaller
-BOX_SPREAD = 0.05  # of a person within a box that is known, as a share of its sides
+RESIZING = 0.3  # standard deviation of the logarithm of the size of resized samples
+BOX_SPREAD = 0.05  # of a person within a known box, as a share of its sides
 
 Floats = NDArray[np.float32]
 Ends = tuple[float, float]
@@ -76,7 +76,7 @@ def draw_prior(
     filter_config: FilterConfig,
     rng: np.random.Generator,
 ) -> Floats:
-    """Draw samples (count, 9) evenly over the limits; velocities normal around standing still.
+    """Draw samples (count, 9) uniformly within the limits; velocities are normal with mean 0.
 
     Source: thesis, section 4.1, "in our case uniform".
     """
@@ -96,10 +96,10 @@ def draw_prior(
 
 
 def limits_px(height: int, limits: LimitsConfig) -> Floats:
-    """Lay limits out for kernels, for images of so many rows: (15,).
+    """Return limits as an array for kernels, for images of a height in rows: (15,).
 
-    Ends of w / h, d / w, y and h [px]; then, for `floor_rows`, the row of the horizon, the two ends below it,
-    the three terms of the variance, and the rows.
+    Ends of w / h, d / w, y and h [px]; then, for `floor_rows`, the row of the horizon, the two limits below
+    it, the three terms of the variance, and the rows.
     """
     ends = (limits.ratio_wh, limits.ratio_dw, limits.y, limits.h)
     return _limits_px(height, ends, limits.horizon, limits.y_below_horizon, limits.floor_variance)
@@ -124,7 +124,7 @@ def _limits_px(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def floor_rows(h: np.float32, limits: Floats) -> tuple[np.float32, np.float32]:
-    """Return the rows [px] between which the centre of a person of semi-height h on the floor is.
+    """Return the limits [px] of the row of the centre of a person of semi-height h on the floor.
 
     The limits are those of `limits_px`.
     """
@@ -151,10 +151,10 @@ def _laid_out(
     limits: Floats,
     speed: Floats,
 ) -> Floats:
-    """Lay samples (N, 9) out by chance (N, 5) for place and size and (N, 4) for the velocities.
+    """Map random numbers (N, 5) for position and size, and (N, 4) for the velocities, to samples (N, 9).
 
-    Log-uniform, small and far people are as many as large and near ones. Of the columns of `limits_px`,
-    those for y and for the floor are asked.
+    Log-uniform: small and far people are as frequent as large and near ones. `limits_px` gives the limits of
+    y and of the floor.
     """
     state, wide, tall = np.empty((len(chance), STATE_SIZE), np.float32), np.float32(width), np.float32(height)
     for i in range(len(chance)):
@@ -178,10 +178,10 @@ def _between(ends: Ends, chance: np.float32) -> np.float32:
 def draw_around(
     box: tuple[float, float, float, float], config: TrackerConfig, rng: np.random.Generator
 ) -> Floats:
-    """Draw samples (N, 9) of a standing person whose box [px] is known.
+    """Draw samples (N, 9) of a standing person with a known box [px].
 
-    The box gives top, height and column; its width may be that of arms and a stride, so that of the body is
-    drawn from what bodies may have.
+    The box gives top, height and column; its width may include arms and a stride, so that the body's width is
+    drawn from the limits.
     """
     left, top, width, height = box
     limits, count = config.person.limits, config.person.count
@@ -197,14 +197,14 @@ def draw_around(
 
 
 def camera_turn(turn_rad: float, focal_px: float, centre_px: float) -> CameraTurn:
-    """Describe a turn of the camera to the left [rad] by what columns need."""
+    """Return a rotation of the camera to the left [rad] in terms of image columns."""
     return math.tan(turn_rad), focal_px, centre_px
 
 
 def turned(x: float, turn: CameraTurn) -> float:
-    """Return where a column x [px] lies after the camera has turned: to the left moves it to the right.
+    """Return the new column of a column x [px] after a rotation of the camera: a left turn shifts it right.
 
-    The thesis leaves the robot's motion to chance; its turn is known from odometry and need not be.
+    The thesis leaves the robot's motion to the noise, but its rotation is known from odometry.
     """
     along, focal_px, centre_px = turn
     slope = (x - centre_px) / focal_px
@@ -221,21 +221,21 @@ def predict(
     rng: np.random.Generator,
     resized_share: float = 0.0,
 ) -> Floats:
-    """Draw where some of the samples are one time step later, (N, 9).
+    """Predict some of the samples by one time step, (N, 9).
 
     Constant velocity in (x, y, w, h), a random walk in d and in the velocities; then the camera turns. A
-    share is made larger or smaller: every other one keeps the top of its head where it is, the others keep
-    their feet, so that a torso that was taken for a whole person is found out.
+    share is resized, alternately about the top of the head and about the feet, so that a torso taken for a
+    whole person is corrected.
 
     Args:
-        state: (M, 9) samples now.
-        rows: (N,) those that go on.
+        state: (M, 9) current samples.
+        rows: (N,) selected samples.
         dt_s: time step [s].
         turn: of the camera.
         size: image height / 240; the amplitudes are given for an image of 240 rows.
         config: amplitudes of the random walk.
-        rng: source of chance.
-        resized_share: of the samples that are made larger or smaller.
+        rng: random generator.
+        resized_share: share of resized samples.
 
     Source: thesis, equations 4.7 and 4.8.
     """
@@ -249,10 +249,10 @@ def predict(
 
 
 def noise_per_step(dt_s: float, size: float, config: MotionConfig) -> Floats:
-    """Give the amplitudes (5,) of the random walk in d, vx, vy, vw, vh over one step, the last entries of B.
+    """Return the amplitudes (5,) of the random walk in d, vx, vy, vw, vh over one step, the end of B.
 
-    The sources mean magnitudes a second: the velocities' entries reach the position times dt by way of A, so
-    d's entry is multiplied by dt here.
+    The sources give amplitudes per second: the velocities' entries are multiplied by dt through A, so d's
+    entry is multiplied by dt here.
     """
     a_second = config.noise_x, config.noise_y, config.noise_w, config.noise_h
     return _scaled(size, (config.noise_d * dt_s, *a_second))
@@ -260,26 +260,26 @@ def noise_per_step(dt_s: float, size: float, config: MotionConfig) -> Floats:
 
 @lru_cache(maxsize=64)
 def _scaled(factor: float, numbers: tuple[float, ...]) -> Floats:
-    """Lay numbers out for kernels, times a factor."""
+    """Return values as an array for kernels, multiplied by a factor."""
     scaled = (factor * np.array(numbers)).astype(np.float32)
     scaled.setflags(write=False)
     return scaled
 
 
 def equally_weighted(state: Floats) -> Particles:
-    """Return every one of the (N, 9) states the weight 1/N."""
+    """Return the (N, 9) states with equal weights 1/N."""
     return Particles(state, np.full(len(state), 1 / len(state), dtype=np.float32))
 
 
 def normalised(weight: Floats) -> Floats:
-    """Scale (N,) non-negative weights to sum to 1; equal weights where none is positive."""
+    """Normalise (N,) non-negative weights to sum to 1; equal weights where none is positive."""
     scaled = weight.astype(np.float32)
     scale_to_one(scaled)
     return scaled
 
 
 def resample(particles: Particles, count: int, rng: np.random.Generator) -> NDArray[np.int64]:
-    """Draw the rows (count,) of those that go on, with equal weights, by systematic resampling.
+    """Draw the rows (count,) of the resampled samples by systematic resampling.
 
     Row i appears floor(count w_i) or ceil(count w_i) times; the whole draw uses one random number.
 
@@ -290,7 +290,7 @@ def resample(particles: Particles, count: int, rng: np.random.Generator) -> NDAr
 
 
 def mean_state(particles: Particles) -> NDArray[np.float64]:
-    """Average the (9,) state by weight.
+    """Return the (9,) weighted mean state.
 
     Source: thesis, equation 4.2; its extra 1/N is a slip once the weights are normalised.
     """
@@ -299,7 +299,7 @@ def mean_state(particles: Particles) -> NDArray[np.float64]:
 
 
 def uncertainty_px2(particles: Particles) -> float:
-    """Measure the weighted squared distance of the particles from their mean, over x and y [px^2].
+    """Return the weighted squared distance of the particles from their mean, over x and y [px^2].
 
     Source: thesis, equation 4.6; read over the position alone, since the sources' threshold of 400 counts
     pixels.
@@ -315,29 +315,29 @@ def estimated(
     is_inside: NDArray[np.bool_],
     choice: tuple[float, float],
 ) -> tuple[Floats, Floats, NDArray[np.float64], float, float]:
-    """Choose the samples (N, 9) that make the estimate: of the best ones, those near the very best.
+    """Select the samples (N, 9) that form the estimate: of the best ones, those near the best.
 
     With several people in view the mean over all particles lies between them (thesis, figure 4.5); the mean
     over those near the best lies on one of them.
 
     Args:
         state: (N, 9) samples.
-        weight: (N,) theirs.
-        chance: (N,) that they are a person, by the image.
-        is_inside: (N,) whether they are within the limits; others are none.
-        choice: the share of N that is kept, rounded up, of the heaviest, and their equals (paper: the best
-            30 %); if they are no farther from the heaviest than this, in its semi-axes.
+        weight: (N,) of the samples.
+        chance: (N,) probability of a person, by the image.
+        is_inside: (N,) whether they are within the limits; others have probability 0.
+        choice: selected share of N, rounded up, of the highest weights, including ties (paper: the best 30
+            %); and their greatest distance from the best, in its semi-axes.
 
     Returns:
-        state: (K, 9) of those.
+        state: (K, 9) of the selected samples.
         weight: (K,) that sum to 1.
         mean: (9,) state.
-        confidence: their mean chance.
-        spread: as of `uncertainty_px2` [px^2].
+        confidence: their mean probability.
+        spread: as defined by `uncertainty_px2` [px^2].
     """
     share, reach = choice
     others = len(weight) - math.ceil(share * len(weight))
-    # The weight of the least of the best: those equal to it stay, so that no sorting order decides.
+    # Weight of the last selected sample: ties are included, so that the sorting order does not matter.
     least = ranked(weight, others)
     rows = _rows_near_best(state, weight, least, np.float32(reach * reach))
     core, heavy = np.empty((len(rows), STATE_SIZE), np.float32), np.empty(len(rows), np.float32)
@@ -367,7 +367,7 @@ def _moved(
     turn: CameraTurn,
     apart: int,
 ) -> Floats:
-    """Predict samples in some rows, and resize every so many of them, 0 for none; see `source_of`."""
+    """Predict samples in some rows, and resize every n-th, 0 for none; see `source_of`."""
     noise = standard_normals(function, source, 5 * len(rows)).reshape(-1, 5)
     moved = _predicted(state, rows, noise, amplitude, memory, dt_s, by_height, turn)
     if apart > 0:
@@ -377,7 +377,7 @@ def _moved(
 
 @njit(cache=True, nogil=True)
 def _resize(state: Floats, apart: int, chance: Floats) -> None:
-    """Scale every so many samples (N, 9) by chance (M,), normal, in place, as `predict` says."""
+    """Resize every n-th of samples (N, 9) by normal random numbers (M,), in place, as `predict` says."""
     for k in range(np.uint64(len(chance))):
         i, factor = k * np.uint64(apart), exponential(np.float32(RESIZING) * chance[k])
         kept = np.float32(-CROWN) if k % 2 == 0 else np.float32(FOOT)
@@ -401,7 +401,7 @@ def _predicted(
     along, focal, centre = np.float32(turn[0]), np.float32(turn[1]), np.float32(turn[2])
     for i in range(np.uint64(len(rows))):
         row = np.uint64(rows[i])
-        # by_height is the semi-height at which the amplitudes hold as they are; 0 keeps them for every size.
+        # by_height is the semi-height to which the amplitudes refer; 0 uses them for every size.
         scale = state[row, H] / by_height if by_height > 0 else 1.0
         for k in range(np.uint64(4)):
             velocity = state[row, k + np.uint64(VX)]
@@ -418,9 +418,9 @@ def _predicted(
 def _rows_near_best(
     state: Floats, weight: Floats, least: np.float32, farthest: np.float32
 ) -> NDArray[np.uint64]:
-    """List the rows of samples of some weight that are no farther from the heaviest, in its semi-axes."""
+    """List the rows of weighted samples within a distance from the best, in its semi-axes."""
     best, rows, count = state[np.argmax(weight)], np.empty(len(weight), dtype=np.uint64), np.uint64(0)
-    # Counted, not branched on, as no processor foresees who is heavy.
+    # Counted without branches, as these would be unpredictable.
     if np.isinf(farthest):
         for i in range(np.uint64(len(weight))):
             rows[count] = i
@@ -435,7 +435,7 @@ def _rows_near_best(
 
 @njit(cache=True, nogil=True)
 def _mean(state: Floats, weight: Floats) -> NDArray[np.float64]:
-    """Average states (N, 9) by weight (N,)."""
+    """Return the weighted mean of states (N, 9) with weights (N,)."""
     mean = np.zeros(STATE_SIZE)
     for i in range(len(state)):
         for k in range(STATE_SIZE):
@@ -445,7 +445,7 @@ def _mean(state: Floats, weight: Floats) -> NDArray[np.float64]:
 
 @njit(cache=True, nogil=True)
 def _spread(state: Floats, weight: Floats, mean: NDArray[np.float64]) -> float:
-    """Average the squared distance of x and y (N, 9) from their mean (9,) by weight (N,)."""
+    """Return the weighted mean squared distance of x and y (N, 9) from their mean (9,)."""
     spread = 0.0
     for i in range(len(state)):
         across, down = state[i, X] - mean[X], state[i, Y] - mean[Y]

@@ -1,4 +1,4 @@
-"""What is kept of a person between two frames, and what the next frame makes of it."""
+"""State of a tracked person between two frames, and its update."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from peopleboy.tracker.track import Status
 
 SETTLED = 6  # frames
 SIZE = [W, H, D]  # columns of a state
-HEIGHT = 3.7  # of people, in body semi-heights
-VELOCITY_S = 0.4  # time constant of the velocity with which a hidden person walks on
+HEIGHT = 3.7  # height of people, in body semi-heights
+VELOCITY_S = 0.4  # time constant of the velocity with which an occluded person continues
 FOOT_S = 0.5
-FORGET_S = 10.0  # time after which a hidden person is forgotten
+FORGET_S = 10.0  # time after which an occluded person is forgotten
 Value = TypeVar("Value", float, NDArray[np.float64])
 
 
@@ -34,20 +34,20 @@ class TrackedPerson:
     Attributes:
         id: 1 or more.
         born_s: time of the first frame [s].
-        belief: its filter.
-        shown: (9,) its estimate, smoothed over time; of a hidden person, where it is supposed to be.
-        velocity: (2,) of its place, smoothed over a longer time [px/s].
-        foot: row of its feet [px], smoothed, as last seen whole.
-        size: (3,) its w, h and d [px], smoothed, as last seen whole.
-        seen_frames: in how many frames it was seen whole.
-        missing: frames in a row in which the person was not seen.
-        status: how well it is seen.
-        occluder: id of the person who hides it, or part of it.
-        is_behind: whether those in front explain why it is not seen.
-        hidden_frames: for how many frames it has been hidden.
-        hidden_s: for how long it has been hidden [s].
-        appearance: descriptor learned of late, by which its samples are compared; None until that was seen.
-        is_unidentified: whether it may yet turn out to be a person who was lost.
+        belief: posterior of its filter.
+        shown: (9,) estimate, smoothed over time; for an occluded person, the assumed state.
+        velocity: (2,) of its position, smoothed over a longer time [px/s].
+        foot: row of its feet [px], smoothed, when last fully visible.
+        size: (3,) its w, h and d [px], smoothed, when last fully visible.
+        seen_frames: number of frames in which it was fully visible.
+        missing: consecutive frames in which the person was not seen.
+        status: visibility.
+        occluder: id of the person who occludes it, at least partly.
+        is_behind: whether people in front explain why it is not seen.
+        hidden_frames: number of frames for which it has been occluded.
+        hidden_s: time for which it has been occluded [s].
+        appearance: learned descriptor, with which its samples are compared; None before the first one.
+        is_unidentified: whether it may still be a person who was lost.
     """
 
     id: int
@@ -69,12 +69,12 @@ class TrackedPerson:
 
     @property
     def is_settled(self) -> bool:
-        """Whether it was seen for long enough to be worth remembering."""
+        """Whether it was visible for long enough to be remembered."""
         return self.seen_frames >= SETTLED
 
     @property
     def is_hidden(self) -> bool:
-        """Whether nothing of it is seen."""
+        """Whether it is completely invisible."""
         return self.status is Status.TOTALLY_OCCLUDED
 
 
@@ -87,21 +87,21 @@ def is_born(belief: Belief, view: FrameView, config: LifeConfig) -> bool:
 
 
 def is_sure(belief: Belief, view: FrameView, confidence: float, config: LifeConfig) -> bool:
-    """Return whether a filter's samples agree on a person, above a confidence."""
+    """Return whether a filter's samples agree on a person above a confidence."""
     return belief.confidence > confidence and _agrees(belief, view, config)
 
 
 @dataclass(frozen=True, slots=True)
 class Streak:
-    """For how many frames in a row the detector has been sure of a person who is not tracked.
+    """Number of consecutive frames in which the detector was certain of an untracked person.
 
-    The same confidence says more of some contours than of others. Those few pixels high fit two people side
-    by side nearly as well as one of them, and beside a person near, an arm looks like a person smaller. A
-    large contour with nobody beside it is hardly ever wrong.
+    The same confidence means more for some contours than for others. Contours a few pixels high fit two
+    people side by side nearly as well as one of them, and next to a near person, an arm resembles a smaller
+    person. A large contour without a neighbour is hardly ever wrong.
 
     Attributes:
-        frames: in which the detector was as sure as it must be of anybody of that size.
-        clear_frames: in which it was as sure as it must be of a person large with nobody beside.
+        frames: with the confidence required for people of that size.
+        clear_frames: with the confidence required for a large person without a neighbour.
     """
 
     frames: int = 0
@@ -109,23 +109,23 @@ class Streak:
 
     @property
     def is_some(self) -> bool:
-        """Whether there is any."""
+        """Whether there are any."""
         return self.frames > 0 or self.clear_frames > 0
 
     def is_enough(self, config: TrackerConfig) -> bool:
-        """Return whether a person is born."""
+        """Return whether a track is initiated."""
         return self.frames >= config.life.birth_frames or self.clear_frames >= config.search.clear_frames
 
     def after(
         self, belief: Belief, known: Sequence[NDArray[np.float64]], view: FrameView, config: TrackerConfig
     ) -> Streak:
-        """Take in what the detector believes in one more frame.
+        """Update with the detector's posterior of one more frame.
 
         Args:
-            belief: of the detector.
-            known: (9,) states of all people who are tracked or remembered, where they are supposed to be.
+            belief: posterior of the detector.
+            known: (9,) states of all people who are tracked or remembered, or their assumed states.
             view: the frame.
-            config: of the tracker.
+            config: settings of the tracker.
         """
         search = config.search
         is_small = belief.estimate[H] < search.small_h * view.size
@@ -142,7 +142,7 @@ class Streak:
 
 
 def is_kept(belief: Belief, view: FrameView, config: LifeConfig) -> bool:
-    """Return whether a tracked person is still seen.
+    """Return whether a tracked person is still visible.
 
     Source: thesis, section 5.1: a filter is deleted when its mean is smaller than 0.5 or its uncertainty too
     large.
@@ -151,14 +151,14 @@ def is_kept(belief: Belief, view: FrameView, config: LifeConfig) -> bool:
 
 
 def _agrees(belief: Belief, view: FrameView, config: LifeConfig) -> bool:
-    """Compare the spread with its threshold, an area, which grows with the square of the image's size."""
+    """Compare the spread with its threshold, an area that is proportional to the squared image size."""
     return belief.uncertainty_px2 < config.uncertainty_px2 * view.size**2
 
 
 def _is_beside(
     found: NDArray[np.float64], known: Sequence[NDArray[np.float64]], config: TrackerConfig
 ) -> bool:
-    """Return whether a person (9,) shares any of its region with those known (9,), made wider."""
+    """Return whether a person (9,) overlaps the widened regions of known people (9,)."""
     around = regions_of(known, config)
     margin = config.search.clear_margin * around[:, 2]
     around[:, 0] -= margin
@@ -169,7 +169,7 @@ def _is_beside(
 def initiate_person(
     number: int, belief: Belief, view: FrameView, time_s: float, config: TrackerConfig
 ) -> TrackedPerson:
-    """Make a person of what a filter has settled on."""
+    """Initiate a track from the posterior of a filter."""
     state = belief.estimate
     appearance = _learned(None, state, view, config)
     return TrackedPerson(
@@ -178,7 +178,7 @@ def initiate_person(
 
 
 def approached(person: TrackedPerson, view: FrameView) -> TrackedPerson:
-    """Let what is kept of a standing person grow as the camera comes nearer."""
+    """Scale the stored state of a standing person as the camera approaches."""
     if view.advance_m == 0:
         return person
     distance_m = view.mount.focal_px * PERSON_M / (HEIGHT * max(float(person.size[1]), 1.0))
@@ -188,7 +188,7 @@ def approached(person: TrackedPerson, view: FrameView) -> TrackedPerson:
 
 
 def moved_on(state: NDArray[np.float64], view: FrameView) -> NDArray[np.float64]:
-    """Move a state (9,) of the last frame to this one, by its velocity and the camera's turn."""
+    """Predict a state (9,) of the last frame by its velocity and the camera's rotation."""
     later = state.copy()
     later[:4] += view.dt_s * later[VX:]
     later[X] = view.column_after_turn(float(later[X]))
@@ -196,7 +196,7 @@ def moved_on(state: NDArray[np.float64], view: FrameView) -> NDArray[np.float64]
 
 
 def hidden(person: TrackedPerson, view: FrameView) -> TrackedPerson:
-    """Count one more frame in which nothing is seen of a person."""
+    """Count one more frame in which a person is invisible."""
     return replace(
         person,
         status=Status.TOTALLY_OCCLUDED,
@@ -209,14 +209,14 @@ def hidden(person: TrackedPerson, view: FrameView) -> TrackedPerson:
 def seen(
     person: TrackedPerson, belief: Belief, occluder: int | None, view: FrameView, config: TrackerConfig
 ) -> TrackedPerson:
-    """Take in a frame in which a person is not hidden, and learn from it what may be learnt.
+    """Update a person with a frame in which it is not occluded.
 
     Args:
-        person: as the last frame left it.
-        belief: its filter in this frame.
-        occluder: id of who overlaps it from in front; None if nobody does.
+        person: state after the last frame.
+        belief: posterior of its filter in this frame.
+        occluder: id of a person in front who overlaps it; None if there is none.
         view: this frame.
-        config: of the tracker.
+        config: settings of the tracker.
     """
     missing = 0 if is_kept(belief, view, config.life) else person.missing + 1
     status = Status.TRACKED if occluder is None else Status.PARTLY_OCCLUDED
@@ -249,10 +249,10 @@ def seen(
 def smoothed(
     before: NDArray[np.float64], now: NDArray[np.float64], view: FrameView, config: SmoothingConfig
 ) -> NDArray[np.float64]:
-    """Blend the estimate (9,) of this frame into the one shown before: a first-order low pass against jitter.
+    """Blend the estimate (9,) of this frame into the previous output: a first-order low pass against jitter.
 
-    The place shown before moves on with the estimated velocity and the camera's turn, so that a steady walk
-    is not shown late. A person's size changes slowly, and may be smoothed for longer than the place.
+    The previous output is first moved by the estimated velocity and the camera's rotation, so that a steady
+    walk has no lag. A person's size changes slowly, and may be smoothed for longer than the position.
     """
     expected = moved_on(before, view)
     return expected + _gains(view.dt_s, config.place_s, config.size_s) * (now - expected)
@@ -260,7 +260,7 @@ def smoothed(
 
 @lru_cache(maxsize=8)
 def _gains(dt_s: float, place_s: float, size_s: float) -> NDArray[np.float64]:
-    """Return how much (9,) of what is new in a state is shown after so long, by the time constants."""
+    """Return the weight (9,) of a new state after a time step, by the time constants."""
     gain = np.ones(STATE_SIZE)
     gain[[X, Y]] = _gain(dt_s, place_s)
     gain[SIZE] = _gain(dt_s, size_s)
@@ -274,7 +274,7 @@ def _gain(dt_s: float, time_constant_s: float) -> float:
 def _learned(
     known: ColourModel | None, state: NDArray[np.float64], view: FrameView, config: TrackerConfig
 ) -> ColourModel | None:
-    """Take in what a person with this state (9,) looks like who is seen whole.
+    """Update the appearance of a fully visible person with this state (9,).
 
     Source: thesis, sections 6.1.3 and 7.4, by which the model is not updated during occlusions.
     """
@@ -290,5 +290,5 @@ def _foot_of(state: NDArray[np.float64]) -> float:
 
 
 def _blend(before: Value, now: Value, share: float) -> Value:
-    """Move a smoothed value on by a share of the way."""
+    """Move a smoothed value by a share of the difference."""
     return before + min(share, 1.0) * (now - before)

@@ -31,7 +31,7 @@ from peopleboy.tracker.contour.contour_config import (
     WalkOnConfig,
 )
 
-_CAP_GREY = 40.0  # unit of the fitness, in which kappa and theta are given below
+_CAP_GREY = 40.0  # unit of the fitness, to which kappa and theta below refer
 _ROOT_STEP = math.sqrt(1 / 15)  # of the thesis's time step [s]
 _THESIS_SAMPLES = FilterConfig(limits=LimitsConfig(h=(0.02, 0.25)), log_uniform_h=True)
 
@@ -57,21 +57,21 @@ THESIS = TrackerConfig(
     detector=_THESIS_SAMPLES,
     person=_THESIS_SAMPLES,
 )
-"""Chapters 4 and 5, thermal alone, with the thesis's constants and these readings of what it leaves open.
+"""Chapters 4 and 5, thermal alone, with the thesis's constants, and readings of what it leaves open.
 
-What each is worth was measured on training seeds; the page of `peopleboy reproduce` lists it.
+The effect of each was measured on training seeds; the page of `peopleboy reproduce` lists it.
 
 Contrast: theta = 22 and kappa = 0.125 were fitted to the thesis's camera. Our people are 60 to 200 grey above
-what is behind them, and one side of a head would already exceed theta. Differences therefore count up to 40
-grey, the largest contrast at which a head alone, 0.54 of the weights, does not reach theta. What is at the
-end of the scale is hotter than any person and counts as cold; the thesis has no such step, but its rooms had
+their background, and one side of a head would already exceed theta. Differences are therefore clipped at 40
+grey, the largest contrast at which a head alone, 0.54 of the weights, does not reach theta. Pixels at the end
+of the scale are hotter than any person and count as cold; the thesis has no such step, but its rooms had
 fewer lamps and radiators of the size of a person.
 
-Contour: points lie at shares of the ellipses, further outside than inside, so that the width found is not
+Contour: points lie at shares of the ellipses, further outside than inside, so that the estimated width is not
 biased, and the sides end above the legs. Motion: B names no unit of time. The velocities' entries for w and h
-are Brownian motion's amplitude after one second, and grow with the root of the time step; those for x and y
-are half of what is printed, in every step: with the root people are found later, with all of it they are
-lost. Prior: uniform in the logarithm of h, up to the largest body that fits into the image, and with the
+are amplitudes of Brownian motion after one second, and grow with the root of the time step; those for x and y
+are half of the printed values, in every step: with the root people are found later, with the full values they
+are lost. Prior: uniform in the logarithm of h, up to the largest body that fits into the image, and with the
 speeds of people who walk past.
 """
 
@@ -81,8 +81,8 @@ THESIS_COLOUR = replace(
 )
 """With the colours of chapter 6; of the representations evaluated there, the first moments.
 
-The skewness of a plainly coloured region is unbounded, and people who are drawn are plainly coloured. Our
-cameras are 6 cm apart, which no affine map makes up for at every distance, so the parallax is added to it.
+The skewness of a uniformly coloured region is unbounded, and drawn people are uniformly coloured. Our cameras
+are 6 cm apart, which no affine map compensates at every distance, so the parallax is added to it.
 """
 
 THESIS_OCCLUSION = replace(
@@ -91,10 +91,10 @@ THESIS_OCCLUSION = replace(
     depth=DepthOrderConfig(order="learned", table="thesis"),
     occlusion=StayBehindConfig(head_covered=1.0),
 )
-"""With the occlusion handling of chapter 7; a head is hidden once no point of it is seen.
+"""With the occlusion handling of chapter 7; a head is occluded once no point of it is visible.
 
 Depth order comes from a classifier that was trained on this tracker's own pairs (sections 7.1 and 7.2), by
-`peopleboy train occlusion --tracker thesis`; while it was trained, feet decided.
+`peopleboy train occlusion --tracker thesis`; during its training, the order was that of the feet.
 """
 
 _PAPER_SAMPLES = replace(_THESIS_SAMPLES, fresh_share=0.1, estimate_share=0.3)
@@ -111,7 +111,7 @@ PAPER = replace(
 )
 """The evaluation paper: equations 3 and 4, the best 30 %, 10 % anew, three frames to detect.
 
-It names no threshold of the fitness; 18 grey, below the thesis's 22, since sections below 10 grey lose their
+It names no threshold of the fitness; 18 grey is below the thesis's 22, since sections below 10 grey have no
 weight.
 """
 
@@ -153,8 +153,8 @@ CONTOUR = TrackerConfig(
     ),
     detector=FilterConfig(
         fresh_share=0.5,
-        # A level camera 1.2 m above the floor sees the middle of whoever stands there just below the horizon;
-        # `mount` carries that over to other cameras.
+        # A level camera 1.2 m above the floor sees the middle of a standing person just below the horizon;
+        # `mount` transforms that to other cameras.
         limits=replace(_LIMITS, h=(0.05, 0.5), y_below_horizon=(-0.1, 0.9)),
         log_uniform_h=True,
         sharpness=20.0,
@@ -187,7 +187,7 @@ CONTOUR = TrackerConfig(
         clear_frames=2,
         clear_margin=0.4,
     ),
-    # Torso and feet of the drawn and simulated people lie so, relative to the ellipse that fits them best.
+    # Positions of torso and feet of the drawn and simulated people, relative to the best fitting ellipse.
     box=BoxConfig(width_per_w=1.88, height_per_h=3.9, hair_per_h=0.08),
     smoothing=SmoothingConfig(place_s=0.05, size_s=0.3),
     interaction=InteractionConfig(
@@ -199,10 +199,10 @@ CONTOUR = TrackerConfig(
     height=HeightConfig(overlapped_spread=0.1),
     occlusion=WalkOnConfig(remembers_lost=True, shows_only_sure=True),
 )
-"""What works best by contours."""
+"""The best contour tracker."""
 
 CONTOUR_LEARNED = replace(CONTOUR, depth=replace(CONTOUR.depth, order="learned"))
-"""The same with a learned order in depth."""
+"""The same with a learned depth order."""
 
 VARIANTS: Final[Mapping[str, TrackerConfig]] = {
     "contour": CONTOUR,

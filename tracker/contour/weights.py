@@ -1,4 +1,4 @@
-"""What the evidence makes of the weights of samples, and who goes on by them: kernels over a whole filter."""
+"""Kernels over a whole filter: weights of samples from evidence, and resampling."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from peopleboy.tracker.elementary import exponential, logarithm
 Floats = NDArray[np.float32]
 
 NOTHING: Final[Floats] = np.empty(0, dtype=np.float32)
-"""In place of a factor, or a likeness, that does not count."""
-_LEAST: Final = np.float32(1e-30)  # likeness, whose logarithm is taken
-_FIRST_BITS, _NEXT_BITS = 11, 10  # of 31: the sign is none
+"""Placeholder for a factor, or a likeness, that is not used."""
+_LEAST: Final = np.float32(1e-30)  # least likeness whose logarithm is taken
+_FIRST_BITS, _NEXT_BITS = 11, 10  # of 31: the sign bit is 0
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def sharp_weights(fit: Floats, likeness: Floats, sharpness: float, floor: float) -> Floats:
-    """Weigh (N,) by the exponential of contour and appearance together; the best has 1.
+    """Return weights (N,): the exponential of contour and appearance together; the best has 1.
 
-    The floor stands for a person occluded by something unknown, who is visible in neither.
+    The floor is the fitness of a person occluded by an unknown object, who fits neither.
 
     Args:
         fit: (N,) of the contour.
         likeness: (N,) of the appearance, or `NOTHING`.
-        sharpness: by which the sum is multiplied.
-        floor: least sum that counts.
+        sharpness: factor on the sum.
+        floor: least value of the sum.
     """
     weight, sharp, least = np.empty(len(fit), dtype=np.float32), np.float32(sharpness), np.float32(floor)
     if len(likeness) > 0:
@@ -45,7 +45,7 @@ def sharp_weights(fit: Floats, likeness: Floats, sharpness: float, floor: float)
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def shared_out(weight: Floats, is_inside: NDArray[np.bool_], factor: Floats, outside: float) -> Floats:
-    """Return weights (N,) that sum to 1: times their factors, and very low outside the limits.
+    """Return weights (N,) that sum to 1: multiplied by their factors, and very low outside the limits.
 
     Args:
         weight: (N,) non-negative.
@@ -65,7 +65,7 @@ def shared_out(weight: Floats, is_inside: NDArray[np.bool_], factor: Floats, out
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def scale_to_one(weight: Floats) -> None:
-    """Scale (N,) non-negative weights, in place, to sum to 1; equal weights where none is positive."""
+    """Normalise (N,) non-negative weights, in place, to sum to 1; equal weights where none is positive."""
     total = 0.0
     for i in range(len(weight)):
         total += weight[i]
@@ -75,7 +75,7 @@ def scale_to_one(weight: Floats) -> None:
 
 @njit(cache=True, nogil=True)
 def systematic_rows(weight: Floats, count: int, offset: float) -> NDArray[np.int64]:
-    """Find the rows (count,) under `count` evenly spaced marks on the cumulated weights; offset in [0, 1)."""
+    """Return the rows (count,) under `count` evenly spaced marks on cumulated weights; offset in [0, 1)."""
     rows = np.empty(count, dtype=np.int64)
     total, last = 0.0, 0
     for k in range(len(weight)):
@@ -95,10 +95,10 @@ def systematic_rows(weight: Floats, count: int, offset: float) -> NDArray[np.int
 
 @njit(cache=True, nogil=True)
 def ranked(weight: Floats, rank: int) -> np.float32:
-    """Return the weight (N,) that so many others do not exceed; none is negative.
+    """Return the weight (N,) that a given number of others do not exceed; weights are non-negative.
 
-    Such numbers are in the order of their bits, of which the first 11 tell most, then the next 10: no
-    processor foresees what comparing whole numbers would have it do next.
+    Such floats are ordered like their bits: the first 11 bits are counted, then the next 10. Comparisons
+    would cause unpredictable branches.
     """
     some, place = weight.view(np.uint32), np.int64(rank)
     shift, bits = np.uint32(20), np.uint32(_FIRST_BITS)

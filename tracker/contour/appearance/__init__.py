@@ -1,1 +1,1 @@
-"""What people look like: colours of head, torso and legs, compared from frame to frame."""
+"""Appearance of people: colours of head, torso and legs, compared from frame to frame."""

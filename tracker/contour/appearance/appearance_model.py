@@ -1,4 +1,4 @@
-"""What people look like, in colour and in their thermal pattern, and how likely a person is who."""
+"""Appearance model: colours and thermal pattern, and their likelihood."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ from peopleboy.tracker.contour.contour_config import AppearanceConfig
 from peopleboy.tracker.contour.particles import D, Floats, H, W, X, Y
 from peopleboy.tracker.elementary import exponential
 
-# By how much the mean colours, 0..1, of one person's head, torso and legs differ from frame to frame after
-# the light has been divided out.
+# Standard deviation between frames of the mean colours, 0..1, of one person's head, torso and legs after
+# normalisation of the light.
 COLOUR_SPREAD = (0.06, 0.02, 0.035)
 BRIGHTNESS = 80.0  # mean of the colour image [grey] to which all are scaled
 DARKEST = 12.0  # mean below which colours are noise
-_LANES: Final = 32  # people who are compared side by side
-HIDDEN_PART = 0.3  # share of a part behind others from which its colour is not this person's
+_LANES: Final = 32  # number of people compared in parallel
+HIDDEN_PART = 0.3  # covered share of a part from which its colour is ignored
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AppearanceView:
-    """One frame as far as people's appearance is concerned.
+    """One frame for appearance comparison.
 
     Attributes:
         colour: the colour image; None without one, or in the dark.
-        thermal: the thermal image, to be described in the same way.
-        scale: (3, 4) by which the means of red, green, blue and thermal grey of head, torso and legs are
-            multiplied, so that one person's differ by about 1 from frame to frame.
+        thermal: the thermal image, described in the same way.
+        scale: (3, 4) factors on the means of red, green, blue and thermal grey of head, torso and legs, so
+            that one person's differ by about 1 from frame to frame.
     """
 
     colour: ColourView | None
@@ -67,12 +67,12 @@ class AppearanceView:
     def _write(self, means: Floats, column: int, state: Floats, view: ColourView) -> None:
         sums = view.sums or PowerSums.build(view.picture, 1)
         _, _, channels, degree = sums.integral.shape
-        firsts = tuple(range(0, channels * degree, degree))  # so the compiler knows how many there are
+        firsts = tuple(range(0, channels * degree, degree))  # a constant for the compiler
         write_part_means(means, column, state, view.alignment, sums.integral, firsts, self.scale, LEAST_SEEN)
 
 
 def visible(features: Floats, state: Floats, hiding: Regions) -> Floats:
-    """Blank out, in place, the features (N, F) of parts that lie behind people with regions (M, 4)."""
+    """Set to NaN, in place, the features (N, F) of parts behind people with regions (M, 4)."""
     if len(hiding):
         _blank_hidden(features.reshape(len(state), PARTS, -1), state, hiding)
     return features
@@ -94,7 +94,7 @@ def _blank_hidden(features: Floats, state: Floats, hiding: Regions) -> None:
 
 
 def _scale(light: float, config: AppearanceConfig) -> Floats:
-    """Divide by what one person's appearance differs from frame to frame, and colours by the light."""
+    """Normalise by the variation between frames of one person's appearance, and colours by the light."""
     scale = np.empty((PARTS, 4), dtype=np.float32)
     scale[:, :3] = BRIGHTNESS / max(light, 1.0) / np.array(COLOUR_SPREAD)[:, None]
     scale[:, 3] = 1 / np.array(config.grey_spread)
@@ -106,10 +106,10 @@ class ColourModel:
     """The mean of a person's last descriptions.
 
     Attributes:
-        recent: (K, F) float32 up to n_k descriptions, the newest last; NaN where a part was never seen.
+        recent: (K, F) float32 up to n_k descriptions, the newest last; NaN where a part was never visible.
             Becomes read-only.
         frames: n_k.
-        mean: (F,) c* of equation 6.2; NaN for parts that were never seen.
+        mean: (F,) c* of equation 6.2; NaN for parts that were never visible.
 
     Source: thesis, section 6.1.3; its sum in equation 6.2 has one term too many for its n_k.
     """
@@ -119,7 +119,7 @@ class ColourModel:
     mean: Floats = field(init=False)
 
     def __post_init__(self) -> None:
-        # Later descriptions hold no NaN where an earlier one had a value, so the newest has what is known.
+        # Later descriptions have no NaN where an earlier one had a value, so the newest is complete.
         object.__setattr__(self, "mean", _mean_of_known(self.recent))
         self.recent.setflags(write=False)
 
@@ -129,9 +129,9 @@ class ColourModel:
         return cls(np.array(features, dtype=np.float32)[None], config.frames)
 
     def updated(self, features: Floats) -> ColourModel:
-        """Take in the description (F,) of one more frame.
+        """Update with the description (F,) of one more frame.
 
-        What is unseen in it keeps its present mean; where nothing is seen, the model stays as it is.
+        Invisible parts keep their mean; if nothing is visible, the model does not change.
         """
         is_unseen = np.isnan(features)
         if is_unseen.all():
@@ -144,8 +144,8 @@ class ColourModel:
 def squared_distances(features: Floats, model: ColourModel) -> Floats:
     """Compare descriptions (N, F) with a model: squared Euclidean distance (N,).
 
-    Unseen features are taken to differ as the seen ones do on average, so that it does not pay to be unseen;
-    NaN where no feature can be compared.
+    Invisible features are assumed to differ as the visible ones do on average, so that invisibility is no
+    advantage; NaN where no feature can be compared.
 
     Source: thesis, equation 6.3.
     """
@@ -156,16 +156,16 @@ def squared_distances(features: Floats, model: ColourModel) -> Floats:
 def likelihood(
     features: Floats, model: ColourModel, config: ColourDescriptorConfig, unseen_spread: float = math.nan
 ) -> Floats:
-    """Return how likely people (N,) with these features (N, F) are the person of the model.
+    """Return the likelihood that people (N,) with features (N, F) are the person of the model.
 
-    Whoever cannot be compared at all is as likely as the others are on average, or 1 where nobody can.
+    People who cannot be compared get the average of the others, or 1 if none can.
 
     Args:
         features: of the people.
         model: of the person.
-        config: how sharply they are compared.
-        unseen_spread: how far off in every feature people without visible parts are taken to be; NaN to
-            treat them as those who cannot be compared.
+        config: sharpness of the comparison.
+        unseen_spread: assumed deviation in every feature of people without visible parts; NaN to treat them
+            as people who cannot be compared.
 
     Source: thesis, equation 6.4.
     """
@@ -176,7 +176,7 @@ def likelihood(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _likelihood(features: Floats, mean: Floats, sharpness: float, unseen: float) -> Floats:
-    """Turn distances into likelihoods (N,); `unseen` is the squared distance of those who are not seen."""
+    """Convert distances to likelihoods (N,); `unseen` is the squared distance of invisible people."""
     chance, sharp = _squared_distances(features, mean), np.float32(-sharpness)
     total, known = 0.0, 0
     for i in range(len(chance)):
@@ -209,7 +209,7 @@ def _mean_of_known(recent: Floats) -> Floats:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _squared_distances(features: Floats, mean: Floats) -> Floats:
-    """Compare as `squared_distances` does, many side by side and without branches."""
+    """Compare as `squared_distances` does, vectorised and without branches."""
     result, total = np.empty(len(features), dtype=np.float32), np.empty(_LANES)
     seen, lanes = np.empty(_LANES), np.empty((len(mean), _LANES), dtype=np.float32)
     for start in range(0, len(features), _LANES):
@@ -225,6 +225,6 @@ def _squared_distances(features: Floats, mean: Floats) -> Floats:
                 total[k] += away * away if is_known else np.float32(0)
                 seen[k] += 1.0 if is_known else 0.0
         for k in range(np.uint64(count)):
-            # No number where nothing is seen: none is divided by none.
+            # 0 / 0 is NaN where nothing is visible.
             result[np.uint64(start) + k] = total[k] * len(mean) / seen[k]
     return result

@@ -1,4 +1,4 @@
-"""One image, ready to be asked what people in it look like: moments of its channels over rectangles."""
+"""Moments of an image's channels over rectangles of people, by integral images."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from peopleboy.tracker.contour.appearance.regions import (
 from peopleboy.tracker.contour.colour_config import REPRESENTATIONS, ColourDescriptorConfig
 from peopleboy.tracker.contour.particles import Floats, H
 
-# Cumulative colour histograms of regions: the slow way to describe colours, for comparison.
+# Cumulative colour histograms of regions: the slow method, for comparison.
 
-BINS = 20  # of even width
+BINS = 20  # of equal width
 
 
 def cumulative_histograms(
@@ -36,9 +36,9 @@ def cumulative_histograms(
     Args:
         picture: (H, W, C).
         bounds: (M, 4) first column and row, and those after the last.
-        holes: (M, 4) rectangles whose pixels are left out.
-        bins: how many of even width.
-        least_seen: share of the region's area that must lie in the picture, or the region is NaN.
+        holes: (M, 4) rectangles whose pixels are excluded.
+        bins: number of bins of equal width.
+        least_seen: least share of the region's area inside the picture; otherwise the region is NaN.
 
     Returns:
         (M, C, bins) float32; the last bin is 1.
@@ -88,7 +88,7 @@ def _shared_area(one: Bounds, other: Bounds) -> int:
 
 Integers = NDArray[np.int64]
 
-LEAST_SEEN = 0.5  # share of a part that must lie in the colour image, or the part counts as unseen
+LEAST_SEEN = 0.5  # least share of a part inside the colour image; otherwise the part is invisible
 _FULL_TURN = 256
 # With this many pixels of 255, n S2 and S1^2 still fit an int64.
 _MOST_PIXELS = 1 << 23
@@ -100,8 +100,8 @@ class RegionSums:
 
     Attributes:
         power: (M, C, K) int64 sum of the k-th powers of each channel, k = 1..K, over the pixels in the image.
-        pixels: (M,) int64 how many those are.
-        area: (M,) int64 pixels of the region, also outside the image.
+        pixels: (M,) int64 their number.
+        area: (M,) int64 pixels of the region, including those outside the image.
     """
 
     power: Integers
@@ -109,7 +109,7 @@ class RegionSums:
     area: Integers
 
     def __sub__(self, part: RegionSums) -> RegionSums:
-        """Leave out regions that lie inside these."""
+        """Subtract regions that lie inside these."""
         return RegionSums(self.power - part.power, self.pixels - part.pixels, self.area - part.area)
 
 
@@ -128,15 +128,15 @@ class PowerSums:
 
     @classmethod
     def build(cls, picture: NDArray[np.uint8], degree: int) -> PowerSums:
-        """Add up a picture (H, W, C) and its powers up to `degree`.
+        """Make them from a picture (H, W, C) and its powers up to `degree`.
 
         Raises:
-            BadInput: a picture too large for exact sums.
+            BadInput: the picture is too large for exact sums.
         """
         if picture.shape[0] * picture.shape[1] > _MOST_PIXELS:
             raise BadInput(f"picture must have at most {_MOST_PIXELS} pixels, got {picture.shape}")
         if degree == 1:
-            # OpenCV knows no higher powers of integers, but is three times as fast with these.
+            # OpenCV has no higher powers of integers, but is three times as fast for these.
             height, width, channels = picture.shape
             sums = np.asarray(cv2.integral(picture), dtype=np.int32)
             return cls(sums.reshape(height + 1, width + 1, channels, 1))
@@ -151,10 +151,10 @@ class PowerSums:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ColourView:
-    """A colour image as all filters see it; build it once a frame.
+    """A colour image as input of all filters; build it once per frame.
 
-    The colour image covers only the middle of the thermal one. A part of a person of which less than
-    `LEAST_SEEN` lies in it is unseen: its features are NaN, and comparisons leave them out.
+    The colour image only covers the middle of the thermal one. A part of a person with less than `LEAST_SEEN`
+    inside it is invisible: its features are NaN, and comparisons ignore them.
 
     Attributes:
         picture: (H, W, C) uint8 channels of the configured colour space.
@@ -193,8 +193,9 @@ class ColourView:
 
         Args:
             rectangles: (N, P, 4) left, top, right, bottom [px], thermal image.
-            height: (N,) semi-height h [px] of the people they belong to, for the parallax.
-            holes: (N, P, 4) rectangles inside of these that are left out, such as what another person covers.
+            height: (N,) semi-height h [px] of their people, for the parallax.
+            holes: (N, P, 4) rectangles inside of these that are excluded, such as those covered by another
+                person.
 
         Returns:
             (N, F) float32, ordered by rectangle, then channel, then moment or bin.
@@ -211,7 +212,7 @@ class ColourView:
         return described.reshape(len(rectangles), -1)
 
     def _bounds(self, rectangles: Floats, height: Floats) -> Bounds:
-        """Return the pixels (N P, 4) of this image that thermal rectangles (N, P, 4) cover."""
+        """Return the pixels (N P, 4) of this image inside thermal rectangles (N, P, 4)."""
         bounds: Bounds = pixel_bounds(aligned(self.alignment, rectangles, height))
         return bounds
 
@@ -219,12 +220,12 @@ class ColourView:
 def normalised_moments(sums: RegionSums, least_seen: float) -> Floats:
     """Describe M regions by m1 = k1, m2 = k2 / k1 and m3 = k3 / k2^1.5, values scaled to 0..1.
 
-    What a region is too small or too plain for is 0: m2 of one pixel or of black, m3 of two pixels or of a
-    region of one value. A region of which less than `least_seen` lies in the image, or not one pixel, is NaN.
+    Undefined moments are 0: m2 of one pixel or of black, m3 of two pixels or of a region of one value. A
+    region with less than `least_seen` inside the image, or without a pixel, is NaN.
 
     Args:
         sums: of C channels and K powers, K = 1..3.
-        least_seen: share of the region's area.
+        least_seen: least share of the region's area.
 
     Returns:
         (M, C, K) float32.
@@ -236,17 +237,17 @@ def normalised_moments(sums: RegionSums, least_seen: float) -> Floats:
 
 
 def _inside(part: Bounds, whole: Bounds) -> Bounds:
-    """Cut rectangles (M, 4) down to what lies inside of others; empty where nothing does."""
+    """Clip rectangles (M, 4) to others; empty without an intersection."""
     start = np.maximum(part[:, :2], whole[:, :2])
     end = np.maximum(np.minimum(part[:, 2:], whole[:, 2:]), start)
     return np.concatenate([start, end], axis=1)
 
 
 def channels_of(colour: NDArray[np.uint8], config: ColourDescriptorConfig) -> NDArray[np.uint8]:
-    """Turn an RGB image (H, W, 3) into the channels (H, W, C) uint8 of the configured space.
+    """Convert an RGB image (H, W, 3) to the channels (H, W, C) uint8 of the configured space.
 
-    Hue is an angle, and its mean must not depend on where red begins: for moments, hue and saturation are
-    the place in the colour disc, ((1 + S cos H) / 2, (1 + S sin H) / 2). Histograms take H, S, V as they are.
+    Hue is an angle, and its mean must not depend on the angle of red: for moments, hue and saturation are a
+    position in the colour disc, ((1 + S cos H) / 2, (1 + S sin H) / 2). Histograms use H, S, V unchanged.
     """
     if config.space == "grey":
         return np.asarray(cv2.cvtColor(colour, cv2.COLOR_RGB2GRAY), np.uint8)[..., None]
@@ -257,7 +258,7 @@ def channels_of(colour: NDArray[np.uint8], config: ColourDescriptorConfig) -> ND
 
 
 def _disc(hsv: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Place hue and saturation in the colour disc, (H, W, 3) in and out."""
+    """Convert hue and saturation to positions in the colour disc, (H, W, 3) in and out."""
     angle = np.arange(_FULL_TURN) * (2 * np.pi / _FULL_TURN)
     hue, saturation = hsv[..., 0], hsv[..., 1].astype(np.float32)
     result = hsv.copy()
@@ -297,7 +298,7 @@ def _sum_over(integral: NDArray[np.integer[Any]], bounds: Bounds) -> Integers:
     return power.reshape(len(bounds), channels, degree)
 
 
-# Without numpy's rules a kernel would test every division.
+# Without NumPy's rules a kernel would test every division.
 @njit(cache=True, nogil=True, error_model="numpy")
 def _normalised_moments(power: Integers, pixels: Integers, area: Integers, least_seen: float) -> Floats:
     count, channels, degree = power.shape
@@ -314,13 +315,13 @@ def _normalised_moments(power: Integers, pixels: Integers, area: Integers, least
             result[i, c, 0] = k1 / WHITE
             if degree < 2 or n < 2 or s1 == 0:
                 continue
-            # In integers, so that a plain region has exactly no variance.
+            # In integers, so that a uniform region has exactly no variance.
             spread = n * power[i, c, 1] - s1 * s1
             k2 = spread * pairs
             result[i, c, 1] = k2 / (k1 * WHITE)
             if degree < 3 or n < 3 or spread == 0:
                 continue
-            # Equation 6.11 with S1 = n k1, divided through by n^3 against the loss of digits.
+            # Equation 6.11 with S1 = n k1, divided by n^3 against loss of precision.
             third = 2.0 * k1 * k1 * k1 + share * (power[i, c, 2] - 3.0 * k1 * power[i, c, 1])
             result[i, c, 2] = triples * third / (k2 * np.sqrt(k2))
     return result

@@ -35,18 +35,17 @@ def write_part_means(
 ) -> None:
     """Write the scaled mean of each of an image's C channels over each part of people, in place.
 
-    What `ColourView.describe` says as the first moments, to the last bit, without arrays in between.
+    The first moments of `ColourView.describe`, bit-identical, without intermediate arrays.
 
     Args:
-        means: (N, 3, F) whose columns from `column` on take the means; NaN where too little of a part is in
-            the image.
+        means: (N, 3, F) output, written from `column` on; NaN where too little of a part is in the image.
         column: of the first channel.
         state: (N, 9) contours in the thermal image.
         alignment: (2, 4) from the thermal image to this one.
         integral: (H + 1, W + 1, C, K) of `PowerSums`.
-        channels: where the first power of each channel is among those of a pixel.
-        scale: (3, F) by which the means, 0..1, are multiplied.
-        least_seen: share of the part's area that must lie in the image.
+        channels: index of the first power of each channel among those of a pixel.
+        scale: (3, F) factors on the means, 0..1.
+        least_seen: least share of the part's area inside the image.
     """
     height, width = integral.shape[:2]
     sums, step = integral.reshape(-1), integral.shape[2] * integral.shape[3]
@@ -66,7 +65,7 @@ def write_part_means(
                 for n in range(np.uint64(len(rows))):
                     means[np.uint64(rows[n]), part, column + c] = mean[n]
     for i in range(len(state)):
-        if twin[i] >= 0:  # nothing but the head lies elsewhere for another d
+        if twin[i] >= 0:  # only the head has another position for another d
             for part in range(TORSO, PARTS):
                 for c in range(column, column + len(channels)):
                     means[i, part, c] = means[twin[i], part, c]
@@ -92,8 +91,8 @@ def _add_up(
     channels: tuple[int, ...],
     count: int,
 ) -> None:
-    """Sum channels (C, M) over the first parts (M,), whose corners are those of `_locate`."""
-    # Unsigned, as numba would ask of every other number whether it counts from the end.
+    """Sum channels (C, M) over the first parts (M,), with corners as in `_locate`."""
+    # Unsigned, as numba would otherwise check for negative indices.
     for n in range(np.uint64(count)):
         a, b = np.uint64(corners[0, n]) * np.uint64(step), np.uint64(corners[1, n]) * np.uint64(step)
         c, d = np.uint64(corners[2, n]) * np.uint64(step), np.uint64(corners[3, n]) * np.uint64(step)
@@ -102,7 +101,7 @@ def _add_up(
             total[np.uint64(k), n] = sums[a + at] + sums[b + at] - (sums[c + at] + sums[d + at])
 
 
-# Without numpy's rules a kernel would test every division.
+# Without NumPy's rules a kernel would test every division.
 @njit(cache=True, nogil=True, error_model="numpy")
 def _locate(
     corners: NDArray[np.int32],
@@ -114,22 +113,22 @@ def _locate(
     height: int,
     least_seen: float,
 ) -> None:
-    """Find one part of people in an image of that size, for many at a time and without branches.
+    """Locate one part of people in an image of a given size, vectorised and without branches.
 
     Args:
-        corners: takes (4, M) pixels of the integral image: the lower right and upper left one, which count,
-            and the upper right and lower left one, which are taken off.
-        share: takes (M,) one pixel's share of the part's mean; NaN where too little of it is in the image.
-        shape: (5, M) of `_columns`.
-        part: which.
+        corners: output (4, M) pixels of the integral image: lower right and upper left, which are added, and
+            upper right and lower left, which are subtracted.
+        share: output (M,) one pixel's share of the part's mean; NaN where too little of it is in the image.
+        shape: (5, M) from `_columns`.
+        part: index of the part.
         alignment: (2, 4) from the thermal image to this one.
         width: of the image.
         height: of the image.
-        least_seen: share of the part's area that must lie in the image.
+        least_seen: least share of the part's area inside the image.
     """
     none, most_right, most_down = np.int32(0), np.int32(width), np.int32(height)
     columns = np.int32(width + 1)
-    # Unsigned, as numba would ask of every other number whether it counts from the end.
+    # Unsigned, as numba would otherwise check for negative indices.
     for n in range(np.uint64(shape.shape[1])):
         x, y, w, h, d = shape[0, n], shape[1, n], shape[2, n], shape[3, n], shape[4, n]
         edges = align(alignment, part_rectangle(x, y, w, h, d, part), h)
@@ -139,7 +138,7 @@ def _locate(
         area = np.float64(max(wide, none)) * np.float64(max(tall, none))
         left, top = min(max(left, none), most_right), min(max(top, none), most_down)
         right, bottom = max(left, min(right, most_right)), max(top, min(bottom, most_down))
-        # Cut to 32 bits at once, or numba would reckon with 64.
+        # Cast to 32 bits at once, or numba would compute with 64.
         pixels = np.int32((right - left) * (bottom - top))
         share[n] = 1.0 / pixels if (pixels > 0) & (pixels >= least_seen * area) else np.nan
         upper, lower = np.int32(top * columns), np.int32(bottom * columns)

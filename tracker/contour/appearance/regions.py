@@ -1,4 +1,4 @@
-"""Where head, torso and legs of a person are: upright rectangles from the elliptic contour."""
+"""Regions of head, torso and legs: upright rectangles from the elliptic contour."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ Bounds = NDArray[np.int32]
 HEAD, TORSO, LEGS = range(3)
 PARTS = 3
 
-# Per part: share of d by which it is displaced; half its width in w and in h; its top and bottom below the
-# body's centre in h. The thesis shows the rectangles in a figure only (6.2 b); these hold hardly anything but
-# the part they are named after, legs in mid-stride aside.
+# Per part: its offset as a share of d; half its width in w and in h; its top and bottom below the body's
+# centre in h. The thesis shows the rectangles in a figure only (6.2 b); these contain hardly anything but the
+# part, except legs in mid-stride.
 _LAYOUT = np.array(
     [
         [1.0, 0.0, 0.12, -1.40, -1.05],
@@ -36,7 +36,7 @@ Rectangle = tuple[np.float32, np.float32, np.float32, np.float32]
 def part_rectangle(
     x: np.float32, y: np.float32, w: np.float32, h: np.float32, d: np.float32, part: int
 ) -> Rectangle:
-    """Lay out one part of a person; right and bottom are never less than left and top.
+    """Return the rectangle of one part of a person; right and bottom are never less than left and top.
 
     Source: thesis, section 6.1.2 and figure 6.2 b.
     """
@@ -49,7 +49,7 @@ def part_rectangle(
 
 @njit(cache=True, nogil=True)
 def part_rectangles(state: Floats) -> Floats:
-    """Lay out head, torso and legs (N, 3, 4) of people (N, 9), as `part_rectangle` does for one."""
+    """Return head, torso and legs (N, 3, 4) of people (N, 9), as `part_rectangle` does for one."""
     result = np.empty((len(state), PARTS, 4), dtype=np.float32)
     for i in range(len(state)):
         for part in range(PARTS):
@@ -63,14 +63,14 @@ def part_rectangles(state: Floats) -> Floats:
 def first_pixel_after(edge: np.float32) -> np.int32:
     """Return the first column or row whose pixels' centres are not left of, or above, an edge [px].
 
-    Far beyond any image it is still an int32, whatever a stray sample asks for.
+    Clipped far beyond any image, so that it is an int32 for any sample.
     """
     return np.int32(np.ceil(min(max(edge, np.float32(-1e6)), np.float32(1e6))))
 
 
 @njit(cache=True, nogil=True)
 def pixel_bounds(rectangles: Floats) -> Bounds:
-    """Return which pixels rectangles (N, P, 4) cover: those with their centre inside.
+    """Return the pixels of rectangles (N, P, 4): those with their centre inside.
 
     Returns:
         (N P, 4) first column, first row, and those after the last ones; they may lie outside the image.
@@ -95,20 +95,20 @@ def covered(bounds: Bounds, height: int, width: int) -> tuple[NDArray[np.int64],
     return pixels, area
 
 
-# From places in the thermal image to places in the colour image.
+# Conversion of positions from the thermal to the colour image.
 
 
 @lru_cache(maxsize=16)
 def alignment(
     thermal_shape: tuple[int, int], colour_shape: tuple[int, int], affine: Affine, parallax: float
 ) -> Floats:
-    """Return equation 6.1 in pixels for images of given sizes, its parallax included.
+    """Return equation 6.1 in pixels for images of given sizes, including its parallax.
 
     Pixel (u, v) has its centre at the shares (u + 1/2) / W, (v + 1/2) / H.
 
     Returns:
-        (2, 4) that maps thermal u, v, h, 1 [px] to colour x, y [px]; h is the semi-height of the person who
-        is looked at. Read-only.
+        (2, 4) that maps thermal u, v, h, 1 [px] to colour x, y [px]; h is the semi-height of the person.
+        Read-only.
     """
     p1, p2, p3, p4, p5, p6 = affine
     to_share = np.diag([1 / thermal_shape[1], 1 / thermal_shape[0], 1 / thermal_shape[1], 1.0])
@@ -124,13 +124,12 @@ def alignment(
 def align(matrix: Floats, rectangle: Rectangle, height: np.float32) -> Rectangle:
     """Map a rectangle of the thermal image to an upright one of the colour image.
 
-    A sheared map makes parallelograms; their place is that of their centre, and their size that of their
-    middle lines.
+    A sheared map gives parallelograms; the result has their centre, and the size of their middle lines.
 
     Args:
-        matrix: of `alignment`.
+        matrix: from `alignment`.
         rectangle: left, top, right, bottom [px].
-        height: semi-height h [px] of the person it belongs to.
+        height: semi-height h [px] of its person.
     """
     half = np.float32(0.5)
     left, top, right, bottom = rectangle

@@ -1,1 +1,1 @@
-"""A person's outline of two ellipses, and how well it fits the image."""
+"""Measurement model: contours of two ellipses, and their fit to the image."""

@@ -1,4 +1,4 @@
-"""By how much an image differs from pixel to pixel: kernels."""
+"""Kernels that measure the clutter of an image."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from peopleboy.tracker.contour.particles import Floats, H, W, X, Y
 
-_MOST: Final = 255  # [grey] that pixels differ by
+_MOST: Final = 255  # [grey] greatest difference of pixels
 
 
 @njit(cache=True, nogil=True)
 def differences_in(image: NDArray[np.uint8], apart: int, stride: int) -> NDArray[np.uint8]:
-    """Return by how much pixels of an image (H, W) differ from those so far to the right, and below, (N,).
+    """Return histograms of differences of pixels of an image (H, W) at a distance, right and below, (N,).
 
     Of the rows for the one, and of the columns for the other, every `stride`-th is looked at.
     """
@@ -44,7 +44,7 @@ def _subtract(difference: NDArray[np.uint8], one: NDArray[np.uint8], other: NDAr
 
 @njit(cache=True, nogil=True)
 def least_above(differences: NDArray[np.uint8], share: float) -> int:
-    """Find the least difference that so large a share (N,) does not exceed, which is a small one mostly."""
+    """Return the least difference not exceeded by a share of the pixels (N,); it is mostly small."""
     wanted, low, high = share * len(differences), -1, 0
     while high < _MOST and _count_up_to(differences, high) < wanted:
         low, high = high, min(2 * high + 1, _MOST)
@@ -65,15 +65,14 @@ def _count_up_to(differences: NDArray[np.uint8], most: int) -> int:
     return int(count)
 
 
-# Samples that were drawn from the same one, whose bodies need to be looked at once.
+# Samples drawn from the same one, whose bodies need to be measured only once.
 
 
 @njit(cache=True, nogil=True)
 def twin_of(state: Floats, i: int) -> int:
-    """Find one of the two samples before the i-th whose body is the same; negative if there is none.
+    """Return one of the two samples before the i-th with the same body; negative if there is none.
 
-    Samples (N, 9) drawn from the same one lie together and differ in d alone, but for one in every few that
-    is tried at another size.
+    Samples (N, 9) drawn from the same one are adjacent and differ in d alone, except for a few resized ones.
     """
     for before in (i - 1, i - 2):
         if before >= 0 and (
@@ -88,7 +87,7 @@ def twin_of(state: Floats, i: int) -> int:
 
 @njit(cache=True, nogil=True)
 def bodies_of(state: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Find the twins (N,) of samples (N, 9) by `twin_of`, and the rows (M,) of those that have none."""
+    """Return the twins (N,) of samples (N, 9) by `twin_of`, and the rows (M,) of those without one."""
     twin, rows, count = np.empty(len(state), dtype=np.int64), np.empty(len(state), dtype=np.int64), 0
     for i in range(len(state)):
         twin[i] = twin_of(state, i)

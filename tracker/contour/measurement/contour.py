@@ -1,7 +1,7 @@
-"""The contour of a person: a body and a head ellipse, looked at in sections.
+"""The contour model of a person: a body and a head ellipse, divided into sections.
 
-Every point on or beside the contour is the body's centre plus a fixed mix of d, w and h. A whole contour
-model is therefore a table of coefficients (`Probes`), laid out once for an image's size.
+Every point on or near the contour is the body's centre plus a fixed linear combination of d, w and h. A
+contour model is therefore a table of coefficients (`Probes`), computed once for an image size.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ HEAD_ASPECT = 0.75  # head semi-width / head semi-height
 NECK_DEG = 60.0  # opening of the head ellipse at the neck
 HEAD_TOP_DEG = 90.0  # arc of the head's top section
 SHOULDER_DEG = 60.0  # arc of a shoulder, from the top of the body down
-FEET_SPAN = 0.6  # how far the line under the feet reaches to both sides, in body semi-heights
+FEET_SPAN = 0.6  # half-length of the line under the feet, in body semi-heights
 FEET_COLUMNS = 8
 
 
@@ -31,16 +31,16 @@ FEET_COLUMNS = 8
 class Probes:
     """P pairs of points, one inside and one outside of the contour.
 
-    A point lies at (x, y) + (d, w, h, 1) mixed by its two rows of four coefficients.
+    A point is at (x, y) plus (d, w, h, 1) multiplied by its two rows of four coefficients.
 
     Attributes:
         inner: (P, 2, 4) float32 coefficients of the inner points, rows for u and v.
         outer: (P, 2, 4) float32 the same for the outer points.
-        section: (P,) int64 the section of each pair, in their order.
-        first: (9,) int64 the first pair of each section, and one after the last.
-        mix: (7, 2 P) float32 the coefficients once more, all inner points before all outer ones: those of
-            u for d, w, h, 1, and those of v for w, h, 1. So many points at a time are quick to place.
-        same: (2 P,) int64 the first of these points that lies where each one does, in its own section.
+        section: (P,) int64 section of each pair, in increasing order.
+        first: (9,) int64 first pair of each section, and P.
+        mix: (7, 2 P) float32 the same coefficients, all inner points before all outer ones: those of u for d,
+            w, h, 1, and those of v for w, h, 1, in a layout for vectorised kernels.
+        same: (2 P,) int64 the first point with the same coefficients in the same section.
     """
 
     inner: Floats
@@ -54,7 +54,7 @@ class Probes:
 def section_angles(config: ContourConfig) -> dict[int, tuple[float, float]]:
     """Return each section's arc on its ellipse, in radians from the top, positive to the right.
 
-    The head's three arcs cover its ellipse but for the neck; shoulders and sides cover the body's down to
+    The head's three arcs cover its ellipse except for the neck; shoulders and sides cover the body's down to
     `side_end_deg`.
     """
     top, neck = np.radians(HEAD_TOP_DEG) / 2, np.pi - np.radians(NECK_DEG) / 2
@@ -71,7 +71,7 @@ def section_angles(config: ContourConfig) -> dict[int, tuple[float, float]]:
 
 
 def build_probes(config: ContourConfig, size: float) -> Probes:
-    """Lay out the pairs of points of all sections.
+    """Return the pairs of points of all sections.
 
     Args:
         config: the contour model.
@@ -80,7 +80,7 @@ def build_probes(config: ContourConfig, size: float) -> Probes:
     near, deep = config.reach_px * size, config.inner_depth
     parts: list[tuple[Floats, Floats, int]] = []
     for section, (start, end) in section_angles(config).items():
-        # The middles of equal pieces: no point is shared by two sections.
+        # The middles of equal pieces: no point belongs to two sections.
         angle = start + (end - start) * (np.arange(config.points) + 0.5) / config.points
         if section in (HEAD_LEFT, HEAD_TOP, HEAD_RIGHT):
             reach = np.resize(config.head_reach, len(angle))
@@ -106,7 +106,7 @@ def build_probes(config: ContourConfig, size: float) -> Probes:
 
 
 def _firsts(rows: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Find the first (N,) of equal rows (N, M)."""
+    """Return the first (N,) of equal rows (N, M)."""
     _, first, group = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     return np.asarray(first[group.reshape(-1)], np.int64)
 
@@ -124,7 +124,7 @@ def body_points(angle: NDArray[np.float64], grow: NDArray[np.float64], grow_px: 
 
 
 def head_points(angle: NDArray[np.float64], grow: NDArray[np.float64], grow_px: float) -> Floats:
-    """Give points (K, 2, 4) of the head ellipse, both semi-axes longer by `grow` semi-widths + `grow_px`."""
+    """Return points (K, 2, 4) of the head ellipse, its semi-axes longer by `grow` semi-widths + `grow_px`."""
     points = np.zeros((len(angle), 2, 4), dtype=np.float32)
     right, down = np.sin(angle), -np.cos(angle)
     tall = 1 / HEAD_DIVISOR
@@ -138,7 +138,7 @@ def head_points(angle: NDArray[np.float64], grow: NDArray[np.float64], grow_px: 
 
 
 def _feet_points() -> tuple[Floats, Floats]:
-    """Return points (K, 2, 4) above the line under the feet, and below it at two depths, where floor is."""
+    """Return points (K, 2, 4) above the line under the feet, and below it at two depths, on the floor."""
     across = np.linspace(-FEET_SPAN, FEET_SPAN, FEET_COLUMNS)
     points = np.zeros((2, 2, FEET_COLUMNS, 2, 4), dtype=np.float32)
     points[..., 0, 2] = across
@@ -149,13 +149,13 @@ def _feet_points() -> tuple[Floats, Floats]:
 
 
 def build_response(config: ContourConfig) -> Floats:
-    """Tabulate (8, 511) what a difference of grey -255..255, inner minus outer, counts in each section."""
+    """Tabulate (8, 511) the response to a grey difference -255..255, inner minus outer, in each section."""
     difference = np.arange(1 - GREYS, GREYS, dtype=np.float64)
     response = difference / (config.saturation_grey or 1.0)
     if config.saturation_grey > 0:
         response = np.clip(response, -1.0, 1.0) if config.is_cut_off else np.tanh(response)
     table = np.tile(response, (SECTIONS, 1))
-    # A garment may be colder than what is behind it; a head hardly ever is.
+    # Clothes may be colder than the background; a head hardly ever is.
     table[SHOULDER_LEFT:FEET] = np.where(difference < 0, config.cold_response * response, response)
     return table.astype(np.float32)
 

@@ -1,4 +1,4 @@
-"""What the image says of contours: how well they fit it, and what of them is in view.
+"""Likelihood of contours: their fit to the image, and their visible share.
 
 All variants share the one kernel that reads the image.
 """
@@ -39,19 +39,19 @@ from peopleboy.tracker.contour.particles import FOOT, HEAD_DIVISOR, D, Floats, H
 
 FEET_GAIN = 3.0  # factor on the response of the feet, up to 1: they fill only a third of their line
 COVERED = 0
-"""Grey of the pixels of people in front, in an image where no other pixel has it."""
+"""Grey that marks pixels of people in front; no other pixel has it."""
 NO_GREY = -2
-BLACK_GREY = 4  # at most, with noise
+BLACK_GREY = 4  # greatest black, with noise
 LEGS_WIDTH = 0.75  # half width of the legs, in body semi-widths
 _SUBPIXEL_BITS = 4
 _SCALE = 1 << _SUBPIXEL_BITS
 
 
-CLUTTER_SETTLES_S: Final = 0.5  # time constant with which a tracker takes in that the clutter changes
+CLUTTER_SETTLES_S: Final = 0.5  # time constant with which a tracker follows changes of the clutter
 _APART_PX: Final = 8  # of 240 rows: between the two pixels of a pair
-_SHARE: Final = 0.75  # of the pairs differ by less: people, lamps and windows are among the others
+_SHARE: Final = 0.75  # quantile of the pairs' differences, which excludes people, lamps and windows
 _STRIDE: Final = 4
-_EXTREME: Final = 40.0  # log odds beyond which the probability no longer changes, and exp would overflow
+_EXTREME: Final = 40.0  # log-odds beyond which the probability no longer changes, and exp would overflow
 
 
 def _superellipse(power: float, count: int = 32) -> NDArray[np.float64]:
@@ -62,18 +62,18 @@ def _superellipse(power: float, count: int = 32) -> NDArray[np.float64]:
     return outline
 
 
-BODY = _superellipse(3.5)  # shoulders and arms reach into the corners of the ellipse
+BODY = _superellipse(3.5)  # shoulders and arms fill the corners of the ellipse
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ContourModel:
-    """A contour laid out for one image size; build it once, use it for every frame.
+    """A contour model for one image size; build it once, use it for every frame.
 
     Attributes:
-        shape: (H, W) of the images it is for.
-        config: where it came from.
-        probes: the points to look at.
-        response: (8, 511) what a difference of grey counts.
+        shape: (H, W) of the images.
+        config: its settings.
+        probes: the points to sample.
+        response: (8, 511) response to a grey difference.
         weights: (8,) of the sections.
     """
 
@@ -85,16 +85,16 @@ class ContourModel:
 
     @classmethod
     def build(cls, shape: tuple[int, int], config: ContourConfig) -> ContourModel:
-        """Lay the contour out for images of (H, W) pixels."""
+        """Make the model for images of (H, W) pixels."""
         size = shape[0] / REFERENCE_HEIGHT_PX
         return cls(shape, config, build_probes(config, size), build_response(config), section_weights(config))
 
     def prepare(self, thermal: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        """Turn a thermal image (H, W) into the one that the contour is compared with."""
+        """Convert a thermal image (H, W) to the one in which contours are measured."""
         return person_grey(thermal, self.config)
 
     def amid(self, clutter_grey: float) -> ContourModel:
-        """Let the response bend only where differences stand out from such clutter."""
+        """Return a model whose response saturates at this clutter, if that is larger."""
         bend = round(self.config.clutter_share * clutter_grey)
         if bend <= self.config.saturation_grey:
             return self
@@ -107,15 +107,15 @@ class ContourModel:
         covered: float | None = None,
         covered_share: float = 1.0,
     ) -> Floats:
-        """Measure every section of every sample in a prepared image, (N, 8).
+        """Measure every section of every sample in a preprocessed image, (N, 8).
 
-        Where points above the image, or on people in front, have less than their weight, a section
-        counts for the rest what the others say on average.
+        Where points above the image, or on people in front, have reduced weight, the section's remaining
+        weight gets the average of the other sections.
 
         Args:
-            image: (H, W) prepared.
+            image: (H, W) preprocessed.
             state: (N, 9) samples.
-            covered: what a point counts where the image says that a person is in front; None if it does not.
+            covered: response of a point where a person in front is marked in the image; None without marks.
             covered_share: weight of such a point.
         """
         config = self.config
@@ -139,23 +139,23 @@ def _bent(config: ContourConfig, bend_grey: int) -> Floats:
 
 
 def clutter_of(image: NDArray[np.uint8]) -> float:
-    """Measure by how much [grey] most pixels of an image (H, W) differ at most from those nearby.
+    """Return the clutter: the typical difference [grey] between nearby pixels of an image (H, W).
 
-    Raised by noise, texture and sharp gain; people, lamps and windows take too little of an image to count.
+    Noise, texture and a high gain increase it; people, lamps and windows cover too little of an image.
     """
     apart = max(round(_APART_PX * image.shape[0] / REFERENCE_HEIGHT_PX), 1)
     return float(least_above(differences_in(image, apart, _STRIDE), _SHARE))
 
 
 def settled_clutter(before: float | None, now: float, dt_s: float) -> float:
-    """Let the clutter [grey] follow what is measured now, slowly, so that no person's evidence pumps."""
+    """Low-pass the clutter [grey], so that the evidence for people does not fluctuate."""
     if before is None:
         return now
     return before + (1 - math.exp(-dt_s / CLUTTER_SETTLES_S)) * (now - before)
 
 
 def fitness(differences: Floats, weights: NDArray[np.float64], config: LikelihoodConfig) -> Floats:
-    """Sum up how well each sample fits the image, (N,), from its section differences (N, 8).
+    """Return the fitness (N,) of each sample from its section differences (N, 8).
 
     Source: thesis, equation 4.3; paper, equations 3 and 4, where the plain sum of the differences is
     multiplied by the weight of those sections that reach a threshold. The paper's sum is divided by the
@@ -171,7 +171,7 @@ def fitness(differences: Floats, weights: NDArray[np.float64], config: Likelihoo
 
 
 def probability(fit: Floats, config: LikelihoodConfig) -> Floats:
-    """Scale a fitness (N,) to 0..1; 0.5 at the threshold.
+    """Map a fitness (N,) to 0..1; 0.5 at the threshold.
 
     Source: thesis, equation 4.4, which equals the logistic function of 2 kappa (f - theta).
     """
@@ -180,17 +180,17 @@ def probability(fit: Floats, config: LikelihoodConfig) -> Floats:
 
 
 def person_grey(thermal: NDArray[np.uint8], config: ContourConfig) -> NDArray[np.uint8]:
-    """Turn what is too hot for a person as dark as the coldest surface, (H, W) in and out.
+    """Set pixels too hot for a person to the coldest grey, (H, W) in and out.
 
-    Lamps and radiators lose their bright outline that way, and people in front of them regain theirs. Only a
-    scale that starts above the room, which is black then, is known to end above people.
+    Lamps and radiators thus lose their bright outline, and people in front of them regain theirs. Only a
+    scale that starts above room temperature, so that the room is black, is known to end above people.
     """
     if config.hottest_grey >= GREYS or _is_bright(thermal, config.dark_share):
         return np.ascontiguousarray(thermal)
     if thermal.max() < config.hottest_grey:
         return np.ascontiguousarray(thermal)
     side = 2 * config.hot_margin_px + 1
-    # White where it is not too hot, as OpenCV's bits are quicker than numpy's choices.
+    # Mask arithmetic in OpenCV is faster than np.where.
     is_cooler = np.asarray(cv2.inRange(thermal, 0, config.hottest_grey - 1), np.uint8)
     kept = np.asarray(cv2.erode(is_cooler, np.ones((side, side), np.uint8)), np.uint8)
     return np.bitwise_and(kept, thermal)
@@ -216,9 +216,9 @@ def section_differences(
         image: (H, W) grey.
         state: (N, 9) samples.
         probes: the points to look at.
-        response: (8, 511) what a difference counts.
-        unseen: what a pair counts with a point outside the image.
-        covered: what a pair counts with a point on a person in front; None in an image without such marks.
+        response: (8, 511) response to a grey difference.
+        unseen: response of a pair with a point outside the image.
+        covered: response of a pair with a point on a person in front; None in an image without such marks.
     """
     return _measured(image, state, probes, response, (unseen, 1.0), (covered, 1.0))[0]
 
@@ -232,18 +232,18 @@ def _measured(
     covered: tuple[float | None, float],
     feet_gain: float = 0.0,
 ) -> tuple[Floats, Floats]:
-    """Measure sections as `section_differences` does, and what share of their weight they keep.
+    """Measure sections as `section_differences` does, and the share of weight that they keep.
 
-    The latter is (N, 8), or (0, 8) where it is all of it.
+    The latter is (N, 8), or (0, 8) if all sections keep all of it.
 
     Args:
         image: (H, W) grey.
         state: (N, 9) samples.
         probes: the points to look at.
-        response: (8, 511) what a difference counts.
-        unseen: what a pair counts with a point outside the image, and its weight above it.
+        response: (8, 511) response to a grey difference.
+        unseen: response of a pair with a point outside the image, and its weight above it.
         covered: the same with a point on a person in front; None in an image without such marks.
-        feet_gain: factor on the response of the feet, which counts up to 1; 0 leaves it as it is.
+        feet_gain: factor on the response of the feet, limited to 1; 0 leaves it unchanged.
     """
     grey = NO_GREY if covered[0] is None else COVERED
     missing = float(unseen[0]), float(unseen[1]), float(covered[0] or 0.0), float(covered[1])
@@ -254,7 +254,7 @@ def _measured(
 
 
 def pixels_under(state: Floats, probes: Probes, shape: tuple[int, int]) -> NDArray[np.int32]:
-    """Find the pixels nearest to a contour's points (2 P,), all inner ones before all outer ones.
+    """Return the pixels nearest to a contour's points (2 P,), all inner ones before all outer ones.
 
     Args:
         state: (9,) of a person.
@@ -262,7 +262,7 @@ def pixels_under(state: Floats, probes: Probes, shape: tuple[int, int]) -> NDArr
         shape: (H, W) of the image.
 
     Returns:
-        Number of each pixel, counted row by row; negative outside the image.
+        Index of each pixel, row by row; negative outside the image.
     """
     at = np.empty(probes.mix.shape[1], dtype=np.int32)
     locate_points(at, state, probes.mix, shape[1], shape[0])
@@ -274,7 +274,7 @@ def covered_by(
     states: Sequence[NDArray[np.float64]],
     growth: float = 1.0,
 ) -> NDArray[np.uint8]:
-    """Copy an image (H, W) and mark in it what people with these states (9,) cover."""
+    """Copy an image (H, W), and mark in it the pixels covered by people with these states (9,)."""
     marked = uncovered(image)
     for state in states:
         cover(marked, state, growth)
@@ -282,7 +282,7 @@ def covered_by(
 
 
 def uncovered(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Copy a grey image (H, W) into one where no pixel is marked as covered."""
+    """Copy a grey image (H, W) without pixels of the marking grey."""
     return np.maximum(image, np.uint8(COVERED + 1))
 
 
@@ -292,7 +292,7 @@ def cover(image: NDArray[np.uint8], state: NDArray[np.float64], growth: float = 
     Args:
         image: grey, (H, W).
         state: of the person in front.
-        growth: by which body, head and legs are made wider.
+        growth: factor by which body, head and legs are widened.
     """
     x, y, d, w, h = (float(state[k]) for k in (X, Y, D, W, H))
     if not (w > 0 and h > 0 and np.isfinite(state[:5]).all()):
@@ -307,9 +307,9 @@ def cover(image: NDArray[np.uint8], state: NDArray[np.float64], growth: float = 
 
 
 def seen_shares(image: NDArray[np.uint8], state: NDArray[np.float64], probes: Probes) -> NDArray[np.float64]:
-    """Measure which share (8,) of every section's pairs of points is in the image and not covered.
+    """Return the share (8,) of every section's pairs of points inside the image and not covered.
 
-    A section without points counts as seen.
+    A section without points counts as visible.
 
     Args:
         image: (H, W) with covered pixels marked.
@@ -322,12 +322,12 @@ def seen_shares(image: NDArray[np.uint8], state: NDArray[np.float64], probes: Pr
 
 
 def head_share(shares: NDArray[np.float64]) -> float:
-    """Average over the head's sections (8,) what is seen of them."""
+    """Return the mean visible share of the head's sections (8,)."""
     return float(np.add.reduce(shares[: HEAD_RIGHT + 1])) / (HEAD_RIGHT + 1)
 
 
 def body_share(shares: NDArray[np.float64]) -> float:
-    """Average over all sections (8,) but the feet what is seen of them."""
+    """Return the mean visible share of all sections (8,) except the feet."""
     return float(np.add.reduce(shares[:FEET])) / FEET
 
 

@@ -1,4 +1,4 @@
-"""The kernels that read an image under contours, point by point and section by section."""
+"""Kernels that sample an image along contours, point by point and section by section."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from peopleboy.tracker.contour.measurement.contour import FEET, GREYS, SECTIONS,
 from peopleboy.tracker.contour.particles import D, Floats, H, W, X, Y
 from peopleboy.tracker.elementary import exponential
 
-ELSEWHERE, ABOVE = np.int32(-1), np.int32(-2)  # instead of the pixels of points outside the image
-UNKNOWN: Final = 1e-4  # share of a section's weight that is none
-LANES: Final = 64  # samples that are measured side by side, a few vectors of any processor
-SOME: Final = np.uint64(24)  # of these, at most, that are measured apart from the others
+ELSEWHERE, ABOVE = np.int32(-1), np.int32(-2)  # index of points outside the image
+UNKNOWN: Final = 1e-4  # share of a section's weight that counts as zero
+LANES: Final = 64  # samples measured in parallel, a few vectors of any processor
+SOME: Final = np.uint64(24)  # greatest number of these that are measured separately
 
 
 @njit(cache=True, nogil=True)
@@ -31,11 +31,11 @@ def measure_sections(
     missing: tuple[float, float, float, float],
     feet_gain: float,
 ) -> tuple[Floats, Floats]:
-    """Measure the mean response (N, 8) of all sections, and what share of their weight they keep.
+    """Measure the mean response (N, 8) of all sections, and the share of weight that they keep.
 
-    The latter is (N, 8), or (0, 8) where points keep theirs whatever happens.
+    The latter is (N, 8), or (0, 8) if points always keep their weight.
 
-    What is below the head of samples that differ in d alone is measured once, as d moves nothing else.
+    Sections below the head of samples that differ in d alone are measured once, as d moves nothing else.
 
     Args:
         image: (H, W) grey.
@@ -43,14 +43,14 @@ def measure_sections(
         mix: (7, 2 P) of `Probes`.
         same: (2 P,) of `Probes`.
         first: (9,) of `Probes`.
-        response: (8, 511) what a difference of grey counts.
-        covered_grey: grey of people in front; one that no pixel has in an image without such marks.
-        missing: what a pair counts with a point outside the image, and its weight above it; the same with a
+        response: (8, 511) response to a grey difference.
+        covered_grey: grey of people in front; unused in an image without such marks.
+        missing: response of a pair with a point outside the image, and its weight above it; the same with a
             point on people in front.
-        feet_gain: factor on the response of the feet, which counts up to 1; 0 leaves it as it is.
+        feet_gain: factor on the response of the feet, limited to 1; 0 leaves it unchanged.
     """
     result = np.empty((len(state), SECTIONS), dtype=np.float32)
-    # Where every point keeps its weight, so does every section.
+    # If every point keeps its weight, so does every section.
     known = np.ones((len(state) if min(missing[1], missing[3]) < 1 else 0, SECTIONS), dtype=np.float32)
     lanes, at = np.empty((6, LANES), dtype=np.float32), np.empty((mix.shape[1], LANES), dtype=np.int32)
     total, left = np.empty(LANES, dtype=np.float32), np.empty(LANES, dtype=np.float32)
@@ -81,7 +81,7 @@ def measure_sections(
 
 @njit(cache=True, nogil=True)
 def _put(table: Floats, values: Floats, rows: NDArray[np.int64], start: int, j: int) -> None:
-    """Write values (K,) into a column of a table (N, 8), in the rows from `start` on; if it has any."""
+    """Write values (K,) into a column of a table (N, 8), in the rows from `start` on, unless it is empty."""
     if len(table) > 0:
         for k in range(np.uint64(min(LANES, len(rows) - start))):
             table[np.uint64(rows[np.uint64(start) + k]), np.uint64(j)] = values[k]
@@ -89,7 +89,7 @@ def _put(table: Floats, values: Floats, rows: NDArray[np.int64], start: int, j: 
 
 @njit(cache=True, nogil=True)
 def _copy_to_twins(table: Floats, twin: NDArray[np.int64]) -> None:
-    """Copy what is below the head in a table (N, 8) to samples that have a twin (N,)."""
+    """Copy the sections below the head in a table (N, 8) to samples with a twin (N,)."""
     for i in range(np.uint64(len(table))):
         if twin[i] >= 0:
             for j in range(np.uint64(SHOULDER_LEFT), np.uint64(SECTIONS)):
@@ -98,9 +98,9 @@ def _copy_to_twins(table: Floats, twin: NDArray[np.int64]) -> None:
 
 @njit(cache=True, nogil=True)
 def _load(lanes: Floats, state: Floats, rows: NDArray[np.int64], start: int) -> None:
-    """Write x, y, d, w, h and x + d of samples side by side, those of some rows from `start` on.
+    """Write x, y, d, w, h and x + d of samples in columns, for some rows from `start` on.
 
-    The last one goes on until all lanes are full. Pixels begin half a pixel before their centres.
+    The last one is repeated until all lanes are full. Coordinates are shifted by half a pixel.
     """
     half = np.float32(0.5)
     for k in range(LANES):
@@ -121,22 +121,22 @@ def _locate(
     end: int,
     shape: tuple[int, int],
 ) -> None:
-    """Write the pixels (2 P, K) of some pairs of points of the samples side by side, without branches.
+    """Write the pixels (2 P, K) of some pairs of points of the samples, vectorised and without branches.
 
-    Rows of points that lie where an earlier one lies stay as they are. The lowest number (K,) of a sample's
-    pixels is negative if not all of them are in the image.
+    Rows of points that coincide with an earlier one are skipped. The minimum (K,) of a sample's pixels is
+    negative if not all of them are in the image.
     """
     columns, right, bottom = np.int32(shape[1]), np.float32(shape[1]), np.float32(shape[0])
     pairs, zero = len(at) // 2, np.float32(0)
     lowest[:] = 0
     for side in (0, pairs):
-        # Unsigned, as numba would ask of every other number whether it counts from the end.
+        # Unsigned, as numba would otherwise check for negative indices.
         for q in range(np.uint64(side + begin), np.uint64(side + end)):
             if same[q] != np.int64(q):
                 continue
             du, wu, hu, u0 = mix[0, q], mix[1, q], mix[2, q], mix[3, q]
             wv, hv, v0 = mix[4, q], mix[5, q], mix[6, q]
-            # Of head and feet, or of the body: what is multiplied by nothing is left out.
+            # For head and feet, or for the body: zero terms are omitted.
             if wu == zero and wv == zero and (du == zero or du == np.float32(1)):
                 base = np.uint64(0) if du == zero else np.uint64(5)
                 for k in range(np.uint64(LANES)):
@@ -154,9 +154,9 @@ def _locate(
 
 @njit(cache=True, nogil=True)
 def _find_special(lane: NDArray[np.uint64], lowest: NDArray[np.int32], are_all: bool) -> np.int64:
-    """List the samples (K,) that have points where none can be seen, and say how many they are.
+    """List the samples (K,) with points outside the image or on people in front, and return their number.
 
-    All of them if they are so many that it would not pay to tell them apart.
+    All of them if there are so many that a separate measurement does not pay.
     """
     count = np.uint64(0)
     for k in range(np.uint64(len(lowest))):
@@ -173,10 +173,10 @@ def _find_special(lane: NDArray[np.uint64], lowest: NDArray[np.int32], are_all: 
 def _pixel(
     u: np.float32, v: np.float32, columns: np.int32, right: np.float32, bottom: np.float32
 ) -> np.int32:
-    """Number of the pixel in which a point lies."""
+    """Return the index of the pixel of a point."""
     is_inside = (u >= 0) & (v >= 0) & (u < right) & (v < bottom)
     outside = ABOVE if (v < 0) & (u >= 0) & (u < right) else ELSEWHERE
-    # Cut to 32 bits at once, or all of it would be reckoned with 64.
+    # Cast to 32 bits at once, or everything would be computed with 64.
     number = np.int32(np.int32(v) * columns + np.int32(u))
     return number if is_inside else outside
 
@@ -190,9 +190,9 @@ def _add_up_in_view(
     counts: Floats,
     section: tuple[int, int, int],
 ) -> None:
-    """Average what a section's pairs count (K,) of those samples of which all are in the image.
+    """Average the responses (K,) of a section's pairs for samples that are entirely in the image.
 
-    Of the others it says something without a meaning.
+    The result is meaningless for the others.
     """
     j, begin, end = section
     even, pairs, count = j * (2 * GREYS - 1) + GREYS - 1, np.uint64(len(at) // 2), np.float32(end - begin)
@@ -209,7 +209,7 @@ def _add_up_in_view(
             total[k] /= count
 
 
-# Without numpy's rules a kernel would test every division.
+# Without NumPy's rules a kernel would test every division.
 @njit(cache=True, nogil=True, error_model="numpy")
 def _add_up(
     total: Floats,
@@ -223,9 +223,9 @@ def _add_up(
     covered_grey: int,
     missing: tuple[float, float, float, float],
 ) -> None:
-    """Average what a section's pairs count (K,) of some samples, and what share (K,) of its weight they keep.
+    """Average the responses (K,) of a section's pairs for some samples, and the share (K,) of weight kept.
 
-    The section is its number, its first pair, and the first one of the next. Others keep all of their weight.
+    The section is given by its number, its first pair, and the next section's. Others keep all their weight.
     """
     j, begin, end = section
     even, pairs, count = j * (2 * GREYS - 1) + GREYS - 1, np.uint64(len(at) // 2), np.float32(end - begin)
@@ -257,7 +257,7 @@ def _add_up(
 
 @njit(cache=True, nogil=True)
 def fill_unknown(differences: Floats, known: Floats, weights: Floats) -> None:
-    """Let sections (N, 8) count, in place, as far as they are not known, what the others say on average."""
+    """Fill the missing weight of sections (N, 8), in place, with the average of the other sections."""
     for i in range(len(differences)):
         total, whole = np.float32(0), np.float32(0)
         for j in range(SECTIONS):
@@ -271,7 +271,7 @@ def fill_unknown(differences: Floats, known: Floats, weights: Floats) -> None:
 
 @njit(cache=True, nogil=True)
 def weighted_sums(differences: Floats, weights: NDArray[np.float64], weakest_share: float) -> Floats:
-    """Add up (N,) sections (N, 8) by weight, and go a share of the way to the weakest but the feet."""
+    """Return the weighted sums (N,) of sections (N, 8), moved by a share to the weakest except the feet."""
     fit, part = np.empty(len(differences), dtype=np.float32), np.float32(weakest_share)
     share = weights.astype(np.float32)
     for i in range(np.uint64(len(fit))):
@@ -286,7 +286,7 @@ def weighted_sums(differences: Floats, weights: NDArray[np.float64], weakest_sha
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def logistic(fit: Floats, slope: float, threshold: float, most: float) -> Floats:
-    """Return the probability (N,) of fitnesses (N,), whose log odds end at -most and most (equation 4.4)."""
+    """Return the probability (N,) of fitnesses (N,), with log-odds clipped to +-most (equation 4.4)."""
     steep, middle, end, one = np.float32(2 * slope), np.float32(threshold), np.float32(most), np.float32(1)
     chance = np.empty_like(fit)
     for i in range(len(fit)):
@@ -298,7 +298,7 @@ def logistic(fit: Floats, slope: float, threshold: float, most: float) -> Floats
 def share_in_view(
     image: NDArray[np.uint8], sample: Floats, mix: Floats, first: NDArray[np.int64], covered_grey: int
 ) -> NDArray[np.float64]:
-    """Measure which share (8,) of every section's pairs is in an image (H, W) and not covered."""
+    """Return the share (8,) of every section's pairs inside an image (H, W) and not covered."""
     pairs = first[SECTIONS]
     grey, at = image.reshape(-1), np.empty(2 * pairs, dtype=np.int32)
     locate_points(at, sample, mix, image.shape[1], image.shape[0])

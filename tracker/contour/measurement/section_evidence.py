@@ -1,4 +1,4 @@
-"""What the image says for and against a contour, section by section; no tracker asks for it."""
+"""Evidence of the image for and against a contour, section by section; for analysis only."""
 
 from __future__ import annotations
 
@@ -34,17 +34,17 @@ from peopleboy.tracker.contour.measurement.likelihood import (
 from peopleboy.tracker.contour.particles import FOOT
 from peopleboy.tracker.track import Track
 
-_NOTHING = 1e-6  # share of a section that counts as none
+_NOTHING = 1e-6  # share of a section that counts as zero
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Evidence:
-    """How the image answers to one contour.
+    """Evidence for one contour.
 
     Attributes:
-        response: (8,) mean response of what is in view of each section, D_j of equation 4.3; NaN where
-            nothing of it is in view. With a bent response it lies in -1..1, and more speaks for a person.
-        seen: (8,) share of each section that is in the image and not covered by people in front.
+        response: (8,) mean response of the visible part of each section, D_j of equation 4.3; NaN if nothing
+            of it is visible. With a saturated response it lies in -1..1, and larger values indicate a person.
+        seen: (8,) share of each section inside the image and not covered by people in front.
     """
 
     response: NDArray[np.float64]
@@ -57,9 +57,9 @@ def evidence_of(
     """Measure the contours of tracks in their frame, by track id, each covered by its occluder.
 
     Args:
-        thermal: (H, W) grey, as the tracker got it.
-        tracks: what the tracker made of it.
-        explanation: its contours of that frame.
+        thermal: (H, W) grey, the tracker's input.
+        tracks: the tracker's output.
+        explanation: its contours in that frame.
     """
     config = explanation.config
     model = _model((thermal.shape[0], thermal.shape[1]), config.contour)
@@ -75,10 +75,10 @@ def evidence_of(
 
 
 def _measure(marked: NDArray[np.uint8], state: NDArray[np.float64], model: ContourModel) -> Evidence:
-    """Measure what is in view of one contour, in a prepared image (H, W) with covered pixels marked."""
+    """Measure the visible part of one contour, in a preprocessed image (H, W) with covered pixels marked."""
     seen = seen_shares(marked, state, model.probes)
     rows = state.astype(np.float32)[None]
-    # Pairs out of view add nothing; the mean over the others follows from the mean over all.
+    # Invisible pairs add nothing; the mean over the others follows from the mean over all.
     mean = section_differences(marked, rows, model.probes, model.response, 0.0, 0.0)[0].astype(np.float64)
     response = np.where(seen > _NOTHING, mean / np.maximum(seen, _NOTHING), np.nan)
     if model.config.feet_weight > 0:
@@ -111,7 +111,7 @@ def outline(ellipse: Ellipse, count: int = 48) -> tuple[NDArray[np.float64], NDA
 
 
 def section_lines(ellipse: Ellipse, config: ContourConfig) -> NDArray[np.float64]:
-    """Return a line (9, K, 2) [px] along every section, in their order with the feet, and one round the hips.
+    """Return a line (9, K, 2) [px] along every section, in order with the feet, and one round the hips.
 
     The last one closes the body's ellipse, where no section is.
     """
@@ -122,7 +122,7 @@ def section_lines(ellipse: Ellipse, config: ContourConfig) -> NDArray[np.float64
 
 @lru_cache(maxsize=8)
 def _section_points(config: ContourConfig, count: int = 5) -> NDArray[np.float64]:
-    """Mix d, w, h and 1 to the points (9, count, 2, 4) of `section_lines`, from the body's centre."""
+    """Return the coefficients (9, count, 2, 4) of d, w, h and 1 for the points of `section_lines`."""
     points, nothing = np.zeros((SECTIONS + 1, count, 2, 4)), np.zeros(count)
     arcs = section_angles(config)
     side_end = arcs[SIDE_RIGHT][1]

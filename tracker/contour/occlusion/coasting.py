@@ -1,4 +1,4 @@
-"""Our way with hidden people: they walk on, are looked for, and are shown while that is sure."""
+"""Coasting of occluded people: they keep walking, are searched for, and are output while that is certain."""
 
 from __future__ import annotations
 
@@ -27,36 +27,36 @@ from peopleboy.tracker.contour.tracked_person import (
     smoothed,
 )
 
-# When a person is hidden, and seen again.
-HEAD_COVERED = 0.8  # share of the head's contour behind others from which a person is hidden
-HIDDEN_BODY = 0.4  # least share of the contour by which a person with a covered head is still followed
-LOST_FRAMES = 3  # frames without evidence after which a person counts as hidden by something unknown
-CLEAR = 0.5  # share of head and body in view from which a hidden person may be seen again
-CLAIMED = 0.5  # share of its region that another person must have left free
-APPEARANCE_GATE = 40.0  # largest squared distance of appearance of who comes back to sight
-SIZE_GATE = 0.25  # largest change of the logarithm of its height
-# How the hidden walk: people seldom stop or turn, keep to the floor, and keep their size.
-MEMORY = 0.985  # share of the velocity that lasts to the next step
+# Conditions of occlusion and reappearance.
+HEAD_COVERED = 0.8  # covered share of the head's contour from which a person is occluded
+HIDDEN_BODY = 0.4  # least visible share of the contour for tracking a person with a covered head
+LOST_FRAMES = 3  # frames without evidence after which a person counts as occluded by an unknown object
+CLEAR = 0.5  # visible share of head and body from which an occluded person can be found again
+CLAIMED = 0.5  # share of its region that must not be covered by another person
+APPEARANCE_GATE = 40.0  # greatest squared distance of appearance of a reappearing person
+SIZE_GATE = 0.25  # greatest change of the logarithm of its height
+# Motion of occluded people: they seldom stop or turn, stay on the floor, and keep their size.
+MEMORY = 0.985  # share of the velocity that persists to the next step
 ALONG_FLOOR = 0.5  # share of the motion noise along the floor
 STIFFNESS = 0.1  # the same for all other directions and the size
-WIDTH = 0.46  # semi-width in semi-heights: who is hidden may turn
-FADING = 0.96  # share of the velocity that lasts once nobody looks for the person any more
-SEARCHED_FRAMES = 45  # frames in the open for which samples look for it
-# How long they are shown [s]: hidden by nobody known; on the way out of the image; behind a person, if the
-# samples are farther apart than this share of the semi-width. Others are until they are forgotten.
+WIDTH = 0.46  # semi-width in semi-heights: occluded people may turn
+FADING = 0.96  # share of the velocity that persists once the person is no longer searched for
+SEARCHED_FRAMES = 45  # frames without an occluder for which the samples search
+# Longest output [s]: without a known occluder; while leaving the image; behind a person, if the
+# samples are farther apart than this share of the semi-width. Otherwise until they are forgotten.
 SHOWN_S, SHOWN_LEAVING_S, SHOWN_BEHIND_S, SURE_SPREAD = 0.3, 0.5, 0.8, 0.4
 
 
 @dataclass(frozen=True, slots=True)
 class CoastingVisibility:
-    """What can be seen of a person at its estimate.
+    """Visibility of a person at its estimate.
 
     Attributes:
-        head: share of the head's contour that is in view.
-        body: share of the whole contour.
-        confidence: probability by what is in view alone.
-        is_free: whether nobody else is seen there.
-        is_alike: whether what is in view has the person's height, and its appearance as far as it is known.
+        head: visible share of the head's contour.
+        body: visible share of the whole contour.
+        confidence: probability by the visible part alone.
+        is_free: whether no other person is detected there.
+        is_alike: whether the visible part has the person's height, and its appearance if known.
     """
 
     head: float
@@ -67,12 +67,12 @@ class CoastingVisibility:
 
     @property
     def is_clear(self) -> bool:
-        """Whether most of the right person is in view."""
+        """Whether most of the right person is visible."""
         return min(self.head, self.body) > CLEAR and self.is_alike and self.is_free
 
 
 class WalkOn:
-    """Who is hidden, or lost, walks on along the floor with the velocity and the size that it had."""
+    """Occluded or lost people keep walking along the floor with their last velocity and size."""
 
     def __init__(self, config: TrackerConfig, hiding: WalkOnConfig) -> None:
         self._config = config
@@ -89,11 +89,11 @@ class WalkOn:
         )
 
     def motion_of(self, person: TrackedPerson) -> MotionConfig:
-        """Let a hidden person walk on along the floor, and keep its size."""
+        """Restrict an occluded person's motion to the floor, with constant size."""
         return self._hidden_motion if person.is_hidden else self._config.motion
 
     def keeps_off(self, person: TrackedPerson) -> bool:  # noqa: ARG002
-        """Penalise the hidden too, or they would come back as a person who is not in front."""
+        """Penalise occluded people, too, or they would reappear on a person who is not in front."""
         return True
 
     def judge(
@@ -104,7 +104,7 @@ class WalkOn:
         view: FrameView,
         rng: np.random.Generator,
     ) -> TrackedPerson:
-        """Judge by what is in view; who is hidden walks on, and is seen again once most of it is."""
+        """Evaluate the visible part; an occluded person coasts until most of it is visible again."""
         person = approached(person, view)
         front = surroundings.occluder(belief.estimate, self._config)
         occluder = None if front is None else front.id
@@ -133,7 +133,7 @@ class WalkOn:
     def _seen(
         self, person: TrackedPerson, belief: Belief, occluder: int | None, view: FrameView
     ) -> TrackedPerson:
-        """Take a person as seen; where the image does not speak for it, it is shown walking on."""
+        """Update a visible person; without evidence in the image, the output is the prediction."""
         after = seen(person, belief, occluder, view, self._config)
         if after.missing == 0:
             return after
@@ -143,7 +143,7 @@ class WalkOn:
     def _supposed(
         self, person: TrackedPerson, belief: Belief, surroundings: OrderContext, view: FrameView
     ) -> NDArray[np.float64]:
-        """Suppose where a hidden person is (9,): it walks on, as tall as it was, on the floor as before."""
+        """Predict the state (9,) of an occluded person: it walks on the floor with constant height."""
         if surroundings.front:
             shown = smoothed(person.shown, belief.estimate, view, self._config.smoothing)
         else:
@@ -155,11 +155,11 @@ class WalkOn:
         return shown
 
     def searches(self, person: TrackedPerson) -> bool:
-        """Look for a person as long as it was not missed too often where it would have been seen."""
+        """Keep searching unless the person was missed too often where it would have been visible."""
         return person.missing < SEARCHED_FRAMES
 
     def remembers_lost(self, person: TrackedPerson) -> bool:
-        """Remember who was seen for long enough."""
+        """Remember people who were visible for long enough."""
         return self._hiding.remembers_lost and person.is_settled
 
     def whereabouts(
@@ -168,24 +168,24 @@ class WalkOn:
         others: Sequence[TrackedPerson],  # noqa: ARG002
         view: FrameView,
     ) -> NDArray[np.float64]:
-        """Let a person walk on, slower and slower."""
+        """Predict the person with decreasing speed."""
         state = moved_on(person.shown, view)
         state[VW:] = 0.0
         state[VX:] *= FADING
         return state
 
     def can_compare(self, found: TrackedPerson, lost: TrackedPerson) -> bool:
-        """Wait until most is seen of what is known of the one who was lost."""
+        """Wait until most of the lost person's known appearance is visible."""
         return is_comparable(found, lost)
 
     def recognised(
         self, found: TrackedPerson, lost: Sequence[TrackedPerson], view: FrameView
     ) -> TrackedPerson | None:
-        """Return the one of the lowest cost, if that is low enough."""
+        """Return the person of the lowest cost, if that is low enough."""
         return least_mismatch(found, lost, view, self._config)
 
     def is_shown(self, person: TrackedPerson, region: Regions, view: FrameView) -> bool:
-        """Show a hidden person as long as it is fairly certain where it is."""
+        """Output an occluded person as long as its position is fairly certain."""
         longest = self._shown_s(person, region, view) if self._hiding.shows_only_sure else FORGET_S
         return person.hidden_s <= longest
 
@@ -204,7 +204,7 @@ class WalkOn:
 def look_at(
     person: TrackedPerson, belief: Belief, surroundings: OrderContext, view: FrameView, config: TrackerConfig
 ) -> CoastingVisibility:
-    """Judge a person by what is in view of it alone."""
+    """Evaluate a person by its visible part alone."""
     rows = belief.estimate.astype(np.float32)[None]
     head, body = _in_view(belief, surroundings, view)
     covered = 0.0 if surroundings.front else None
@@ -221,7 +221,7 @@ def look_at(
 
 
 def _in_view(belief: Belief, surroundings: OrderContext, view: FrameView) -> tuple[float, float]:
-    """Return which share of a person's head, and of all of it, those in front leave in view."""
+    """Return the shares of a person's head, and of all of it, not covered by people in front."""
     if not surroundings.front:
         return 1.0, 1.0
     shares = seen_shares(surroundings.image, belief.estimate, view.model.probes)
@@ -229,14 +229,14 @@ def _in_view(belief: Belief, surroundings: OrderContext, view: FrameView) -> tup
 
 
 def _is_behind(state: NDArray[np.float64], surroundings: OrderContext, view: FrameView) -> bool:
-    """Return whether people in front explain why a person with this state (9,) is not seen."""
+    """Return whether people in front explain why a person with this state (9,) is not visible."""
     if not surroundings.front:
         return False
     return body_share(seen_shares(surroundings.image, state, view.model.probes)) < HIDDEN_BODY
 
 
 def _walking_on(person: TrackedPerson, rng: np.random.Generator) -> TrackedPerson:
-    """Start the samples of a person who has just been hidden from where it is shown, with its velocity."""
+    """Restart the samples of a newly occluded person at its output state, with its velocity."""
     shown = person.shown.copy()
     shown[VX:] = [*person.velocity, 0.0, 0.0]
     size = float(shown[H])

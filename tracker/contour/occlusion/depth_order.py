@@ -1,4 +1,4 @@
-"""The depth order of people, as expected before the image is measured."""
+"""Depth order of people, predicted before the image is measured."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ from peopleboy.tracker.contour.particle_filter import FrameView
 from peopleboy.tracker.contour.particles import STATE_SIZE, Floats
 from peopleboy.tracker.contour.tracked_person import TrackedPerson, moved_on
 
-FOOT_PX = 4.0  # [px] of 240 rows: difference of foot rows that counts 1
-APPEARANCE = 12.0  # difference of squared distances of appearance that counts 1
-MOST = 4.0  # for which appearance counts at most
+FOOT_PX = 4.0  # [px] of 240 rows: difference of foot rows for a lead of 1
+APPEARANCE = 12.0  # difference of squared distances of appearance for a lead of 1
+MOST = 4.0  # limit of the lead by appearance
 
 Leads = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ExpectedPerson:
-    """A person as expected in this frame, before the image is measured.
+    """A person predicted for this frame, before the image is measured.
 
     Attributes:
-        person: as the last frame left it.
-        state: (9,) where it should be by now.
-        region: (4,) left, top, width, height [px] of that.
-        unlikeness: squared distance of what is seen there from the person's own; 0 where nothing is known.
+        person: state after the last frame.
+        state: (9,) prediction.
+        region: (4,) left, top, width, height [px] of the prediction.
+        unlikeness: squared distance of the appearance there from the person's own; 0 if unknown.
     """
 
     person: TrackedPerson
@@ -44,7 +44,7 @@ class ExpectedPerson:
 def expected(
     persons: Sequence[TrackedPerson], view: FrameView, config: TrackerConfig
 ) -> list[ExpectedPerson]:
-    """Predict where people are in this frame, and compare what is seen there with what is known of them."""
+    """Predict people for this frame, and compare the appearance there with theirs."""
     states = [
         moved_on(person.shown if person.is_hidden else person.belief.estimate, view) for person in persons
     ]
@@ -64,27 +64,27 @@ def _unlikeness(person: TrackedPerson, features: Floats) -> float:
 
 
 class Order(Protocol):
-    """Compares people with each other."""
+    """Compares people in depth."""
 
     def __call__(self, figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:
         """Return which of M people is in front of which.
 
         Returns:
-            (M, M) how clearly the row's person is in front of the column's: positive if it is, negative if
-            the other is; 0 if they do not overlap, or nobody knows.
+            (M, M) lead of the row's person over the column's: positive if in front, negative if behind; 0 if
+            they do not overlap, or the order is unknown.
         """
         ...
 
 
 def lower_foot(figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:  # noqa: ARG001
-    """Take those whose feet are lower in the image for the nearer ones: all stand on one floor."""
+    """Order people by the rows of their feet: lower is nearer, as all stand on one floor."""
     return _leads([figure.person.foot for figure in figures])
 
 
 def likelier_front(figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:
-    """Weigh up whose feet are lower and whose appearance is seen where it is expected.
+    """Combine the rows of the feet with the appearance at the predictions.
 
-    Where two people overlap, the image shows the appearance of the one in front; the one behind looks wrong.
+    Where two people overlap, the image shows the appearance of the one in front; that of the other differs.
     """
     clearer = -_leads([figure.unlikeness for figure in figures]) / APPEARANCE
     bounded: Leads = np.minimum(np.maximum(clearer, -MOST), MOST)
@@ -99,14 +99,14 @@ def _leads(values: Sequence[float]) -> Leads:
 def sorted_by_lead(lead: Leads) -> tuple[int, ...]:
     """Sort M people from front to back by their leads over each other.
 
-    A person with nobody in front comes first, and so on with the rest. Where leads form a circle, the one
-    with the fewest in front comes first, then the one with the larger sum of leads over the rest, then the
-    lower number. So the result never depends on the sequence of the comparisons.
+    People without anybody in front come first, and so on with the rest. In a cycle, the person with the
+    fewest in front comes first, then the one with the larger sum of leads over the rest, then the lower
+    number. The result does not depend on the order of comparisons.
 
     Args:
-        lead: (M, M) of the row's person over the column's; 0 where they do not overlap, or nobody knows.
+        lead: (M, M) of the row's person over the column's; 0 where they do not overlap, or unknown.
 
-    Source: thesis, section 7.1, which leaves circles open.
+    Source: thesis, section 7.1, which does not treat cycles.
     """
     leads: list[list[float]] = lead.tolist()
     rest = list(range(len(leads)))
@@ -120,17 +120,17 @@ def sorted_by_lead(lead: Leads) -> tuple[int, ...]:
 
 
 ORDERS: Mapping[str, Order] = {"foot": lower_foot, "appearance": likelier_front}
-"""Ways to compare by name."""
+"""Methods of comparison by name."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OrderContext:
-    """The others, as one person's filter sees them.
+    """The other people, from the view of one person's filter.
 
     Attributes:
-        front: those in front who overlap the person, as they are in this frame.
-        others: everybody else who is seen, those in front first: their regions (M, 4) [px].
-        strength: (M,) rho of equation 5.3 towards each.
+        front: people in front who overlap the person, in this frame.
+        others: regions (M, 4) [px] of all other visible people, those in front first.
+        strength: (M,) rho of equation 5.3 for each.
         image: (H, W) with the people in front marked as covered, if there are any.
     """
 
@@ -141,16 +141,16 @@ class OrderContext:
 
     @property
     def hiding(self) -> Regions:
-        """Regions of those in front."""
+        """Regions of people in front."""
         return self.others[: len(self.front)]
 
     @property
     def rivals(self) -> Regions:
-        """Regions of those who are seen and not in front."""
+        """Regions of visible people who are not in front."""
         return self.others[len(self.front) :]
 
     def occluder(self, state: NDArray[np.float64], config: TrackerConfig) -> TrackedPerson | None:
-        """Find the one of those in front who covers most of a person with this state (9,)."""
+        """Return the person in front who covers most of a person with this state (9,), or None."""
         if not self.front:
             return None
         shares = overlap_shares(state.astype(np.float32)[None], self.hiding, config)[0]
@@ -164,14 +164,14 @@ def surroundings_of(
     view: FrameView,
     config: TrackerConfig,
 ) -> OrderContext:
-    """Sort the others into those that occlude this person and those that it must keep clear of.
+    """Divide the others into those that occlude this person and those that it must avoid.
 
     Args:
         figure: the person.
-        ahead: who was looked at before, and the region of each in this frame.
-        behind: who is looked at later.
+        ahead: people already processed, and the region of each in this frame.
+        behind: people not processed yet.
         view: this frame.
-        config: of the tracker.
+        config: settings of the tracker.
     """
     near = [each for each in ahead if not each[0].is_hidden]
     later = [other.region for other in behind if not other.person.is_hidden]

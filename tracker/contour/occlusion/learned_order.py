@@ -1,4 +1,4 @@
-"""The learned classifier at work: who of two people is in front, and everybody from front to back."""
+"""Depth order by the learned classifier: pairwise votes, and order from front to back."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ class LearnedOrder:
     """Compares people by the votes of the weak classifiers.
 
     Attributes:
-        weights: (T, 6) of the features, unscaled; their sign holds the parity.
-        threshold: (T,) above which a classifier votes against the one.
+        weights: (T, 6) of the features, unscaled; their sign includes the parity.
+        threshold: (T,) above which a classifier votes against the first person.
         importance: (T,) sums to 1.
-        remembers_feet: whether feet are where they were last seen whole, or where the contour ends.
+        remembers_feet: whether feet are taken from the last full visibility, or from the contour.
     """
 
     weights: Features
@@ -42,7 +42,7 @@ class LearnedOrder:
 
     @classmethod
     def build(cls, table: LearnedTable, *, remembers_feet: bool = True) -> LearnedOrder:
-        """Lay a table out for quick use."""
+        """Make it from a table."""
         weak = table.classifiers
         scale = np.array([table.scale[name] for name in FEATURES])
         weights = np.array([[w.weights.get(name, 0.0) for name in FEATURES] for w in weak]) / scale
@@ -56,7 +56,7 @@ class LearnedOrder:
         )
 
     def votes(self, features: Features) -> Features:
-        """Add up the votes (P,) on pairs with these features (P, 6): 1 all for, -1 all against the one.
+        """Return the sums of votes (P,) on pairs with features (P, 6): 1 all for, -1 all against the first.
 
         Source: thesis, algorithm 5, output.
         """
@@ -65,15 +65,15 @@ class LearnedOrder:
         return votes
 
     def lead(self, features: Features) -> Features:
-        """Return how clearly (P,) the one is in front: 1 surely, -1 surely behind, 0 unknown.
+        """Return the lead (P,) of the first person: 1 certainly in front, -1 certainly behind, 0 unknown.
 
-        The mirrored pair has the opposite lead: thresholds are seldom exactly 0, and the plain votes could
-        call both of two people the front one. Ours; the thesis asks in one direction only.
+        The mirrored pair has the opposite lead: thresholds are seldom exactly 0, so that plain votes could
+        put both of two people in front. Ours; the thesis evaluates one direction only.
         """
         return (self.votes(features) - self.votes(-features)) / 2
 
     def __call__(self, figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:
-        """Compare all people (M,) whose boxes overlap: the lead (M, M) of the row's over the column's.
+        """Return the lead (M, M) of row over column for people (M,) whose boxes overlap.
 
         All pairs at once cost hardly more than one.
         """
@@ -96,9 +96,9 @@ def features_of(
 
 @cache
 def shipped_order(tracker: str, *, remembers_feet: bool = True) -> LearnedOrder:
-    """Return the order that was learned for the tracker of that name, and comes with it.
+    """Return the shipped order that was trained for a tracker.
 
-    Trackers measure contours and colours in different units, so that each needs a table of its own.
+    Trackers measure contours and colours in different units, so that each needs its own table.
 
     Raises:
         BadInput: there is no such table.
@@ -107,7 +107,7 @@ def shipped_order(tracker: str, *, remembers_feet: bool = True) -> LearnedOrder:
 
 
 def make_order(config: DepthOrderConfig) -> Order | None:
-    """Return the way in which a tracker compares people; None if it does not."""
+    """Return a tracker's method of comparison; None if it has none."""
     if config.order == LEARNED:
         return shipped_order(config.table, remembers_feet=config.remembers_feet)
     return None if config.order is None else ORDERS[config.order]

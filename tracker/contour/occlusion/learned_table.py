@@ -13,7 +13,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.tracker.contour.occlusion.pair_features import FEATURES
 
 TABLES = Path(__file__).parent / "tables"
-"""Where the tables that come with the trackers are: NAME.yaml for the tracker of that name."""
+"""Folder of the shipped tables: NAME.yaml for the tracker of that name."""
 
 _HEADER = """\
 # Who of two overlapping people is in front: a boosted classifier (thesis, algorithm 5).
@@ -52,7 +52,7 @@ class WeakClassifier:
         weights: by name of the feature.
         threshold: theta.
         parity: 1 votes for "in front" below the threshold, -1 above.
-        importance: alpha, what the vote counts.
+        importance: alpha, weight of the vote.
     """
 
     weights: dict[str, float]
@@ -63,12 +63,12 @@ class WeakClassifier:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LearnedTable:
-    """All votes, best first, and where they come from.
+    """All votes, best first, with a description.
 
     Attributes:
         scale: spread of each feature over the examples, by which it is divided.
-        classifiers: the weak classifiers in the order in which they were chosen.
-        about: what they were learned from, for the reader of the file.
+        classifiers: the weak classifiers in the order of selection.
+        about: description of the training data, for readers of the file.
     """
 
     scale: dict[str, float]
@@ -95,10 +95,10 @@ class LearnedTable:
 
     @classmethod
     def load(cls, path: Path) -> LearnedTable:
-        """Read and check a table.
+        """Read and validate a table.
 
         Raises:
-            BadInput: a file that is missing or is no such table.
+            BadInput: the file is missing or is not such a table.
         """
         try:
             data = yaml.safe_load(path.read_text(encoding="utf-8"))

@@ -1,4 +1,4 @@
-"""What a tracker asks about people who are hidden or lost, whoever answers."""
+"""Interface of the policies for occluded and lost people, and the thesis's policy."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from peopleboy.tracker.contour.particle_filter import Belief, FrameView
 from peopleboy.tracker.contour.particles import VW
 from peopleboy.tracker.contour.tracked_person import FORGET_S, TrackedPerson, hidden, moved_on, seen
 
-# The thesis's way with hidden people: they are where their occluder is.
+# The thesis's policy: occluded people are at their occluder.
 
 KEPT_FRAMES = 8  # thesis, section 7.3
 
 
 @dataclass(frozen=True, slots=True)
 class StayBehind:
-    """Who is hidden stays with its occluder; its samples are kept for a few frames, and penalised by nobody.
+    """Occluded people stay at their occluder; their samples are kept for a few frames without penalty.
 
     Source: thesis, section 7.3.
     """
@@ -40,11 +40,11 @@ class StayBehind:
     hiding: StayBehindConfig
 
     def motion_of(self, person: TrackedPerson) -> MotionConfig:  # noqa: ARG002
-        """Move everybody alike."""
+        """Use the same motion for everybody."""
         return self.config.motion
 
     def keeps_off(self, person: TrackedPerson) -> bool:
-        """Penalise those who are seen."""
+        """Penalise visible people."""
         return not person.is_hidden
 
     def judge(
@@ -55,7 +55,7 @@ class StayBehind:
         view: FrameView,
         rng: np.random.Generator,  # noqa: ARG002
     ) -> TrackedPerson:
-        """Call a person hidden whose head is, and suppose it where its occluder is."""
+        """A person is occluded if its head is, and is then assumed to be at its occluder."""
         occluder = surroundings.occluder(belief.estimate, self.config)
         if occluder is None:
             return seen(person, belief, None, view, self.config)
@@ -69,13 +69,13 @@ class StayBehind:
         return person.hidden_frames <= KEPT_FRAMES
 
     def remembers_lost(self, person: TrackedPerson) -> bool:  # noqa: ARG002
-        """Remember only who was hidden."""
+        """Remember only occluded people."""
         return False
 
     def whereabouts(
         self, person: TrackedPerson, others: Sequence[TrackedPerson], view: FrameView
     ) -> NDArray[np.float64]:
-        """Suppose a person where its occluder is; once that is gone, let it go on as it went."""
+        """Return the occluder's position; once the occluder is gone, continue with its motion."""
         occluder = next((other for other in others if other.id == person.occluder), None)
         if occluder is not None:
             return occluder.shown
@@ -93,23 +93,23 @@ class StayBehind:
         lost: Sequence[TrackedPerson],
         view: FrameView,  # noqa: ARG002
     ) -> TrackedPerson | None:
-        """Take the nearest, if it is also the most alike."""
+        """Return the nearest person, if that is also the most similar one."""
         return most_alike_and_nearest(found, lost)
 
     def is_shown(self, person: TrackedPerson, region: Regions, view: FrameView) -> bool:  # noqa: ARG002
-        """Show everybody who is not forgotten."""
+        """Output everybody who is not forgotten."""
         return person.hidden_s <= FORGET_S
 
 
 class OcclusionPolicy(Protocol):
-    """Supposes where people are who are not seen, and says when that begins and ends."""
+    """Policy for people who are not visible: their assumed state, and when it starts and ends."""
 
     def motion_of(self, person: TrackedPerson) -> MotionConfig:
-        """Return how a person's samples move."""
+        """Return the motion model of a person's samples."""
         ...
 
     def keeps_off(self, person: TrackedPerson) -> bool:
-        """Return whether a person's samples are penalised for overlapping the others."""
+        """Return whether a person's samples are penalised for overlaps with others."""
         ...
 
     def judge(
@@ -120,39 +120,39 @@ class OcclusionPolicy(Protocol):
         view: FrameView,
         rng: np.random.Generator,
     ) -> TrackedPerson:
-        """Return how well a person is seen after its samples were weighed, and where it is supposed to be."""
+        """Return a person's status after its samples were weighed, and its assumed state."""
         ...
 
     def searches(self, person: TrackedPerson) -> bool:
-        """Return whether a hidden person's samples go on looking for it."""
+        """Return whether an occluded person's samples keep searching."""
         ...
 
     def remembers_lost(self, person: TrackedPerson) -> bool:
-        """Return whether a person who is given up without having been hidden is remembered."""
+        """Return whether a person who is lost without an occluder is remembered."""
         ...
 
     def whereabouts(
         self, person: TrackedPerson, others: Sequence[TrackedPerson], view: FrameView
     ) -> NDArray[np.float64]:
-        """Suppose where a person is (9,) whose samples no longer look for it."""
+        """Return the assumed state (9,) of a person who is no longer searched for."""
         ...
 
     def can_compare(self, found: TrackedPerson, lost: TrackedPerson) -> bool:
-        """Return whether enough is seen of a newly found person to say whether it is one who was lost."""
+        """Return whether enough of a newly found person is visible for comparison with a lost one."""
         ...
 
     def recognised(
         self, found: TrackedPerson, lost: Sequence[TrackedPerson], view: FrameView
     ) -> TrackedPerson | None:
-        """Find the one of those lost, at least one, who is a newly found person; None if nobody is."""
+        """Return the lost person who matches a newly found one, or None."""
         ...
 
     def is_shown(self, person: TrackedPerson, region: Regions, view: FrameView) -> bool:
-        """Return whether a hidden person, supposed in a region (4,) [px] in the image, is shown."""
+        """Return whether an occluded person, assumed in a region (4,) [px] of the image, is output."""
         ...
 
 
 def make_policy(config: TrackerConfig) -> OcclusionPolicy:
-    """Make the policy that a tracker's settings ask for."""
+    """Make the policy of a tracker's settings."""
     hiding = config.occlusion
     return WalkOn(config, hiding) if isinstance(hiding, WalkOnConfig) else StayBehind(config, hiding)

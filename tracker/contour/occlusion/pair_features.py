@@ -1,4 +1,4 @@
-"""Six numbers that tell which of two people is in front."""
+"""Six features that indicate which of two people is in front."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from peopleboy.tracker.contour.particle_filter import FrameView
 from peopleboy.tracker.contour.particles import CROWN, FOOT, Floats, H, W, X, Y
 
 FEATURES = ("strength", "top", "bottom", "colour", "colour_o", "colour_no")
-"""Table 7.3's names: of the filter, the contour, and the colours of all, the shared and the other area."""
+"""Names of table 7.3: of the filter, the contour, and the colours of the whole, shared and other area."""
 
 THERMAL, COLOUR = FEATURES[:3], FEATURES[3:]
 
-_SLIVER = 0.1  # share of a part below which an area of it says nothing
+_SLIVER = 0.1  # share of a part below which an area of it is ignored
 
 Pairs = NDArray[np.int64]
 Features = NDArray[np.float64]
@@ -30,19 +30,20 @@ def pair_features(
     view: FrameView,
     feet: Sequence[float] | None = None,
 ) -> Features:
-    """Measure the features of pairs of people: the one's minus the other's.
+    """Return the features of pairs of people: the first's minus the second's.
 
-    Top and bottom are rows in image heights, positive downwards; colours are similar the less negative they
-    are: minus the distance from the person's model. A colour that cannot be compared, for one of the two or
-    both, makes a difference of 0.
+    Top and bottom are rows in image heights, positive downwards; similarities of colours are minus the
+    distance from the person's model. A colour that cannot be compared for one of the two gives a difference
+    of 0.
 
     Args:
         state: (M, 9) contours.
-        models: (M,) what these people look like; None if unknown.
-        pairs: (P, 2) the one and the other, rows of `state`.
+        models: (M,) appearance models of these people; None if unknown.
+        pairs: (P, 2) first and second person, rows of `state`.
         view: the images.
-        feet: (M,) rows of the feet [px] as last seen whole; None for the contour's own. While a person is
-            partly hidden, the contour ends where it likes, and feet on a level floor tell the distance.
+        feet: (M,) rows of the feet [px] when last fully visible; None for the contour's own. While a person
+            is partly occluded, the contour's end is arbitrary, and feet on a level floor indicate the
+            distance.
 
     Returns:
         (P, 6) in the order of FEATURES; the mirrored pair has the same values with the sign turned.
@@ -64,7 +65,7 @@ def pair_features(
 
 
 def _strength(people: Floats, view: FrameView) -> Features:
-    """Measure the mean gradient (M,) along the contours, f of equation 4.3."""
+    """Return the mean gradient (M,) along the contours, f of equation 4.3."""
     differences = view.model.differences(view.image, people)
     return np.asarray(np.add.reduce(differences * view.model.weights, axis=1), np.float64)
 
@@ -79,7 +80,7 @@ def _ends(people: Floats, view: FrameView) -> tuple[Features, Features]:
 def _similarities(
     people: Floats, models: Sequence[ColourModel | None], pairs: Pairs, view: FrameView
 ) -> Features:
-    """Compare the first of each pair with its model (P, 3): all of it, what the other overlaps, the rest."""
+    """Compare the first of each pair with its model (P, 3): the whole, the overlapped part, the rest."""
     one, other = people[pairs[:, 0]], people[pairs[:, 1]]
     parts, height = part_rectangles(one), one[:, H]
     shared = cut(parts, boxes(other)[:, None])
@@ -99,7 +100,7 @@ def _similarities(
 
 
 def _described(view: FrameView, areas: Floats, height: Floats, holes: Floats | None = None) -> Floats:
-    """Describe areas (P, 3, 4) of people, (P, F), as the tracker describes people as a whole."""
+    """Describe areas (P, 3, 4) of people, (P, F), as the tracker describes whole people."""
     if view.appearance is None:
         assert view.colour is not None
         return view.colour.describe_rectangles(areas, height, holes)
@@ -118,7 +119,7 @@ def boxes(people: Floats) -> Floats:
 
 
 def cut(rectangles: Floats, by: Floats) -> Floats:
-    """Intersect rectangles (..., 4) with others; empty ones have no width or no height."""
+    """Intersect rectangles (..., 4) with others; empty ones have zero width or height."""
     start = np.maximum(rectangles[..., :2], by[..., :2])
     end = np.maximum(np.minimum(rectangles[..., 2:], by[..., 2:]), start)
     return np.concatenate([start, end], axis=-1)
@@ -137,6 +138,6 @@ def _area(rectangles: Floats) -> Floats:
 
 
 def _without(described: Floats, is_void: NDArray[np.bool_]) -> Floats:
-    """Blot out the features (P, F) of parts (P, 3) whose area says nothing."""
+    """Set to NaN the features (P, F) of parts (P, 3) whose area is too small."""
     features = described.reshape(len(described), PARTS, -1)
     return np.where(is_void[..., None], np.float32(np.nan), features).reshape(described.shape)

@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 from peopleboy.tracker.contour.occlusion.pair_features import Features
 
 FRACTIONS = 20
-"""N_f: the weights beside 1 are +-1/20, +-2/20, ... +-1."""
+"""N_f: the weights other than 1 are +-1/20, +-2/20, ... +-1."""
 
 
 def weighted_sums(features: int, most: int, fractions: int = FRACTIONS) -> Features:
     """List all weighted sums of up to `most` of the features, as rows of weights (T, features).
 
-    In a sum of two, one weight is 1, and the other is one of +-1/N_f .. +-1, either way round: 4 N_f sums a
-    pair. In a sum of three, the second and the third have each such a relation to the first, and all are
-    scaled so that the largest is 1: (4 N_f)^2 a triplet. This reading gives the thesis' own numbers: 6 single
+    In a sum of two, one weight is 1, and the other is one of +-1/N_f .. +-1, in either order: 4 N_f sums per
+    pair. In a sum of three, the second and the third each have such a ratio to the first, and all are scaled
+    so that the largest is 1: (4 N_f)^2 per triplet. This reading gives the thesis's own numbers: 6 single
     features, 1206 with pairs and 129206 with triplets, and 243 for the pairs of three features.
 
     Source: thesis, equation 7.4, section 7.4 and table 7.2.
@@ -42,11 +42,11 @@ def weighted_sums(features: int, most: int, fractions: int = FRACTIONS) -> Featu
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SortedSums:
-    """The weighted sums of N examples, each sorted, so that every threshold is tried in one pass.
+    """The weighted sums of N examples, each sorted, so that all thresholds are tested in one pass.
 
     Attributes:
-        value: (T, N) float32 rising sums.
-        example: (T, N) int32 whose they are.
+        value: (T, N) float32 increasing sums.
+        example: (T, N) int32 their examples.
     """
 
     value: NDArray[np.float32]
@@ -65,7 +65,7 @@ class Stump:
     """A weak classifier: 1 if p f < p theta (thesis, equation 7.2), f being one of the weighted sums.
 
     Attributes:
-        row: which of the sums.
+        row: index of the sum.
         threshold: theta.
         parity: p, 1 or -1.
     """
@@ -78,12 +78,12 @@ class Stump:
 def best_stump(
     sums: SortedSums, is_positive: NDArray[np.bool_], example_weight: NDArray[np.float64]
 ) -> Stump:
-    """Find the sum, threshold and parity with the smallest weighted error; the first of equals.
+    """Return the sum, threshold and parity with the smallest weighted error; the first of equals.
 
     Args:
         sums: of N examples.
-        is_positive: (N,) what the classifier should say.
-        example_weight: (N,) what each example counts.
+        is_positive: (N,) label of each example.
+        example_weight: (N,) weight of each example.
 
     Source: thesis, equation 7.3 and algorithm 5.
     """
@@ -102,7 +102,7 @@ def _best_stump(
         below = 0.0
         for i in range(value.shape[1] - 1):
             below += signed[example[j, i]]
-            # What is right minus what is wrong, if all below the threshold are called positive.
+            # Correct minus wrong votes, if all below the threshold are called positive.
             gain = 2 * below - total
             if abs(gain) > best_gain + 1e-12 and value[j, i] < value[j, i + 1]:
                 best_gain, best_row, best_parity = abs(gain), j, 1 if gain > 0 else -1
