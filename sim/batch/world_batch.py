@@ -32,14 +32,14 @@ from peopleboy.sim.world import World
 class KinematicBatch:
     """B worlds whose results are byte-identical to those of single worlds.
 
-    Their state is copied side by side into arrays, in which the worlds keep looking at it, so that each may
-    be asked for anything between steps. Robots, contacts, sonars and who could see whom are worked out by
-    kernels over all worlds; people walk as in one.
+    Their state is copied into joint arrays that the worlds share, so that each world can be queried between
+    steps. Robots, contacts, sonars and visibility are computed by kernels over all worlds; people walk as in
+    a single world.
 
     Args:
         worlds: kinematic, and of one kind, see `batch_key`. A world is in one batch at a time, the last
             that it was put into.
-        workers: makes images while Python goes on.
+        workers: threads that render images in the background.
     """
 
     def __init__(self, worlds: Sequence[World], workers: WorkerPool) -> None:

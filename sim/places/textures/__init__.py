@@ -1,1 +1,1 @@
-"""What `detail: full` gives to the surfaces of a place: structure that a thermal camera sees, and sun."""
+"""Surface textures for `detail: full`: structure in thermal images, and sunlight."""

@@ -1,4 +1,4 @@
-"""What `detail: full` paints on walls, floors, streets, facades, leaves and the sky, for a thermal camera.
+"""Thermal textures of walls, floors, streets, facades, leaves and the sky for `detail: full`.
 
 A clear sky looks far colder overhead than the air and hardly colder at the horizon; glass mirrors it, and
 stone that had sun by day stays warm in the evening.
@@ -151,7 +151,7 @@ def _ridge(texture: SurfaceTexture, metres: float) -> Array:
     return texture.cloudy(metres)[:1]
 
 
-# Walls, floors and ceilings of buildings, as a thermal camera sees them.
+# Walls, floors and ceilings of buildings in thermal images.
 #
 # Air is warmer above than below, corners and edges lose heat, studs carry it through, wires and pipes in
 # the wall bring some, and nothing is even. Sizes of these effects: textbook cases of building
@@ -187,7 +187,7 @@ def paint_plaster(texture: SurfaceTexture) -> None:
 
 
 def paint_flooring(texture: SurfaceTexture) -> None:
-    """A floor in slabs, cold along the walls, warm where it gets sun, heating or feet."""
+    """A floor in slabs, cold along the walls, warm under sun, heating or feet."""
     rng = texture.rng
     texture.kelvin -= _edges(texture, rng.uniform(0.5, 1.6), 0.35)
     texture.kelvin += rng.uniform(0.3, 0.6) * texture.cloudy(2.5) + 0.2 * texture.cloudy(0.3)
@@ -212,13 +212,13 @@ def paint_ceiling(texture: SurfaceTexture) -> None:
 
 
 def _studs(texture: SurfaceTexture) -> None:
-    """Studs behind boards, which spread what they lead through."""
+    """Studs behind boards, whose heat spreads in the boards."""
     off = (texture.across + texture.rng.uniform(0.0, _STUDS_M)) % _STUDS_M - 0.5 * _STUDS_M
     texture.kelvin -= texture.rng.uniform(0.2, 0.7) * np.exp(-((off / 0.04) ** 2))
 
 
 def _courses(texture: SurfaceTexture) -> None:
-    """Blocks and their joints behind plaster, which spreads what they lead through."""
+    """Blocks and their joints behind plaster, which spreads their heat."""
     rng, high = texture.rng, texture.rng.uniform(0.2, 0.33)
     off = (texture.up + rng.uniform(0.0, high)) % high - 0.5 * high
     texture.kelvin -= (
@@ -270,7 +270,7 @@ def _to_edge(texture: SurfaceTexture) -> Array:
 
 
 def _edges(texture: SurfaceTexture, kelvin: float, metres: float) -> Array:
-    """What edges and, twice as much, corners lose [K]."""
+    """Return the cooling of edges and, twice as much, of corners [K]."""
     width, height = texture.size
     across = np.exp(-np.minimum(texture.across, width - texture.across) / metres)
     return kelvin * (across + np.exp(-np.minimum(texture.up, height - texture.up) / metres))

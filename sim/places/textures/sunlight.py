@@ -1,4 +1,4 @@
-"""Where the sun gets in through windows, or falls between houses, and warms what it meets."""
+"""Sunlight through windows or between houses, and heat traces of things on surfaces."""
 
 import math
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ _LEAST_M = 0.02  # what is nearer to a point than that is the point's own
 
 
 def shine_on(texture: SurfaceTexture, sun: Sun, panes: Sequence[Extent], blocking: Sequence[Extent]) -> None:
-    """Warm and brighten what the sun reaches.
+    """Warm and brighten sunlit points of a surface.
 
     Args:
         texture: a floor, a wall or a road.
@@ -94,7 +94,7 @@ def _softened(share: Array, texels: int) -> Array:
     return padded
 
 
-# What warm and cold things do to the surfaces about them.
+# Effects of warm and cold things on nearby surfaces.
 
 _LEAST_K = 2.0  # a thing that differs less from a surface leaves no trace
 _REACH_M, _NEAR_M = 0.6, 0.14
@@ -104,7 +104,7 @@ _PLUME_SHARE, _TOUCH_SHARE, _PLUME_M = 0.13, 0.12, 0.9
 
 
 def warm_by(texture: SurfaceTexture, surface_c: float, things: Sequence[tuple[Extent, float]]) -> None:
-    """Add what things of known extents [m] and temperatures [degC] do to a surface.
+    """Add the effects of things of known extents [m] and temperatures [degC] to a surface.
 
     Near it, a surface takes a share of the difference that falls off with the distance. Above a warm thing
     rises a plume along the wall, which widens and fades; below a cold pane cold air falls.

@@ -1,4 +1,4 @@
-"""Paint a whole place: every surface by its covering, then what things and the sun do to it."""
+"""Paint a whole place: every surface by its covering, then the effects of things and the sun."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -25,7 +25,7 @@ from peopleboy.sim.shapes.materials import Covering, Material, Painting
 
 
 def paint_thing(texture: SurfaceTexture, material: Material) -> None:
-    """Return a thing its gradient and its unevenness."""
+    """Paint the gradient and the unevenness of a thing."""
     texture.kelvin += material.gradient_k_per_m * (texture.up - 0.5 * texture.size[1])
     scale = min(max(0.3 * max(texture.size), 0.1), 1.5)
     texture.kelvin += max(material.uneven_k, 0.25) * texture.cloudy(scale)
@@ -112,7 +112,7 @@ def _doorways(place: Place) -> list[Extent]:
 
 
 def _sun_ways(place: Place, things: Sequence[tuple[Fixture, Material]]) -> tuple[list[Extent], list[Extent]]:
-    """What the sun gets in by, and what keeps it out."""
+    """Return the panes that let the sun in, and the boxes that block it."""
     panes = [
         fixture_extent(f) for f, m in things if m.covering is Covering.GLASS and f.name.endswith("/pane")
     ]
