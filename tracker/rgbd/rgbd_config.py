@@ -52,7 +52,7 @@ class HypothesesConfig:
         unverified_s: [s] without a verification after which a hypothesis is deleted.
         missing_s: [s] for which a visible but unobserved person is output.
         outside_s: [s] the same for a person outside the image.
-        hidden_s: [s] without an observation after which an occluded or outside person is deleted; output
+        hidden_s: [s] without a verification after which an occluded or outside person is deleted; output
             for `unverified_s` only.
         has_see_through: whether a hypothesis is deleted when the background is visible at its position.
         appearance_weight: cost of a different appearance in the association, in gates.
