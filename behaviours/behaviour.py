@@ -1,7 +1,5 @@
 """The interface of behaviours."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Set
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Motion of the robot between two instants, by its wheels: an arc at constant speeds."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Self

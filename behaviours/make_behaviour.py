@@ -1,7 +1,5 @@
 """The behaviours by name; each is wrapped by the safety guard, which limits its commands by the sonars."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -39,13 +37,13 @@ class BehaviourSettings:
         corridor: sense, gains and limits of corridor following; None for the defaults.
     """
 
-    script: Sequence[tuple[float, Command]] = ()
-    follow: FollowConfig | None = None
-    corridor: FollowCorridorConfig | None = None
+    script: "Sequence[tuple[float, Command]]" = ()
+    follow: "FollowConfig | None" = None
+    corridor: "FollowCorridorConfig | None" = None
 
 
 @BEHAVIOURS.register("stand", summary="keeps the robot where it is")
-def _stand(settings: BehaviourSettings) -> Behaviour:  # noqa: ARG001
+def _stand(settings: BehaviourSettings) -> "Behaviour":  # noqa: ARG001
     from peopleboy.behaviours.scripted import Stand
 
     return Stand()
@@ -56,7 +54,7 @@ def _stand(settings: BehaviourSettings) -> Behaviour:  # noqa: ARG001
     summary="finds a person and follows, up to the distance at which the person is `keep_height` tall in the "
     "image",
 )
-def _follow_person(settings: BehaviourSettings) -> Behaviour:
+def _follow_person(settings: BehaviourSettings) -> "Behaviour":
     from peopleboy.behaviours.following.follow_person import FollowPerson
 
     return FollowPerson(settings.follow)
@@ -66,7 +64,7 @@ def _follow_person(settings: BehaviourSettings) -> Behaviour:
     "follow_corridor",
     summary="keeps to the middle of a corridor, turns at its end, and waits for people in the way",
 )
-def _follow_corridor(settings: BehaviourSettings) -> Behaviour:
+def _follow_corridor(settings: BehaviourSettings) -> "Behaviour":
     from peopleboy.behaviours.corridor.follow_corridor import FollowCorridor
 
     return FollowCorridor(settings.corridor)
@@ -76,7 +74,7 @@ def _follow_corridor(settings: BehaviourSettings) -> Behaviour:
     "patrol",
     summary="follows a corridor until a person turns up, follows that person for a while, and returns",
 )
-def _patrol(settings: BehaviourSettings) -> Behaviour:
+def _patrol(settings: BehaviourSettings) -> "Behaviour":
     from peopleboy.behaviours.corridor.follow_corridor import FollowCorridor
     from peopleboy.behaviours.patrol import Patrol
 
@@ -84,7 +82,7 @@ def _patrol(settings: BehaviourSettings) -> Behaviour:
 
 
 @BEHAVIOURS.register(SCRIPTED, summary="drives according to `commands`")
-def _scripted(settings: BehaviourSettings) -> Behaviour:
+def _scripted(settings: BehaviourSettings) -> "Behaviour":
     from peopleboy.behaviours.scripted import Scripted
 
     return Scripted(settings.script)
@@ -98,11 +96,11 @@ def is_own(name: str) -> bool:
 def make_behaviour(
     name: str,
     *,
-    script: Sequence[tuple[float, Command]] = (),
-    follow: FollowConfig | None = None,
-    corridor: FollowCorridorConfig | None = None,
-    safety: SafetyConfig | None = None,
-) -> Guarded:
+    script: "Sequence[tuple[float, Command]]" = (),
+    follow: "FollowConfig | None" = None,
+    corridor: "FollowCorridorConfig | None" = None,
+    safety: "SafetyConfig | None" = None,
+) -> "Guarded":
     """Make a behaviour by its name, limited by the safety guard.
 
     Args:

@@ -1,7 +1,5 @@
 """Patrol: follow the corridor, follow a detected person for a while, then continue along the corridor."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

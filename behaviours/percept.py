@@ -1,7 +1,5 @@
 """Input of a behaviour at one instant: people in the image, sonar ranges, wheel speeds."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Safety guard: validates and limits every command before it reaches the robot."""
 
-from __future__ import annotations
-
 from collections import deque
 from dataclasses import dataclass, replace
 

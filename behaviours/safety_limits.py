@@ -1,7 +1,5 @@
 """Limits of commands: the drive's limits, and obstacles seen by the sonars."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Predefined commands, each valid from a time on."""
 
-from __future__ import annotations
-
 import bisect
 import math
 from collections.abc import Sequence

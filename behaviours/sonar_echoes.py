@@ -1,7 +1,5 @@
 """Positions of the sonars' echoes around the robot."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 

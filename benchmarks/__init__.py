@@ -1,7 +1,5 @@
 """How fast things are: medians, and ratios against a named peer in the same run."""
 
-from __future__ import annotations
-
 import click
 
 from peopleboy.bad_input import BadInput

@@ -1,7 +1,5 @@
 """`make bench`: how fast everything is, from one run; leaves runs/bench.json."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from itertools import product

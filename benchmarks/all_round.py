@@ -3,8 +3,6 @@
 Values were chosen, and networks trained, on seeds from 100 on; these figures are of seeds from 0 on.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace

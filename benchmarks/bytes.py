@@ -4,8 +4,6 @@ Images, truth and tracks of ten scenarios are made anew from both, on this machi
 what a change of structure must leave as it was.
 """
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from collections.abc import Sequence

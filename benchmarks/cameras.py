@@ -5,8 +5,6 @@ with a thermal image that reads too warm or drifts. Each tracker sees the same i
 calibration or without.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """What all comparisons share: contestants on sequences, the metrics of each, and tables of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from operator import attrgetter
 from typing import Final, TypeVar

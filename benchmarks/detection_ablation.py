@@ -3,8 +3,6 @@
 Scenes and random worlds are recorded once; every variant then sees the same.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -5,8 +5,6 @@ scale, without the robot's motion, anywhere in the image. In a hot room clothes 
 `--clips DIR` measures on real clips instead, beside OpenCV's HOG with ByteTrack.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import tempfile

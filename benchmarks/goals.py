@@ -1,7 +1,5 @@
 """Figures of `make bench`: what each should be, what it was before, and how all of them are printed."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Mapping, Sequence

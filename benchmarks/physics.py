@@ -7,8 +7,6 @@ by the same actions, without it, which tells how far the way is off; and once mo
 tells how far the figures are.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import sys

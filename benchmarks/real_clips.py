@@ -1,7 +1,5 @@
 """Real thermal clips with truth, and what trackers, ours or peers, find in them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial

@@ -4,8 +4,6 @@
 each step, and pages that set them beside the clips, in runs/realism.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any

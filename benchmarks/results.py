@@ -3,8 +3,6 @@
 Tables say how, when and on what they were measured; the command takes in what measuring commands left.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from datetime import date
@@ -69,7 +67,7 @@ class ResultTable(_Part):
     rows: tuple[ResultRow, ...]
 
     @model_validator(mode="after")
-    def _has_a_figure_for_every_column(self) -> ResultTable:
+    def _has_a_figure_for_every_column(self) -> "ResultTable":
         for row in self.rows:
             if len(row.figures) != len(self.columns):
                 raise ValueError(f"{row.name}: {len(row.figures)} figures for {len(self.columns)} columns")

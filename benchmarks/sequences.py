@@ -1,7 +1,5 @@
 """Recorded sequences: what trackers see and what is true, and tracks as they are scored."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
@@ -36,7 +34,7 @@ class Recording:
     truth: TrueBoxes
     boxes_whole: bool = False
 
-    def uncalibrated(self) -> Recording:
+    def uncalibrated(self) -> "Recording":
         """Return the same, with nothing known of the cameras."""
         return replace(self, frames=tuple(replace(frame, calibrations={}) for frame in self.frames))
 

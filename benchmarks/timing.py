@@ -1,7 +1,5 @@
 """CPU time of work that takes turns: medians, and ratios that other work on the machine does not change."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field

@@ -3,8 +3,6 @@
 Runs are recorded once, driven by that tracker; every variant then sees the same images.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass, replace
 from typing import Any

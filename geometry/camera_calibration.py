@@ -1,7 +1,5 @@
 """Calibrations of cameras: mounting pose on the robot, and viewing ray of each pixel."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import asdict, dataclass, field
 from typing import Protocol

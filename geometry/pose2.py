@@ -1,7 +1,5 @@
 """Planar poses: the group SE(2)."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -26,24 +24,24 @@ class Pose2:
     y: float = 0.0
     heading: float = 0.0
 
-    def compose(self, child: Pose2) -> Pose2:
+    def compose(self, child: "Pose2") -> "Pose2":
         """Return the global pose of a frame whose local pose is given; the heading is wrapped to +-pi."""
         x, y = self.transform_point((child.x, child.y))
         return Pose2(x, y, math.remainder(self.heading + child.heading, math.tau))
 
-    def integrate(self, motion: Pose2) -> Pose2:
+    def integrate(self, motion: "Pose2") -> "Pose2":
         """Return this pose after a motion in its own frame; the heading counts full turns."""
         # The matrix product and not `transform_point`: BLAS fuses multiplication and addition, which
         # differs in the last bit, and dead reckoning over a run must stay reproducible.
         x, y = np.array([self.x, self.y]) + self.rotation @ (motion.x, motion.y)
         return Pose2(float(x), float(y), self.heading + motion.heading)
 
-    def inverse(self) -> Pose2:
+    def inverse(self) -> "Pose2":
         """Return the pose of the parent frame in this one."""
         x, y = self.to_local((0.0, 0.0))
         return Pose2(x, y, -self.heading)
 
-    def relative_to(self, other: Pose2) -> Pose2:
+    def relative_to(self, other: "Pose2") -> "Pose2":
         """Return this pose in the frame of another one; the heading is wrapped to +-pi."""
         x, y = other.to_local((self.x, self.y))
         return Pose2(x, y, math.remainder(self.heading - other.heading, math.tau))

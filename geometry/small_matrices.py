@@ -4,8 +4,6 @@
 version to the next. A closed loop amplifies them to millimetres within a minute.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Final
 

@@ -1,7 +1,5 @@
 """The command line: `peopleboy`."""
 
-from __future__ import annotations
-
 import errno
 import sys
 from collections.abc import Mapping, Sequence

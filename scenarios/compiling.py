@@ -1,7 +1,5 @@
 """What is printed while kernels are compiled, which happens once on a machine."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 

@@ -1,7 +1,5 @@
 """Progress bar on standard error."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from contextvars import ContextVar

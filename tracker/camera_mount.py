@@ -1,7 +1,5 @@
 """Pose of the thermal camera on the robot, as far as rows and sizes of people in its image depend on it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Final

@@ -1,7 +1,5 @@
 """A wrapper that validates a tracker's output, so that mistakes are reported where they are made."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Iterator, Mapping
 from numbers import Real

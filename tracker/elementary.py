@@ -5,8 +5,6 @@ of float32 in a fixed order, and products are never fused with sums. numba needs
 a kernel inherits such liberties from its first caller.
 """
 
-from __future__ import annotations
-
 from typing import Final
 
 import numpy as np

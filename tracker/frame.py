@@ -1,7 +1,5 @@
 """Input of a tracker: the images of one instant, camera calibrations, and odometry."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace

@@ -10,8 +10,6 @@ tracker on crossing_3 would take 11 to 18 % longer (CPU time, two turns: 1.69 to
 Source: Marsaglia and Tsang, The Ziggurat Method for Generating Random Variables, 2000, in NumPy's form.
 """
 
-from __future__ import annotations
-
 import ctypes
 import math
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Output of a tracker: people with ids, statuses, boxes in images, and positions on the floor."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum

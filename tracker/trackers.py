@@ -1,7 +1,5 @@
 """The trackers by name, and the protocol that a tracker implements."""
 
-from __future__ import annotations
-
 import operator
 from typing import TYPE_CHECKING, Final, Protocol, runtime_checkable
 
@@ -33,7 +31,7 @@ class Tracker(Protocol):
         """Names of the required cameras; those that a robot lacks are mounted with defaults."""
         ...
 
-    def update(self, frame: Frame) -> tuple[Track, ...]:
+    def update(self, frame: "Frame") -> "tuple[Track, ...]":
         """Process the next frame and return the tracks."""
         ...
 
@@ -42,7 +40,7 @@ class Tracker(Protocol):
 class Introducible(Protocol):
     """A tracker that can be initialised at a person."""
 
-    def introduce(self, box: Box) -> None:
+    def introduce(self, box: "Box") -> None:
         """Report that a person is at this box [px] of the thermal image in the next frame."""
         ...
 
@@ -51,7 +49,7 @@ class Introducible(Protocol):
 class ChecksCameras(Protocol):
     """A tracker that has requirements on the cameras it gets."""
 
-    def check_cameras(self, calibrations: Mapping[str, Calibration]) -> None:
+    def check_cameras(self, calibrations: "Mapping[str, Calibration]") -> None:
         """Refuse unsuitable cameras, by name, before the first frame.
 
         Raises:
@@ -90,28 +88,28 @@ def knows_again(tracker: Tracker) -> bool:
     return bool(getattr(tracker, "knows_again", False))
 
 
-def _contour_tracker(name: str, rng: np.random.Generator) -> ContourTracker:
+def _contour_tracker(name: str, rng: "np.random.Generator") -> "ContourTracker":
     from peopleboy.tracker.contour.contour_tracker import ContourTracker
     from peopleboy.tracker.contour.variants import VARIANTS
 
     return ContourTracker(VARIANTS[name], rng)
 
 
-def _panoramic_tracker() -> PanoramicTracker:
+def _panoramic_tracker() -> "PanoramicTracker":
     from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
     from peopleboy.tracker.panoramic.people.place_model import PlaceModel
 
     return PanoramicTracker(PlaceModel.load())
 
 
-def _rgbd_tracker(config: RgbdConfig, rng: np.random.Generator) -> RgbdTracker:
+def _rgbd_tracker(config: "RgbdConfig", rng: "np.random.Generator") -> "RgbdTracker":
     from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
     from peopleboy.tracker.rgbd.window_model import shipped_windows
 
     return RgbdTracker(config, shipped_windows(sees_depth=config.sees_depth), rng)
 
 
-def _fused_tracker(rng: np.random.Generator) -> FusedTracker:
+def _fused_tracker(rng: "np.random.Generator") -> "FusedTracker":
     from peopleboy.tracker.fusion.depth_visibility import is_warm
     from peopleboy.tracker.fusion.fused_tracker import FusedTracker, ThermalDepthTracker
     from peopleboy.tracker.fusion.fusion_config import FusionConfig
@@ -131,7 +129,7 @@ def _fused_tracker(rng: np.random.Generator) -> FusedTracker:
     summary="A detector trained on rendered random worlds only, and a Kalman filter in metres for each "
     "person. Needs contrast, not temperatures; re-identifies people by the colours of their clothes.",
 )
-def _detection(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
+def _detection(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
     from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
 
     return DetectionTracker()
@@ -143,7 +141,7 @@ def _detection(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
     summary="A particle filter for each person, with contour, colour and thermal appearance. Overlapping "
     "people are sorted by depth, the ones in front are explained away, occluded people coast. Uses odometry.",
 )
-def _contour(rng: np.random.Generator) -> Tracker:
+def _contour(rng: "np.random.Generator") -> Tracker:
     return _contour_tracker(CONTOUR_TRACKER, rng)
 
 
@@ -152,7 +150,7 @@ def _contour(rng: np.random.Generator) -> Tracker:
     scope="the same, trained",
     summary="`contour`, but the classifier of `peopleboy train occlusion` decides which person is in front.",
 )
-def _learned(rng: np.random.Generator) -> Tracker:
+def _learned(rng: "np.random.Generator") -> Tracker:
     return _contour_tracker("learned", rng)
 
 
@@ -162,7 +160,7 @@ def _learned(rng: np.random.Generator) -> Tracker:
     summary="A literal reimplementation: independent filters, colour moments, and a boosted classifier that "
     "decides which of two overlapping people is in front.",
 )
-def _thesis(rng: np.random.Generator) -> Tracker:
+def _thesis(rng: "np.random.Generator") -> Tracker:
     return _contour_tracker("thesis", rng)
 
 
@@ -171,7 +169,7 @@ def _thesis(rng: np.random.Generator) -> Tracker:
     scope="thesis, chapters 4 and 5",
     summary="`thesis` with the thermal image only.",
 )
-def _thermal(rng: np.random.Generator) -> Tracker:
+def _thermal(rng: "np.random.Generator") -> Tracker:
     return _contour_tracker("thermal", rng)
 
 
@@ -180,7 +178,7 @@ def _thermal(rng: np.random.Generator) -> Tracker:
     scope="thesis, chapters 4 to 6",
     summary="`thesis` with colour, without occlusion handling.",
 )
-def _colour(rng: np.random.Generator) -> Tracker:
+def _colour(rng: "np.random.Generator") -> Tracker:
     return _contour_tracker("colour", rng)
 
 
@@ -189,7 +187,7 @@ def _colour(rng: np.random.Generator) -> Tracker:
     scope="the 2005 paper",
     summary="The paper's measurement model, its 30 % best samples, three frames to confirm a person.",
 )
-def _paper(rng: np.random.Generator) -> Tracker:
+def _paper(rng: "np.random.Generator") -> Tracker:
     return _contour_tracker("paper", rng)
 
 
@@ -199,7 +197,7 @@ def _paper(rng: np.random.Generator) -> Tracker:
     summary="One person around a standing robot, with the panoramic camera only: background subtraction, a "
     "network for the distance (`peopleboy train distance` trains it), a Kalman filter on the floor.",
 )
-def _panoramic_paper(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
+def _panoramic_paper(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
     from peopleboy.tracker.panoramic.paper.distance_network import shipped_models
     from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicPaperTracker
 
@@ -212,7 +210,7 @@ def _panoramic_paper(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
     summary="Several people around a standing or moving robot, with the panoramic camera only: learned "
     "foreground segmentation, learned floor positions with covariance, colour descriptors by height.",
 )
-def _panoramic(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
+def _panoramic(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
     return _panoramic_tracker()
 
 
@@ -222,7 +220,7 @@ def _panoramic(rng: np.random.Generator) -> Tracker:  # noqa: ARG001
     summary="`contour` in the thermal image and `panoramic` in 360 degrees, with handover between them: a "
     "person keeps one id from the thermal image through the panorama and back.",
 )
-def _handover(rng: np.random.Generator) -> Tracker:
+def _handover(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.fusion.handover_tracker import HandoverTracker
 
     return HandoverTracker(_contour_tracker(CONTOUR_TRACKER, rng), _panoramic_tracker())
@@ -234,7 +232,7 @@ def _handover(rng: np.random.Generator) -> Tracker:
     summary="People on the floor with an RGB-D camera, on a standing or moving robot: candidates of human "
     "size, a learned classifier, and a particle filter for each person.",
 )
-def _rgbd(rng: np.random.Generator) -> Tracker:
+def _rgbd(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
 
     return _rgbd_tracker(RgbdConfig(), rng)
@@ -245,7 +243,7 @@ def _rgbd(rng: np.random.Generator) -> Tracker:
     scope="the situation-awareness thesis, chapter 4",
     summary="`rgbd` with the values that the thesis prints, where it prints any.",
 )
-def _rgbd_printed(rng: np.random.Generator) -> Tracker:
+def _rgbd_printed(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.rgbd.rgbd_config import PRINTED
 
     return _rgbd_tracker(PRINTED, rng)
@@ -257,7 +255,7 @@ def _rgbd_printed(rng: np.random.Generator) -> Tracker:
     summary="Fusion of `contour` and `rgbd`, and of `panoramic` if that camera is mounted. Thermal images "
     "detect people, depth locates them, colour identifies them. Works in the dark and with fewer cameras.",
 )
-def _fused(rng: np.random.Generator) -> Tracker:
+def _fused(rng: "np.random.Generator") -> Tracker:
     return _fused_tracker(rng)
 
 
@@ -268,7 +266,7 @@ def _fused(rng: np.random.Generator) -> Tracker:
     "person who comes back after any time; unknown people get new ids. A following robot keeps searching "
     "until it sees its person again.",
 )
-def _attentive(rng: np.random.Generator) -> Tracker:
+def _attentive(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
     from peopleboy.tracker.attention.people.recogniser import ByColour
 
@@ -280,7 +278,7 @@ def _attentive(rng: np.random.Generator) -> Tracker:
     scope="the situation-awareness thesis, chapter 5",
     summary="Like `attentive`, with re-identification by the attention model as printed in that chapter.",
 )
-def _attentive_printed(rng: np.random.Generator) -> Tracker:
+def _attentive_printed(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.attention.attention_config import PRINTED
     from peopleboy.tracker.attention.people.attentive_config import AS_FOUND
     from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
@@ -294,7 +292,7 @@ def _attentive_printed(rng: np.random.Generator) -> Tracker:
     scope="all of these",
     summary="`fused` with the re-identification of `attentive`, from all colour cameras.",
 )
-def _attentive_fused(rng: np.random.Generator) -> Tracker:
+def _attentive_fused(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.attention.people.attentive_tracker import AttentiveTracker
     from peopleboy.tracker.attention.people.recogniser import ByColour
 

@@ -1,7 +1,5 @@
 """Localisation in a corridor by the colour image: vanishing point and wall-floor lines."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Localisation in a corridor by sonar: the heading at which the echoes of each side agree on one wall."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 

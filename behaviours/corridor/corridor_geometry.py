@@ -1,7 +1,5 @@
 """Pose of the robot in a corridor, or the reason why it is unknown."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Corridor following: along the middle, round corners, back from dead ends, past people."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field, replace
 from typing import Literal

@@ -1,7 +1,5 @@
 """Obstacle avoidance by aiming past obstacles, so that the robot slides along walls and through doors."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Identification of the followed person among the people in the image."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Person following: search, approach and hold the distance, by position and height in the image."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field, replace
 

@@ -1,7 +1,5 @@
 """Last position of a person, updated by the wheels' motion while the robot drives there."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

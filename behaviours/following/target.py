@@ -1,7 +1,5 @@
 """State of the followed person between images: bearing, drift and apparent height."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """`python -m benchmarks.peers`: peers and our trackers on the same frames of the occlusion library."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import click

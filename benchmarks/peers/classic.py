@@ -4,8 +4,6 @@ JPDA: Bar-Shalom and Fortmann 1988. MHT: Reid 1979, here track-oriented, solved 
 by multi-frame assignment (Xia et al. 2019). Both have the same motion, noise, births and ends of tracks.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterable
 from datetime import datetime, timedelta

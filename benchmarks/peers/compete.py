@@ -1,7 +1,5 @@
 """Let contestants see kept frames, keep what they say, and score it."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from dataclasses import dataclass

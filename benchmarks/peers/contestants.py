@@ -1,7 +1,5 @@
 """All who compete, by name: peers, and the trackers of `peopleboy.tracker.trackers`."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, Final, Protocol
 

@@ -5,8 +5,6 @@ where those are annotated. The constants that do so were chosen in the peers' fa
 crossing_2 and crossing_3.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import cv2

@@ -6,8 +6,6 @@ moving one person at a time. The contour, its likelihood, the motion, the detect
 those of the literal tracker, so that the two differ in nothing but how several people are held.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Final
 

@@ -1,7 +1,5 @@
 """Our own trackers among contestants, for which no package of others is needed."""
 
-from __future__ import annotations
-
 from typing import Protocol
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Tables and a picture of a competition."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path

@@ -5,8 +5,6 @@ process and with caches of its own, so that other work slows both.
 The other one may be older than the package's present layout; its first turn compiles, and is not counted.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

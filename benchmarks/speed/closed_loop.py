@@ -1,7 +1,5 @@
 """The whole closed loop in multiples of real time, and the memory it takes."""
 
-from __future__ import annotations
-
 import resource
 import tempfile
 import time

@@ -1,7 +1,5 @@
 """The contour tracker by its parts and by people, and the trackers beside OpenCV's HOG detector, by turns."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial

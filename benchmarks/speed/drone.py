@@ -10,8 +10,6 @@ and images.
 Source: Panerati et al., Learning to Fly, a Gym Environment with PyBullet Physics, 2021, and its code, 2.0.
 """
 
-from __future__ import annotations
-
 from contextlib import closing
 from dataclasses import dataclass
 from itertools import product

@@ -1,7 +1,5 @@
 """What the engine costs: a sweep with one worker, beside a plain loop over the same runs."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -4,8 +4,6 @@
 many worlds in one process, as worlds and people become more.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor

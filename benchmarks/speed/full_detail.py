@@ -5,8 +5,6 @@ that it costs most first; names of scenarios behind it choose others. `--rendere
 plain and in full detail, with TinyRenderer in a corridor of four people instead.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial

@@ -4,8 +4,6 @@ The frames of one scenario are kept and shown again and again, with time going o
 rendered, in a new world every time.
 """
 
-from __future__ import annotations
-
 import ctypes
 import gc
 import os

@@ -5,8 +5,6 @@ OpenBLAS, the C library and numba use nothing that an Intel Nehalem does not hav
 joined with a sum.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

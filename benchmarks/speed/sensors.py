@@ -3,8 +3,6 @@
 Medians of CPU time; the peer is OpenCV's HOG, or for the panorama the thermal camera.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import partial
 

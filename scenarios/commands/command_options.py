@@ -5,8 +5,6 @@ few values, and else a number, a path or a word, with the limits and the default
 gives a command such options; it takes the values as one `GivenOptions`, from which the dataclass is made.
 """
 
-from __future__ import annotations
-
 import json
 import logging
 import math
@@ -111,7 +109,7 @@ class _FieldOptions:
         config: type[Any] = getattr(import_module(f"peopleboy.{module}"), name)
         return config
 
-    def settings(self) -> list[Setting]:
+    def settings(self) -> "list[Setting]":
         from peopleboy.settings import settings_of
 
         known = {setting.field: setting for setting in settings_of(self.config())}
@@ -180,7 +178,7 @@ def options_of(
     return decorate
 
 
-def _option(setting: Setting, meaning: str, *, is_required: bool) -> click.Parameter:
+def _option(setting: "Setting", meaning: str, *, is_required: bool) -> click.Parameter:
     if setting.is_positional:
         metavar = f"[{setting.field.upper()}]"
         return click.Argument(
@@ -205,16 +203,16 @@ def _option(setting: Setting, meaning: str, *, is_required: bool) -> click.Param
     )
 
 
-def _is_many(setting: Setting) -> bool:
+def _is_many(setting: "Setting") -> bool:
     """Return whether the option can be given several times."""
     return get_args(setting.kind)[1:] == (...,)
 
 
-def _choices(setting: Setting) -> list[str]:
+def _choices(setting: "Setting") -> list[str]:
     return [str(choice) for choice in (get_args(setting.kind)[0] if _is_many(setting) else setting.choices)]
 
 
-def _type(setting: Setting) -> Any:
+def _type(setting: "Setting") -> Any:
     low, high = setting.limits.get("ge"), setting.limits.get("le", setting.limits.get("lt"))
     if setting.kind is int:
         # The limits are kept as numbers of any kind; those of a whole number are whole.
@@ -227,7 +225,7 @@ def _type(setting: Setting) -> Any:
     return (float, float) if setting.kind == tuple[float, float] else str
 
 
-def _taken(setting: Setting, value: Any) -> Any:
+def _taken(setting: "Setting", value: Any) -> Any:
     if setting.kind is bool:
         return not setting.default if value else None
     if _is_many(setting):

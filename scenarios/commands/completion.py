@@ -4,8 +4,6 @@ A shell that is set up to ask `peopleboy` gets them, as docs/tutorial/first-run.
 it that takes time.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from pathlib import Path
 

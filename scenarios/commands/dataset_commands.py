@@ -1,7 +1,5 @@
 """Commands that make data sets of runs: `render`, `export`."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from functools import cached_property
@@ -46,9 +44,9 @@ FAILED = 1
 @output_options
 def render(
     scenarios: tuple[str, ...],
-    given: GivenOptions[SetOptions],
+    given: "GivenOptions[SetOptions]",
     seeds: range,
-    workers: Workers,
+    workers: "Workers",
     output: Output,
 ) -> None:
     """Render a data set with splits, checks and a datasheet.
@@ -69,7 +67,7 @@ def render(
         sys.exit(FAILED)
 
 
-def _print_set(done: RenderedSet) -> None:
+def _print_set(done: "RenderedSet") -> None:
     for check in done.checks:
         click.echo(f"{'passed' if not check.failures else 'FAILED'}: {check.what}")
         for failure in check.failures[:5]:
@@ -105,7 +103,7 @@ class FormatName(click.Choice[str]):
     out="Output folder.  [default: beside the run, RUN-FORMAT(-CAMERA); for several runs, export-FORMAT]",
 )
 @output_options
-def export(runs: Sequence[Path], form: str, given: GivenOptions[ExportOptions], output: Output) -> None:
+def export(runs: Sequence[Path], form: str, given: "GivenOptions[ExportOptions]", output: Output) -> None:
     """Export runs to the formats of other tools.
 
     RUNS are folders of runs, or folders that hold them. The runs of a rendered data set are exported to coco,

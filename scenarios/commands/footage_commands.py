@@ -1,7 +1,5 @@
 """Commands for recorded images and imported tracks: `track`, `import-tracks`, `sim-to-real`."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -67,12 +65,12 @@ _TRACKERS = (
 @output_options
 def track(
     footage: Path,
-    files: GivenOptions[TrackOptions],
-    thermal: GivenOptions[Radiometry],
+    files: "GivenOptions[TrackOptions]",
+    thermal: "GivenOptions[Radiometry]",
     scale: str | None,
-    rgbd: GivenOptions[RgbdOptions],
-    camera: GivenOptions[RgbdCamera],
-    given: GivenOptions[TrackOptions],
+    rgbd: "GivenOptions[RgbdOptions]",
+    camera: "GivenOptions[RgbdCamera]",
+    given: "GivenOptions[TrackOptions]",
     start: str | None,
     output: Output,
 ) -> None:
@@ -101,7 +99,7 @@ def track(
     _print(tracked, options, output)
 
 
-def _rgbd(given: GivenOptions[RgbdOptions], camera: GivenOptions[RgbdCamera]) -> RgbdOptions | None:
+def _rgbd(given: "GivenOptions[RgbdOptions]", camera: "GivenOptions[RgbdCamera]") -> "RgbdOptions | None":
     if given.depth is None:
         if given.values or camera.values:
             raise BadInput("options of a depth camera need --depth FOLDER; without it, leave them out")
@@ -111,7 +109,7 @@ def _rgbd(given: GivenOptions[RgbdOptions], camera: GivenOptions[RgbdCamera]) ->
     return given.make(camera=camera.make())
 
 
-def _print(tracked: Tracked, options: TrackOptions, output: Output) -> None:
+def _print(tracked: "Tracked", options: "TrackOptions", output: Output) -> None:
     from peopleboy.scenarios.footage.track_footage import outcome_lines
     from peopleboy.scenarios.scores.show_scores import print_scores
     from peopleboy.tracker.evaluation.table import to_json
@@ -138,7 +136,7 @@ def _print(tracked: Tracked, options: TrackOptions, output: Output) -> None:
     out="Output folder.  [default: beside RUN, SCENARIO-SEED-NAME, or RUN-NAME for a folder of runs]",
 )
 @output_options
-def import_tracks(run: Path, tracks: Path, given: GivenOptions[TrackImport], output: Output) -> None:
+def import_tracks(run: Path, tracks: Path, given: "GivenOptions[TrackImport]", output: Output) -> None:
     """Import tracks that another program made of a run.
 
     TRACKS is MOTChallenge text: frame, id, left, top, width, height, confidence, -1, -1, -1. Frames count the

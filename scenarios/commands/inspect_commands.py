@@ -1,7 +1,5 @@
 """Commands that inspect runs and the library: `list`, `show`, `view`, `report`, `evaluate` and others."""
 
-from __future__ import annotations
-
 import shutil
 import sys
 import textwrap
@@ -72,7 +70,7 @@ def view(folder: Path, web: bool, port: int | None) -> None:
 )
 @click.option("--no-thermal", is_flag=True, help="Find people by shape alone, without the thermal image.")
 @output_options
-def scene_model(folder: Path, no_thermal: bool, given: GivenOptions[RunOptions], output: Output) -> None:
+def scene_model(folder: Path, no_thermal: bool, given: "GivenOptions[RunOptions]", output: Output) -> None:
     """Find the things that people moved, from depth images.
 
     The run needs images: run the scenario with --frames and a camera `depth`. Writes scene.jsonl, a line per
@@ -112,7 +110,7 @@ def list_command(words: tuple[str, ...], output: Output) -> None:
     output.results(lambda: [asdict(entry) for entry in entries], lambda: _print_entries(entries))
 
 
-def _print_entries(entries: Sequence[LibraryEntry]) -> None:
+def _print_entries(entries: "Sequence[LibraryEntry]") -> None:
     """Print a line for each entry; on a terminal, descriptions are wrapped in their column."""
     width = max(len(entry.name) for entry in entries)
     head = f"{'name':{width}}  {'time':>6}  people  "
@@ -200,7 +198,7 @@ def evaluate(
     runs: Sequence[Path],
     truth: Path | None,
     tracks: Path | None,
-    given: GivenOptions[ScoreOptions],
+    given: "GivenOptions[ScoreOptions]",
     output: Output,
 ) -> None:
     """Score tracks against ground truth, from runs or files.

@@ -1,7 +1,5 @@
 """Commands that run scenarios: `run`, `sweep`, `compare`."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
@@ -55,9 +53,9 @@ if TYPE_CHECKING:
 @output_options
 def run(
     scenario: str,
-    given: GivenOptions[RunOptions],
+    given: "GivenOptions[RunOptions]",
     live: bool,
-    workers: Workers,
+    workers: "Workers",
     output: Output,
 ) -> None:
     """Run a scenario: ground truth, tracks, scores, recording.
@@ -107,7 +105,7 @@ def run(
         _run_one(loaded, options, output)
 
 
-def _others(scenario: Scenario | None, given: GivenOptions[RunOptions]) -> str:
+def _others(scenario: "Scenario | None", given: "GivenOptions[RunOptions]") -> str:
     """Return the end of the folder's name: what differs from the scenario."""
     usual = () if scenario is None else (scenario.tracker, scenario.robot.behaviour, scenario.spec.physics)
     chosen = (given.tracker, given.behaviour, given.physics)
@@ -115,7 +113,7 @@ def _others(scenario: Scenario | None, given: GivenOptions[RunOptions]) -> str:
     return "".join(f"-{each.replace(':', '.')}" for each in others)
 
 
-def _run_one(scenario: Scenario, options: RunOptions, output: Output) -> None:
+def _run_one(scenario: "Scenario", options: "RunOptions", output: Output) -> None:
     from peopleboy.scenarios.running.run import tracker_name
 
     scores = _run_shown(scenario, options)
@@ -127,7 +125,7 @@ def _run_one(scenario: Scenario, options: RunOptions, output: Output) -> None:
     )
 
 
-def _show(scores: RunScores, options: RunOptions) -> None:
+def _show(scores: "RunScores", options: "RunOptions") -> None:
     from peopleboy.scenarios.recording.recording_file import is_recorded
     from peopleboy.scenarios.scores.run_scores import headline
     from peopleboy.scenarios.scores.show_scores import print_drive, print_scores
@@ -145,7 +143,7 @@ def _show(scores: RunScores, options: RunOptions) -> None:
         click.echo(f"Recording:   peopleboy view {options.out}")
 
 
-def _run_shown(scenario: Scenario, options: RunOptions) -> RunScores:
+def _run_shown(scenario: "Scenario", options: "RunOptions") -> "RunScores":
     """Run a scenario with a bar that shows frames, frame rate and what the robot does."""
     from peopleboy.scenarios.progress_bar import progress_bar, progress_console
     from peopleboy.scenarios.running.run import run as run_scenario
@@ -153,14 +151,14 @@ def _run_shown(scenario: Scenario, options: RunOptions) -> RunScores:
     preparing = progress_console().status("building the world")
     with preparing, progress_bar(scenario.name, unit="frames") as show:
 
-        def report(tick: Tick, frames: int) -> None:
+        def report(tick: "Tick", frames: int) -> None:
             preparing.stop()
             show(tick.frame, frames, tick.mode)
 
         return run_scenario(scenario, options, report)
 
 
-def _run_suite(name: str, options: RunOptions, workers: Workers, output: Output) -> None:
+def _run_suite(name: str, options: "RunOptions", workers: "Workers", output: Output) -> None:
     from peopleboy.scenarios.running.many_runs import run_suite
     from peopleboy.scenarios.scores.by_tracker import figures_of_all, score_by_tracker
     from peopleboy.scenarios.scores.show_scores import print_runs
@@ -198,8 +196,8 @@ def sweep(
     scenario: str | None,
     seeds: range,
     random_worlds: bool,
-    given: GivenOptions[RunOptions],
-    workers: Workers,
+    given: "GivenOptions[RunOptions]",
+    workers: "Workers",
     output: Output,
 ) -> None:
     """Run and score many seeds of a scenario, or random worlds.
@@ -257,8 +255,8 @@ def compare(
     scenarios: Sequence[str],
     controllers: str,
     seeds: range,
-    given: GivenOptions[RunOptions],
-    workers: Workers,
+    given: "GivenOptions[RunOptions]",
+    workers: "Workers",
     output: Output,
 ) -> None:
     """Compare controllers on the same scenarios.

@@ -1,7 +1,5 @@
 """Commands for research: `datasets`, `reproduce`, `tune`, `train`, `export-onnx`."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Sequence
 from dataclasses import fields
@@ -58,9 +56,9 @@ def datasets(suites: Sequence[str], frame_cache: Path, output: Output) -> None:
 @output_options
 def reproduce(
     names: Sequence[str],
-    given: GivenOptions[ReproduceOptions],
+    given: "GivenOptions[ReproduceOptions]",
     frame_cache: Path,
-    workers: Workers,
+    workers: "Workers",
     lists: bool,
     output: Output,
 ) -> None:
@@ -110,11 +108,11 @@ def reproduce(
 @output_options
 def tune(
     names: Sequence[str],
-    given: GivenOptions[TrainingFilms],
+    given: "GivenOptions[TrainingFilms]",
     seeds: range,
     out: Path,
     frame_cache: Path,
-    workers: Workers,
+    workers: "Workers",
     output: Output,
 ) -> None:
     """Tune the parameters of the thesis trackers, one at a time.
@@ -177,7 +175,7 @@ def _command(model: str, target: str, help_text: str, specification: type[Any]) 
     @workers_options
     @output_options
     def train_model(
-        given: GivenOptions[Any], out: Path | None, ship: bool, workers: Workers, output: Output
+        given: GivenOptions[Any], out: Path | None, ship: bool, workers: "Workers", output: Output
     ) -> None:
         from peopleboy.studies.training.specification import train
 

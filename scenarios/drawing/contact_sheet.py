@@ -3,8 +3,6 @@
 What further cameras saw stands below, with their names.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Draw the plan of a scenario: the place, warm things, walking paths with times, and the robot's view."""
 
-from __future__ import annotations
-
 import textwrap
 from pathlib import Path
 from typing import Final

@@ -1,7 +1,5 @@
 """Choose the few moments of a run that tell its story, while it goes and without keeping it all."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

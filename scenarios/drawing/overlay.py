@@ -4,8 +4,6 @@ Everything is given in pixels of the camera's own image and drawn on an enlarged
 against people.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Colours that people with any colour vision tell apart, on grey images and on dark plots."""
 
-from __future__ import annotations
-
 from typing import Final
 
 Rgb = tuple[int, int, int]

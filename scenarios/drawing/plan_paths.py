@@ -1,7 +1,5 @@
 """Draw on a plan who moves and how: the robot with its field of view, people, and things that are moved."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

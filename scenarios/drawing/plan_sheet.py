@@ -1,7 +1,5 @@
 """Lay out the sheet of a plan, whole or in sections, place its labels, and draw the place on it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from typing import Any

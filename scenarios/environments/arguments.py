@@ -3,8 +3,6 @@
 Worlds vary from episode to episode so that a learned controller does not rely on one of them.
 """
 
-from __future__ import annotations
-
 import math
 import reprlib
 from collections.abc import Mapping, Sequence

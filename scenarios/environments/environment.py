@@ -1,7 +1,5 @@
 """Any scenario as a gymnasium environment, in which anybody's controller drives the robot."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Episodes in many worlds: rewards, terminations, events and metrics; a single environment has one."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict

@@ -3,8 +3,6 @@
 Numbers are within -1..1 if asked, as most learners want them; images stay as they are.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from typing import Any, Final

@@ -20,8 +20,6 @@ action:
 and the latter otherwise; the rest counts in all three.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, Final, NamedTuple
 

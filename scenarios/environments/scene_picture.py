@@ -1,7 +1,5 @@
 """The scene in one picture: thermal image, colour image, and the plan around the robot."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

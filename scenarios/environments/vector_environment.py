@@ -1,7 +1,5 @@
 """Many environments in one process, as one of gymnasium's vector environments."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

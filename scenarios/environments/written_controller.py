@@ -1,7 +1,5 @@
 """The written behaviours as controllers of an environment: observations in, actions out."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

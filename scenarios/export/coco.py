@@ -15,8 +15,6 @@ COCO counts pixels from the image's corner: the middle of the top-left pixel is 
 in a run's folder. Fields beyond COCO's own are explained in docs/truth.md.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from dataclasses import asdict

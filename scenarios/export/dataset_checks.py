@@ -1,7 +1,5 @@
 """Whether a rendered set is what its datasheet says."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import tempfile

@@ -3,8 +3,6 @@
 The questions are those of Gebru et al., "Datasheets for Datasets", 2021.
 """
 
-from __future__ import annotations
-
 import json
 import shlex
 from collections.abc import Iterable, Mapping, Sequence

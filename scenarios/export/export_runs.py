@@ -1,7 +1,5 @@
 """Export runs in one of the formats, whole or not at all."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path

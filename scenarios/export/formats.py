@@ -4,8 +4,6 @@ Other packages add formats by entry points of the group `peopleboy.exports`: eac
 this table, `write(runs, folder, play)`, and is offered under the entry point's name.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from importlib import import_module
 from inspect import signature

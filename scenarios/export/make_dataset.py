@@ -1,7 +1,5 @@
 """Render a data set: choose its runs, play them, then write splits, statistics, checks and the datasheet."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass

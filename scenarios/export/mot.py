@@ -17,8 +17,6 @@ and peopleboy-test.
 There is no det/det.txt: nothing in a run finds people in single images, and truth is no detection.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 

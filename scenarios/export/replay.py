@@ -13,8 +13,6 @@ RUN/truth/CAMERA/depth/000001.png            16 bits: true depth [mm], 0 for not
 RUN/truth/numbers.json                       the name of each person and part
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Split data sets into training, validation and test runs, so that no export trains on test runs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """MP4: thermal and colour side by side, or one camera alone, with truth and tracks drawn in: RUN.mp4."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType

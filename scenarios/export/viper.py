@@ -8,8 +8,6 @@ inside the image only in a `bbox`; the four decimal attributes beside it hold th
 a panorama's seam one `bbox` holds the part at the right border, and another the part at the left.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field

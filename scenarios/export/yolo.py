@@ -11,8 +11,6 @@ with the nearer one. Slivers are left out: boxes narrower or lower than 3 px, or
 Ultralytics drops those up to 2 px of the images that it alters.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import partial

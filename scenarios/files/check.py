@@ -1,7 +1,5 @@
 """What a schema cannot see: people in walls, robots in tables, two of one name."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """What moved things may not do: sweep through people, the robot or each other, or be out of reach."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """The scenarios and suites that come with PeopleBoy, listed without loading what they need."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Find scenarios, by name in the library or by path, and read them."""
 
-from __future__ import annotations
-
 import logging
 from pathlib import Path
 from typing import Any

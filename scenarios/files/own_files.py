@@ -1,7 +1,5 @@
 """Files of a scenario's own that it names: a run keeps copies, so that its folder can be played by itself."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 from pathlib import Path

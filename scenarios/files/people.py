@@ -1,7 +1,5 @@
 """What a scenario file says about people, and what the seed decides about them: bodies, clothes, detours."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, fields, replace

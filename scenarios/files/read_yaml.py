@@ -1,7 +1,5 @@
 """Read YAML files as plain data: no tags, no aliases, no key twice, and one-line errors."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any, Final

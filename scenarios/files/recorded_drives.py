@@ -1,7 +1,5 @@
 """Recorded drives: the commands of a robot that followed people, repeated without a tracker."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import asdict
 from io import BytesIO

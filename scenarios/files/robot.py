@@ -1,7 +1,5 @@
 """What a scenario file says about the robot: its start, its cameras, and what drives it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -105,7 +103,7 @@ class RobotSpec:
                 raise ValueError(f"{name!r} is a camera: write cameras: {{{name}: {{kind: {name}, ...}}}}")
         return data
 
-    def with_cameras(self, cameras: Mapping[str, Mapping[str, Any]]) -> RobotSpec:
+    def with_cameras(self, cameras: Mapping[str, Mapping[str, Any]]) -> "RobotSpec":
         """Return the same robot with further cameras, or others in their place."""
         return replace(self, cameras={**self.cameras, **{name: dict(one) for name, one in cameras.items()}})
 

@@ -1,7 +1,5 @@
 """A scenario that was read and checked, ready to be played with any seed."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -138,7 +136,7 @@ class Scenario:
             detail=self.spec.detail,
         )
 
-    def mounting(self, cameras: Sequence[str]) -> Scenario:
+    def mounting(self, cameras: Sequence[str]) -> "Scenario":
         """The same scenario, but its robot also carries these cameras: those that it lacks, with defaults.
 
         Args:
@@ -158,19 +156,19 @@ class Scenario:
                 )
         return self.with_cameras({name: {"kind": name} for name in lacking})
 
-    def with_cameras(self, cameras: Mapping[str, Mapping[str, object]]) -> Scenario:
+    def with_cameras(self, cameras: Mapping[str, Mapping[str, object]]) -> "Scenario":
         """The same scenario, but its robot carries these cameras, in place of any that have their names."""
         return replace(self, spec=replace(self.spec, robot=self.robot.with_cameras(cameras)))
 
-    def lasting(self, duration_s: float) -> Scenario:
+    def lasting(self, duration_s: float) -> "Scenario":
         """The same scenario, but shorter or longer."""
         return replace(self, spec=replace(self.spec, duration_s=duration_s))
 
-    def driven(self, drive: Sequence[Command]) -> Scenario:
+    def driven(self, drive: Sequence[Command]) -> "Scenario":
         """The same scenario, but the robot repeats recorded commands."""
         return replace(self, drive=tuple(drive))
 
-    def steered_by(self, behaviour: str) -> Scenario:
+    def steered_by(self, behaviour: str) -> "Scenario":
         """The same scenario, but another behaviour drives the robot.
 
         One of your own, by module:Class, does not get into the file: its task is that of the file's.
@@ -184,7 +182,7 @@ class Scenario:
         robot = replace(self.robot, behaviour=behaviour)
         return replace(self, spec=replace(self.spec, robot=robot), drive=None, own_behaviour=None)
 
-    def moved_by(self, physics: PhysicsName | str) -> Scenario:
+    def moved_by(self, physics: PhysicsName | str) -> "Scenario":
         """The same scenario, but other physics move the robot.
 
         Raises:

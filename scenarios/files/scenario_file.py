@@ -4,8 +4,6 @@ Lengths in metres, angles in degrees, times in seconds, temperatures in degC: th
 x points forward from where the place begins, y to the left; headings count from x to the left.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 

@@ -1,7 +1,5 @@
 """Suites: lists of scenarios with seeds, such as the data sets that stand for those of the thesis."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Make settings of the plain data of a file, and explain in one line what is wrong with them."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import is_dataclass, replace

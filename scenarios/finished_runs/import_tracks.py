@@ -1,7 +1,5 @@
 """Import tracks that another program made of the images of a run, as a run of their own."""
 
-from __future__ import annotations
-
 import re
 from collections import defaultdict
 from collections.abc import Callable, Mapping

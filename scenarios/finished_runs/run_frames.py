@@ -1,7 +1,5 @@
 """The frames of a finished run as a tracker sees them, read from its folder."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping

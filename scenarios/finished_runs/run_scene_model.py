@@ -1,7 +1,5 @@
 """Run a scene model over the images of a finished run, and write what it finds."""
 
-from __future__ import annotations
-
 import json
 from bisect import bisect_left
 from collections import defaultdict

@@ -1,7 +1,5 @@
 """What truly happened to things, and which of it a scene model reported."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -43,7 +41,7 @@ class TrueEvent:
     to_m: tuple[float, float] | None = None
 
     @classmethod
-    def of(cls, line: ThingEvent | LogLine, thing: str, by: str, place_m: tuple[float, float]) -> TrueEvent:
+    def of(cls, line: ThingEvent | LogLine, thing: str, by: str, place_m: tuple[float, float]) -> "TrueEvent":
         """Read it from a line of the log; `place_m` is where the thing is if it was not moved."""
         if line.move is not None:
             ends = {"from_m": line.move.from_m[:2], "to_m": line.move.to_m[:2]}

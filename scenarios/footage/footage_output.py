@@ -1,7 +1,5 @@
 """Files of a tracked sequence: log, contact sheet and video."""
 
-from __future__ import annotations
-
 import json
 import math
 import shutil

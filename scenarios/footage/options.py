@@ -1,7 +1,5 @@
 """Options of tracking in footage, with the pose and view of an RGB-D camera, and their checks."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Run a tracker over footage, write a folder like that of a run, and summarise the result."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

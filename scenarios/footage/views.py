@@ -1,7 +1,5 @@
 """Footage of any kind as frames of the tracker: thermal with optional colour, or colour with depth."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import zip_longest
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Faults of sensors and tracker that a scenario asks for, to see what a controller makes of them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

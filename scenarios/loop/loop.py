@@ -1,7 +1,5 @@
 """The closed loop: senses become tracks, tracks become a command, and the command moves the world."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial

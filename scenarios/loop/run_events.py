@@ -1,7 +1,5 @@
 """Log the events of a run: what happens in the world, to the tracks, and to the behaviour; and word them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass

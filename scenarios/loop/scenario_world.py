@@ -1,7 +1,5 @@
 """The simulated world of a scenario, by the scenario's name."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

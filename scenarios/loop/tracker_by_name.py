@@ -1,7 +1,5 @@
 """Make trackers by the names that `--tracker` takes: those that see images, and the oracle."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 from peopleboy.bad_input import BadInput

@@ -1,7 +1,5 @@
 """The distribution of random worlds: every range and every share, by name, and how to narrow it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """Draw the place and the robot of a random world, and test whether a scene can be played."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What was drawn for a random world, value by value, read back from its scenario."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence

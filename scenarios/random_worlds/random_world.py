@@ -1,7 +1,5 @@
 """Draw a whole world at random, as the data of a scenario file: its scene, its things, and its people."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from pathlib import Path

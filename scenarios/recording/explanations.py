@@ -4,8 +4,6 @@ On the thermal image these are sections and samples of contours, or detections; 
 lines and the scene without people.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import singledispatch
@@ -164,7 +162,7 @@ class Sketch:
     colour: Colours
 
     @classmethod
-    def of(cls, background: NDArray[np.uint8] | None, coloured: Sequence[tuple[Line, Rgb]]) -> Sketch:
+    def of(cls, background: NDArray[np.uint8] | None, coloured: Sequence[tuple[Line, Rgb]]) -> "Sketch":
         """Draw lines in their colours."""
         return cls(background, [line for line, _ in coloured], colours_of(colour for _, colour in coloured))
 

@@ -15,8 +15,6 @@ world/trails                where robot and people went
 curves/..., events          what the lower row of views shows
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Sequence
 from dataclasses import replace

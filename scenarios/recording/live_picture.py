@@ -1,7 +1,5 @@
 """Pictures shown in rerun's viewer as they are made, and nowhere kept."""
 
-from __future__ import annotations
-
 import uuid
 import weakref
 from collections.abc import Callable

@@ -3,8 +3,6 @@
 Pixels are those of the camera's image: the centre of the top-left one is (0, 0).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass

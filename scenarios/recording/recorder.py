@@ -1,7 +1,5 @@
 """Write a run as a rerun recording, tick by tick; `entities` lists its contents."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Find, check, pack and read back the recording of a run."""
 
-from __future__ import annotations
-
 import importlib.util
 import logging
 import os

@@ -1,7 +1,5 @@
 """Write a recording frame by frame, with rounded numbers, and send its rows column by column."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType

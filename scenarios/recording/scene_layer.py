@@ -1,7 +1,5 @@
 """A recording of what a scene model believes, which lies over that of the run."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Turn places, the robot and people into simple solids to draw."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise

@@ -4,8 +4,6 @@ What rerun offers to Python, `spawn`, `serve_grpc` and `serve_web_viewer`, liste
 machine. An option of its program prevents that.
 """
 
-from __future__ import annotations
-
 import os
 import signal
 import socket

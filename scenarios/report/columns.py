@@ -1,7 +1,5 @@
 """What stands side by side on a page: single runs, or many runs taken together."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path

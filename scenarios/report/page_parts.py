@@ -3,8 +3,6 @@
 The SVG has always the same bytes, and no names that could clash.
 """
 
-from __future__ import annotations
-
 import base64
 import io
 import re

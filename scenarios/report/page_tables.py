@@ -1,7 +1,5 @@
 """Build the tables of a page, with words for readers who do not know the names of figures."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise

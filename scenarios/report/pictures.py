@@ -6,8 +6,6 @@ that the robot was given, which takes as long as the run; where that is not poss
 or without a physics engine, boxes alone are drawn.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from enum import StrEnum

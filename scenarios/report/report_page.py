@@ -1,7 +1,5 @@
 """The page: everything about one run, or about several side by side, in one file that needs nothing else."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Write files and folders whole or not at all, and refuse to replace what must stay."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

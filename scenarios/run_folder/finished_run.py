@@ -1,7 +1,5 @@
 """A finished run as it lies on disk: what run.json says at once, all else when it is asked for."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A run's folder: every file that a run leaves, written so that a cut-off run says so and stays readable."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from collections.abc import Mapping, Sequence
@@ -160,7 +158,7 @@ class RunFolder:
         self._events = open_text(path / "events.jsonl")
         self._images = BackgroundQueue()
 
-    def __enter__(self) -> RunFolder:
+    def __enter__(self) -> "RunFolder":
         return self
 
     def __exit__(

@@ -1,7 +1,5 @@
 """Write images as lossless files, in the background, and describe what they hold."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor

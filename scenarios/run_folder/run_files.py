@@ -3,8 +3,6 @@
 A run of another version, or one whose files were changed since, is refused here with one line.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace

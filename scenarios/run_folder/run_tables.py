@@ -1,7 +1,5 @@
 """Define the parquet tables of a run: truth, tracks, robot and things, a row per frame and one of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import version

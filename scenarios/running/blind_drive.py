@@ -1,7 +1,5 @@
 """Play a scenario without a tracker, for what its robot's sensors observe."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -15,7 +13,7 @@ if TYPE_CHECKING:
     from peopleboy.sim.world import World
 
 
-def blind_drive(scenario: Scenario, seed: int) -> Iterator[tuple[World, Observation]]:
+def blind_drive(scenario: Scenario, seed: int) -> "Iterator[tuple[World, Observation]]":
     """Yield the world and what was observed, instant by instant; images that nobody asks for are never made.
 
     Raises:

@@ -1,7 +1,5 @@
 """Compare controllers on the same scenarios and seeds, with confidence intervals."""
 
-from __future__ import annotations
-
 import json
 import math
 import sys

@@ -1,7 +1,5 @@
 """Run a tracker on a scenario with some seeds, and score it: one call."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 from tempfile import TemporaryDirectory

@@ -4,8 +4,6 @@ They hold what trackers are given, the images of `thermal` and `colour`. Those o
 kept, but a film is another one as soon as any camera is.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import logging

@@ -1,7 +1,5 @@
 """Runs as resumable tasks: suites, and sweeps over seeds or random worlds."""
 
-from __future__ import annotations
-
 import logging
 import shutil
 import time

@@ -4,8 +4,6 @@ A robot that follows people goes where its tracker sees them. For the frames of 
 every tracker, the contour tracker drives it once, and the commands are kept.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 

@@ -1,7 +1,5 @@
 """Run one scenario: build its world, close the loop, record it, and write its folder."""
 
-from __future__ import annotations
-
 import logging
 import time
 from collections.abc import Callable, Sequence
@@ -62,7 +60,7 @@ class Watchers:
         self,
         config: WorldConfig,
         title: str,
-        recorder: Recorder | None,
+        recorder: "Recorder | None",
         boxes: BoxKind = BoxKind.TORSO,
         *,
         faults: Sequence[FaultSpec] = (),

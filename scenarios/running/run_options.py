@@ -1,7 +1,5 @@
 """How scenarios are run: tracker, behaviour, physics, and which files are written."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -55,7 +53,7 @@ class RunOptions:
     viewer: str | None = None
     overwrite: Annotated[bool, Field(description="Replace an earlier run in the folder.")] = False
 
-    def applied_to(self, scenario: Scenario) -> Scenario:
+    def applied_to(self, scenario: "Scenario") -> "Scenario":
         """Return a scenario with the behaviour and the physics of these options.
 
         Raises:

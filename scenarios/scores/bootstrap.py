@@ -1,7 +1,5 @@
 """Give the confidence interval of a mean by the bootstrap."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

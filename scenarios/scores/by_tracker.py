@@ -1,7 +1,5 @@
 """Group scored runs by tracker, check that they show the same scenes, and compare trackers pair by pair."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Score how comfortable people were with a robot that drives among them: nearness, collision times, jerk."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Final

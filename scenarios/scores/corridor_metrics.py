@@ -1,7 +1,5 @@
 """Score how well a corridor was followed: in its middle, along its direction, without touching anything."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

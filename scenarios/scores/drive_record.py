@@ -1,7 +1,5 @@
 """Record a drive among people, which its scores are made of, and declare the figures of these scores once."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, fields

@@ -3,8 +3,6 @@
 Reference boxes are chosen by camera, and by what the tracker's boxes enclose: torsos or whole people.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Score how well one person was followed: found, kept in sight, kept at the distance, never touched."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Gather the scores of a run, people and driving, and summarise them in a sentence or two."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

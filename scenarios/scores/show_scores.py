@@ -1,7 +1,5 @@
 """Tables of scores for the terminal."""
 
-from __future__ import annotations
-
 import math
 import sys
 from collections.abc import Callable, Mapping, Sequence

@@ -7,8 +7,6 @@ detection of which as much is hidden as starts an occlusion in the event log. Th
 word, but 1130 occlusions among 42 tracks can only be occluded detections.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import astuple, dataclass, fields
 

@@ -1,7 +1,5 @@
 """Thermal clips with boxes of people, rendered or real, as folders hold them."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

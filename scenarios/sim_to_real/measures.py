@@ -1,7 +1,5 @@
 """Statistics of thermal images: grey, gradients, noise, and the contrast of people."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Final
 

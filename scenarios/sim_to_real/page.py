@@ -1,7 +1,5 @@
 """The page that sets rendered pictures beside real ones, in one file that needs nothing else."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Final

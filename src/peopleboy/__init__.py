@@ -3,8 +3,6 @@
 Importing the package registers its gymnasium environments. The names below are loaded at their first use.
 """
 
-from __future__ import annotations
-
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 

@@ -1,7 +1,5 @@
 """The one error that a user's mistake raises, in every room of the project."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -29,7 +27,7 @@ class BadInput(ValueError):  # noqa: N818
         """Write it on one line: file, key, reason."""
         return ": ".join(part for part in (self.file, dotted(self.key), self.reason) if part)
 
-    def within(self, *steps: str | int, file: str = "") -> BadInput:
+    def within(self, *steps: str | int, file: str = "") -> "BadInput":
         """Return the same mistake, found below these steps of a file.
 
         One that is in a file of its own already is the reason for which this file cannot be used.

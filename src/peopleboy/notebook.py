@@ -1,7 +1,5 @@
 """Pictures of images by camera, for notebooks, which ask an object for `_repr_png_`."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Iterable, Mapping
 from typing import Any, Final

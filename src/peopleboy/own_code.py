@@ -1,7 +1,5 @@
 """Classes that users bring, by module:Class, and how an error in one is reported."""
 
-from __future__ import annotations
-
 import sys
 import sysconfig
 import traceback

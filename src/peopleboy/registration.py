@@ -1,7 +1,5 @@
 """Names of the environments, for `gymnasium.make` after `import peopleboy`."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Final
 

@@ -7,8 +7,6 @@ needs is imported when it is first used. Other packages add entries through entr
     my-tracker = "my_package.my_module:MyTracker"
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -104,7 +102,7 @@ class Registry(Mapping[str, Callable[..., Any]]):
             raise BadInput(f"{self.kind} {name!r}: {packages} register the same name; uninstall all but one")
         return self._plugged_in(found[0])
 
-    def _plugged_in(self, entry: EntryPoint) -> Callable[..., Any]:
+    def _plugged_in(self, entry: "EntryPoint") -> Callable[..., Any]:
         place = f"{self.kind} {entry.name!r}: {entry.value} of {_named(entry)}"
         try:
             loaded: Any = entry.load()
@@ -118,7 +116,7 @@ class Registry(Mapping[str, Callable[..., Any]]):
 
 
 @cache
-def plug_ins(group: str) -> Mapping[str, tuple[EntryPoint, ...]]:
+def plug_ins(group: str) -> "Mapping[str, tuple[EntryPoint, ...]]":
     """List what installed packages register in a group of entry points, by name."""
     from importlib.metadata import entry_points  # here, as reading all packages takes a tenth of a second
 
@@ -128,5 +126,5 @@ def plug_ins(group: str) -> Mapping[str, tuple[EntryPoint, ...]]:
     return found
 
 
-def _named(entry: EntryPoint) -> str:
+def _named(entry: "EntryPoint") -> str:
     return "an unnamed package" if entry.dist is None else f"package {entry.dist.name}"

@@ -13,8 +13,6 @@ refuses values beyond the limits, for a `__post_init__`. An angle may be kept in
 mark it with `IN_DEGREES`.
 """
 
-from __future__ import annotations
-
 import math
 import operator
 from collections.abc import Iterator, Mapping

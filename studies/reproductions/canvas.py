@@ -1,7 +1,5 @@
 """What all figures share: a canvas, labels, images and boxes on axes; a figure as SVG or as PNG address."""
 
-from __future__ import annotations
-
 import base64
 import io
 from typing import Any

@@ -1,7 +1,5 @@
 """Every table and figure of the sources, read from the files in `sources`, in the order of the page."""
 
-from __future__ import annotations
-
 import inspect
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -9,6 +7,7 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Annotated, Any, Final
 
+from matplotlib.figure import Figure
 from pydantic import Field, ValidationError, model_validator
 
 from peopleboy.bad_input import BadInput
@@ -16,7 +15,7 @@ from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.validation import Strict
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.studies.reproductions.canvas import png_address
-from peopleboy.studies.reproductions.experiment import Experiment, Texts
+from peopleboy.studies.reproductions.experiment import Experiment, Samples, Texts
 from peopleboy.studies.reproductions.experiments import (
     attention,
     computing_time,
@@ -65,7 +64,7 @@ KINDS: Final[Mapping[str, Callable[..., Any]]] = {
     for module in (*_MODULES, sys.modules[__name__])
     for name, function in inspect.getmembers(module, inspect.isfunction)
     if not name.startswith("_")
-    and inspect.signature(function).return_annotation in ("Samples", "Figure", "Figure | None", "str")
+    and inspect.signature(function).return_annotation in (Samples, Figure, Figure | None, str)
     and "using" in inspect.signature(function).parameters
 }
 """What measures or draws an experiment, by name: all functions that are called with a `Measurement`."""
@@ -84,7 +83,7 @@ class Item(Strict):
     """where else it is, or why there is nothing to measure"""
 
     @model_validator(mode="after")
-    def _stands_somewhere(self) -> Item:
+    def _stands_somewhere(self) -> "Item":
         if bool(self.here) == bool(self.why):
             raise ValueError("give either ids of experiments or words")
         return self

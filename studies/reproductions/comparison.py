@@ -1,7 +1,5 @@
 """Ours beside the source's: whether its claims hold here, and how each printed value compares."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Tables and figures of a source: what is printed, how it is measured, and what the measurement gave."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -155,7 +153,7 @@ class Experiment(Strict):
     """columns that are plotted"""
 
     @model_validator(mode="after")
-    def _says_something(self) -> Experiment:
+    def _says_something(self) -> "Experiment":
         if not (self.values or self.claims or self.caption):
             raise ValueError("give values, claims or the caption of a picture")
         return self
@@ -219,7 +217,7 @@ class ExperimentOutcome:
         return (values for row in self.samples.values() for values in row.values())
 
     @classmethod
-    def of(cls, experiment: Experiment, plan: Plan, store: Store) -> ExperimentOutcome:
+    def of(cls, experiment: Experiment, plan: Plan, store: Store) -> "ExperimentOutcome":
         """Measure and draw an experiment from the results that there are.
 
         Raises:
@@ -235,7 +233,7 @@ class ExperimentOutcome:
         return cls(experiment, samples, picture, left_out, effort)
 
     @classmethod
-    def so_far(cls, experiment: Experiment, plan: Plan, store: Store) -> ExperimentOutcome | None:
+    def so_far(cls, experiment: Experiment, plan: Plan, store: Store) -> "ExperimentOutcome | None":
         """Measure with as many repeats, up to the plan's, as all units have run for; None for none."""
         fewer: Sequence[int] = () if plan.is_quick else range(plan.repeats - 1, 0, -1)
         for one in (plan, *map(plan.repeated, fewer)):

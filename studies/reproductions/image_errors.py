@@ -1,7 +1,5 @@
 """Errors of many images: summed up as the paper does, and by stretches of time."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -24,7 +22,7 @@ class ErrorSummary(NamedTuple):
     deviation: float
 
     @classmethod
-    def of(cls, errors: Floats) -> ErrorSummary:
+    def of(cls, errors: Floats) -> "ErrorSummary":
         """Summarise errors (N,)."""
         if not len(errors):
             return cls(images=0, mean=0.0, deviation=0.0)
@@ -67,12 +65,12 @@ class ImageErrors:
         """Mean error (B,) of each stretch; NaN where no image was tested."""
         return np.array([one.mean if one.images else np.nan for one in self.blocks])
 
-    def only(self, choose: Callable[..., ErrorSummary]) -> ImageErrors:
+    def only(self, choose: Callable[..., ErrorSummary]) -> "ImageErrors":
         """Keep the split with the least or greatest mean error, by `min` or `max`."""
         return ImageErrors(splits=(choose(self.splits, key=lambda one: one.mean),))
 
     @classmethod
-    def of(cls, tested: Sequence[tuple[Rows, Floats]], count: int) -> ImageErrors:
+    def of(cls, tested: Sequence[tuple[Rows, Floats]], count: int) -> "ImageErrors":
         """Sum up splits of one film.
 
         Args:
@@ -88,7 +86,7 @@ class ImageErrors:
         )
 
     @classmethod
-    def joined(cls, films: Iterable[ImageErrors]) -> ImageErrors:
+    def joined(cls, films: "Iterable[ImageErrors]") -> "ImageErrors":
         """Put the errors of several films one after the other."""
         listed = list(films)
         return cls(
@@ -98,7 +96,7 @@ class ImageErrors:
         )
 
     @classmethod
-    def merged(cls, parts: Sequence[ImageErrors]) -> ImageErrors:
+    def merged(cls, parts: "Sequence[ImageErrors]") -> "ImageErrors":
         """Take together what was tested on different images of the same splits."""
         by_split = zip(*(part.splits for part in parts), strict=True)
         by_block = zip(*(part.blocks for part in parts), strict=True)
@@ -109,7 +107,7 @@ class ImageErrors:
         return {"splits": self.splits, "blocks": self.blocks}
 
     @classmethod
-    def of_plain(cls, plain: Mapping[str, Any]) -> ImageErrors:
+    def of_plain(cls, plain: Mapping[str, Any]) -> "ImageErrors":
         """Make a film's errors out of plain data, equal to the last digit."""
         splits, blocks = (tuple(ErrorSummary(*row) for row in plain[key]) for key in ("splits", "blocks"))
         return cls(splits=splits, blocks=blocks)

@@ -1,7 +1,5 @@
 """How much is measured: everything, or a little in a few minutes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -86,7 +84,7 @@ class Plan:
         """Return the runs of data sets, one after the other."""
         return [run for name in suites for run in (self.training if name == TRAINING else self.suites[name])]
 
-    def repeated(self, repeats: int) -> Plan:
+    def repeated(self, repeats: int) -> "Plan":
         """Return a full plan with as many repeats; what is smaller than the sources' ten stays as small."""
         return replace(
             self,

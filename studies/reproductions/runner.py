@@ -1,7 +1,5 @@
 """Measure the tables and figures of the sources again, print them, and write the page."""
 
-from __future__ import annotations
-
 import json
 import math
 import shlex

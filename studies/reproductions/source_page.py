@@ -1,7 +1,5 @@
 """The page: every table and figure of the sources beside ours, in one file that needs nothing else."""
 
-from __future__ import annotations
-
 import math
 import os
 import platform

@@ -1,7 +1,5 @@
 """Statistics of results: differences with 95 % intervals and effect sizes, t-tests, the bootstrap."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass

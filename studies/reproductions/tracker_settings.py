@@ -1,7 +1,5 @@
 """Trackers that are compared: one of a few bases, with some of its settings changed."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from operator import attrgetter

@@ -1,7 +1,5 @@
 """Evaluate other values of the thesis's parameters on the same clips; leave a curve of each and a page."""
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Mapping, Sequence

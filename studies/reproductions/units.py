@@ -1,7 +1,5 @@
 """Units of work: calls whose results are kept on disk, so that a killed run resumes."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -47,7 +45,7 @@ class Unit:
     is_timing: bool = False
 
     @classmethod
-    def of(cls, function: Callable[..., Result], *arguments: Any, is_timing: bool = False) -> Unit:
+    def of(cls, function: Callable[..., Result], *arguments: Any, is_timing: bool = False) -> "Unit":
         """Name a call by its function and arguments, folders left out: these change no result."""
         words = (str(getattr(one, "key", one)) for one in arguments if not isinstance(one, Path))
         return cls(f"{function.__name__} {' | '.join(words)}", function, arguments, is_timing)

@@ -1,7 +1,5 @@
 """Train the distance network of the 2003 paper: from a silhouette's cues to how far away a person is."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -79,7 +77,7 @@ class DistanceSamples(Arrays):
         return np.asarray(distance_m[:, None] * way, np.float64)
 
     @classmethod
-    def from_rows(cls, rows: Sequence[Sequence[float]], missed: int = 0) -> DistanceSamples:
+    def from_rows(cls, rows: Sequence[Sequence[float]], missed: int = 0) -> "DistanceSamples":
         """Take rows of person, time, three cues, bearing, and where the person stands, x and y."""
         person, time_s, *cues, bearing_rad, x, y = np.array(rows, np.float64).reshape(-1, 8).T
         return cls(

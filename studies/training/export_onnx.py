@@ -1,7 +1,5 @@
 """Export the networks of the trackers to ONNX, with a model card for their inputs and outputs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib.metadata import version

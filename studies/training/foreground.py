@@ -1,7 +1,5 @@
 """Train the network that separates people from background in panoramas."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace

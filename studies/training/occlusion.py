@@ -1,7 +1,5 @@
 """Train which of two overlapping people is in front: AdaBoost on sums of features (thesis, chapter 7)."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -92,7 +90,7 @@ class PairSamples(Arrays):
     is_front: NDArray[np.bool_]
 
     @classmethod
-    def from_rows(cls, scenario: str, seed: int, rows: Sequence[PairRow]) -> PairSamples:
+    def from_rows(cls, scenario: str, seed: int, rows: Sequence[PairRow]) -> "PairSamples":
         """Take the pairs of a run."""
         frame, one, other, features, is_front = zip(*rows, strict=True) if rows else [()] * 5
         return cls(

@@ -1,7 +1,5 @@
 """The optimiser of all networks: Adam by JAX and Optax, which a running tracker does without."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Final

@@ -1,7 +1,5 @@
 """Rendered sequences of the panoramic camera, with the truth about every pixel."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar

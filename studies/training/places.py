@@ -1,7 +1,5 @@
 """Train the networks on patches of panoramas: whether a person is there, where, and how sure that is."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Scenes to train on: places, things, people and drives drawn at random, as scenario data."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Final
 

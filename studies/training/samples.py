@@ -1,7 +1,5 @@
 """Samples to train on: arrays in files, and the tasks that collect them, sequence by sequence."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, fields

@@ -1,7 +1,5 @@
 """What a model is trained on and how, and the one procedure that trains all of them."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from contextlib import suppress

@@ -1,7 +1,5 @@
 """Train linear support vector machines that tell people by windows of colour and depth images."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Focus of attention: learn a person from a box, and locate the person in an image."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from typing import Final

@@ -1,7 +1,5 @@
 """Settings of visual attention."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Final, Literal, get_args
 

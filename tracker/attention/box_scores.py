@@ -1,7 +1,5 @@
 """Scores of boxes of one size at many positions, each from four sums of an integral image."""
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray

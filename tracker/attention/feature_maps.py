@@ -1,7 +1,5 @@
 """Feature maps in which people are described and located."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 from typing import Final

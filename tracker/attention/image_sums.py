@@ -1,7 +1,5 @@
 """Integral images of a picture's feature maps, patterns and colours."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Final
 
@@ -87,7 +85,7 @@ class ImageSums:
     colours: NDArray[np.uint16]
 
     @classmethod
-    def of(cls, image: NDArray[np.uint8], config: AttentionConfig) -> ImageSums:
+    def of(cls, image: NDArray[np.uint8], config: AttentionConfig) -> "ImageSums":
         """Compute the features of an image.
 
         Raises:

@@ -1,7 +1,5 @@
 """Appearance model of one part of a person, learned from one box in one image."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 from typing import Final, Self
 
@@ -149,7 +147,7 @@ class PartModel:
         colours, ratio = _colours(sight, cells, near)
         return cls(mean, spread, excites, inhibits, patterns, weight, colours, ratio)
 
-    def updated(self, new: PartModel, rate: float) -> PartModel:
+    def updated(self, new: "PartModel", rate: float) -> "PartModel":
         """Return the model blended with a newer one.
 
         The source's equations 5.15 and 5.16 print the "very small" rate as the weight of the old model.

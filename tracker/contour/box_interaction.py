@@ -10,8 +10,6 @@ In the image of a tilted camera upright people lean, more so farther from the mi
 box is that of the torso; head and feet lie where a plumb line through the torso meets the box's ends.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import lru_cache

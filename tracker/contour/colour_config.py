@@ -1,7 +1,5 @@
 """Settings of the description of a person's colours."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -3,8 +3,6 @@
 Pixels refer to an image of 240 rows and are scaled by image height / 240.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """The contour tracker: a sequential detector finds people, and each has its own particle filter."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

@@ -5,8 +5,6 @@ of the horizon, and b grows with the camera's height above the floor. Both are e
 by recursive least squares.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from typing import Final
@@ -44,12 +42,12 @@ class MountBelief:
     covariance: NDArray[np.float64]
 
     @classmethod
-    def usual(cls, limits: LimitsConfig) -> MountBelief:
+    def usual(cls, limits: LimitsConfig) -> "MountBelief":
         """Make the prior, for the standard mount or an unknown one."""
         line = np.array([limits.horizon, sum(limits.y_below_horizon) / 2])
         return cls(line, np.diag([_HORIZON_SD**2, _SLOPE_SD**2]))
 
-    def learnt(self, state: NDArray[np.float64], rows: int) -> MountBelief:
+    def learnt(self, state: NDArray[np.float64], rows: int) -> "MountBelief":
         """Update with a person's state (9,) in an image of a height in rows."""
         size = float(state[H]) / rows
         row = np.array([1.0, size])

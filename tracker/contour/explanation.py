@@ -1,7 +1,5 @@
 """Explanations of the contour tracker: contours and particles behind its tracks."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """Re-identification of newly found people among those who were lost."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """One particle filter: predict, weigh, estimate, resample."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Weighted samples of one person's contour: initialisation, motion, resampling and estimation."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

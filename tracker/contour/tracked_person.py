@@ -1,7 +1,5 @@
 """State of a tracked person between two frames, and its update."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -118,7 +116,7 @@ class Streak:
 
     def after(
         self, belief: Belief, known: Sequence[NDArray[np.float64]], view: FrameView, config: TrackerConfig
-    ) -> Streak:
+    ) -> "Streak":
         """Update with the detector's posterior of one more frame.
 
         Args:

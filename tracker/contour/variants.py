@@ -1,7 +1,5 @@
 """The named settings of the tracker: the sources' own, and ours."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Kernels over a whole filter: weights of samples from evidence, and resampling."""
 
-from __future__ import annotations
-
 from typing import Final
 
 import numpy as np

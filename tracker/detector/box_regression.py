@@ -1,7 +1,5 @@
 """Box regression: boosted trees that predict where in a window the person is."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Final
 

@@ -4,8 +4,6 @@ Source: Bourdev and Brandt, CVPR 2005. After each tree, windows are rejected who
 nearly all people at that stage.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
@@ -44,11 +42,11 @@ class Hits(NamedTuple):
     column: NDArray[np.int64]
     score: NDArray[np.float64]
 
-    def take(self, these: NDArray[np.bool_]) -> Hits:
+    def take(self, these: NDArray[np.bool_]) -> "Hits":
         """Return some of them."""
         return Hits(self.row[these], self.column[these], self.score[these])
 
-    def best(self) -> Hits:
+    def best(self) -> "Hits":
         """Return those that are not much worse than a neighbour."""
         is_kept = np.empty(len(self.score), np.bool_)
         _compare(*self, is_kept)
@@ -111,7 +109,7 @@ class Cascade:
         at_row, at_column = np.nonzero(found > -np.inf)
         return Hits(at_row + first, at_column, found[at_row, at_column].astype(np.float64))
 
-    def calibrated(self, gain: float, offset: float) -> Cascade:
+    def calibrated(self, gain: float, offset: float) -> "Cascade":
         """Return the same trees with scores multiplied by a gain plus an offset."""
         leaf = self.leaf * np.float32(gain)
         leaf[0] += np.float32(offset)

@@ -4,8 +4,6 @@ Aggregated channel features (Dollár et al., Fast Feature Pyramids, PAMI 2014) w
 invariant to a gain or an offset of the image, as long as the contrast is well above the noise.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Final
 

@@ -1,7 +1,5 @@
 """Input of rescoring and box refinement: a crop around each detection, and a few further features."""
 
-from __future__ import annotations
-
 import math
 from typing import Final
 

@@ -1,7 +1,5 @@
 """Detections, and non-maximum suppression: one box per person from many overlapping windows."""
 
-from __future__ import annotations
-
 import math
 from typing import Final, NamedTuple
 
@@ -33,11 +31,11 @@ class Detections(NamedTuple):
     trees: Floats
 
     @classmethod
-    def from_trees(cls, box: Floats, score: Floats) -> Detections:
+    def from_trees(cls, box: Floats, score: Floats) -> "Detections":
         """Make detections of the cascade alone, before rescoring."""
         return cls(box, score, score)
 
-    def take(self, rows: NDArray[np.bool_] | NDArray[np.intp]) -> Detections:
+    def take(self, rows: NDArray[np.bool_] | NDArray[np.intp]) -> "Detections":
         """Return the detections of these rows."""
         return Detections(self.box[rows], self.score[rows], self.trees[rows])
 

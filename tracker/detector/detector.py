@@ -1,7 +1,5 @@
 """The detector of people in thermal images: cascade, rescoring and box refinement."""
 
-from __future__ import annotations
-
 from typing import Final
 
 import numpy as np

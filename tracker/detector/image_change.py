@@ -1,7 +1,5 @@
 """Change detection between images, with the camera's own motion compensated."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from typing import Final, NamedTuple

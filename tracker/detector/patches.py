@@ -4,8 +4,6 @@ They are computed from integral images (Viola and Jones, CVPR 2001; Dollár et a
 BMVC 2009) of integers, so that no precision is lost in large images.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Final
 

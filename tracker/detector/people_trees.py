@@ -1,7 +1,5 @@
 """All trees of the detector, and their file."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -66,7 +64,7 @@ class PeopleModel:
         WeightsArchive(arrays, self.about).save(path)
 
     @classmethod
-    def load(cls, path: Path) -> PeopleModel:
+    def load(cls, path: Path) -> "PeopleModel":
         """Read trees.
 
         Raises:

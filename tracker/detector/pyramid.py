@@ -1,7 +1,5 @@
 """Image pyramid: the sizes at which people of each size fill a window."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Second stage of the detector: small networks on crops correct the scores and boxes of detections."""
 
-from __future__ import annotations
-
 from typing import ClassVar, Final
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Geometry of the detector's window: its cells, and the person that fills it."""
 
-from __future__ import annotations
-
 from enum import StrEnum
 from typing import Final, TypeVar
 

@@ -1,7 +1,5 @@
 """Metrics of positions on the floor: errors in metres, and consistency of the covariances."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Final, Self

@@ -4,8 +4,6 @@ The id of a person in a frame is that of the matching candidate (thesis, section
 independently). The ids before and after an occlusion are the most frequent ones within a window.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Annotators also count pixels from the image's corner, while ours are relative to
 pixel; their boxes end at the image's borders, and ours may extend beyond.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
@@ -35,7 +33,7 @@ class BoxKind(StrEnum):
     WHOLE = "whole"
 
     @classmethod
-    def of(cls, truth: TrueBoxes) -> BoxKind:
+    def of(cls, truth: TrueBoxes) -> "BoxKind":
         """Return the convention of boxes, by their median width; without any, whole people."""
         return cls.TORSO if width_per_height(truth) <= _WIDEST_TORSO else cls.WHOLE
 

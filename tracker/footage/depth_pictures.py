@@ -1,7 +1,5 @@
 """Matching of colour and depth pictures, by their order or by the timestamps in their names."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence

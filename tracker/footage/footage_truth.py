@@ -1,7 +1,5 @@
 """Ground truth of recorded footage: VOT, OTB and MOTChallenge."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass

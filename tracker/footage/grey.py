@@ -1,7 +1,5 @@
 """Conversion of thermal pictures to the tracker's input: (H, W) uint8, brighter for warmer."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -36,7 +34,7 @@ OUTLIERS: Final = 0.05
 """Share of clipped pixels, such as lamps and heaters."""
 
 
-def local_grey(values: Values) -> Grey:
+def local_grey(values: Values) -> "Grey":
     """Normalise each pixel by mean and standard deviation of its neighbourhood.
 
     Small contrasts stay visible even if a lamp in the picture is far hotter, which a single gain for the

@@ -1,7 +1,5 @@
 """Image sequences as arrays: a folder of pictures in natural order, the pages of a file, or a video."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from pathlib import Path

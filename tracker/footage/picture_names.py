@@ -1,7 +1,5 @@
 """Order of the pictures in a folder by their names, with checks for missing and foreign ones."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter, defaultdict
 from collections.abc import Sequence

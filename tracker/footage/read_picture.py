@@ -1,7 +1,5 @@
 """Reading pictures from files, one by one."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Reader of `seqinfo.ini`, the description of MOTChallenge's sequences."""
 
-from __future__ import annotations
-
 import csv
 import math
 from configparser import ConfigParser

@@ -1,7 +1,5 @@
 """What the depth image shows at the expected position of a person."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Final
 

@@ -1,7 +1,5 @@
 """Explanations of fused trackers: the state behind their tracks."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -30,7 +28,7 @@ class BothExplanations:
     @classmethod
     def of(
         cls, thermal: ContourExplanation, panoramic: PeopleExplanation | None, number: Mapping[int, int]
-    ) -> BothExplanations:
+    ) -> "BothExplanations":
         """Join them; `number` maps the thermal tracks to shared ids, and tracks without one are left out."""
         shared = replace(
             thermal,

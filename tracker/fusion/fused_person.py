@@ -1,7 +1,5 @@
 """State of one person, fused from thermal, depth and colour."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from typing import Final
@@ -138,14 +136,14 @@ class FusedPerson:
         is_found = self.is_guided and best is Status.TOTALLY_OCCLUDED
         return Status.PARTLY_OCCLUDED if is_found else best
 
-    def later(self, dt_s: float, config: FusionConfig) -> FusedPerson:
+    def later(self, dt_s: float, config: FusionConfig) -> "FusedPerson":
         """Return the person predicted to a later time, without outputs."""
         motion = self.motion.later(dt_s, config.restlessness)
         if not self.is_seen:
             motion = motion.slowed(dt_s, config.slow_s)
         return replace(self, motion=motion, warm=None, deep=None, is_guided=False)
 
-    def with_depth(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> FusedPerson:
+    def with_depth(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> "FusedPerson":
         """Update with the depth tracker's track."""
         person = replace(self, depth=reported.id, deep=reported)
         if not reported.is_seen:
@@ -155,7 +153,7 @@ class FusedPerson:
         person = person._with_appearance(reported, time_s, config)
         return replace(person, motion=self._placed(reported, config), seen_s=time_s)
 
-    def with_heat(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> FusedPerson:
+    def with_heat(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> "FusedPerson":
         """Update with the thermal tracker's track."""
         person = replace(self, heat=reported.id, warm=reported)
         return (
@@ -164,7 +162,7 @@ class FusedPerson:
             else person
         )
 
-    def named(self, other: FusedPerson) -> FusedPerson:
+    def named(self, other: "FusedPerson") -> "FusedPerson":
         """Return this person with the id, measures and appearance of another."""
         return replace(
             self,
@@ -194,7 +192,7 @@ class FusedPerson:
         further_m = config.clear_m if reported.is_clear else config.partly_m
         return self.motion.corrected(reported.place_m, reported.error_m2 + np.eye(2) * further_m**2)
 
-    def _measured(self, reported: SensorTrack, share: float, config: FusionConfig) -> FusedPerson:
+    def _measured(self, reported: SensorTrack, share: float, config: FusionConfig) -> "FusedPerson":
         """Update height and width."""
         tall = (
             self.tall_m if reported.tall_m is None else self.tall_m + share * (reported.tall_m - self.tall_m)
@@ -208,7 +206,7 @@ class FusedPerson:
         )
         return replace(self, tall_m=tall, span_m=span)
 
-    def _with_appearance(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> FusedPerson:
+    def _with_appearance(self, reported: SensorTrack, time_s: float, config: FusionConfig) -> "FusedPerson":
         """Update the appearance, but not with that of another person."""
         if reported.appearance is None:
             return self

@@ -1,7 +1,5 @@
 """Fusion of thermal, depth and colour, and of the panorama where one is mounted."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace

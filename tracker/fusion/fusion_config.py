@@ -1,7 +1,5 @@
 """Settings of the fusion of thermal, depth and colour."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

@@ -1,7 +1,5 @@
 """Guided search: locate a person in the depth image near the predicted position."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Final
 

@@ -1,7 +1,5 @@
 """Track-to-track association of two cameras, by position on the floor."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Handover: a person keeps one id from the thermal image through the panorama and back."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace

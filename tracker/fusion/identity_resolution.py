@@ -1,7 +1,5 @@
 """Identity resolution: re-identification of absent people, and repair of identity swaps."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace

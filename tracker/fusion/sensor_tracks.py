@@ -1,7 +1,5 @@
 """Tracks of the two trackers, each verified in the image of the other sensor."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Final

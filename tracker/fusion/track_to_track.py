@@ -1,7 +1,5 @@
 """Association of tracks with fused people: by bearing and range, appearance, height and history."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Final

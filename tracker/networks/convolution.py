@@ -3,8 +3,6 @@
 F(2 x 2, 3 x 3) takes less than half of the products (Lavin and Gray, CVPR 2016, section 4.1).
 """
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Inference of dense and small convolutional networks, bit-identical on every processor."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field

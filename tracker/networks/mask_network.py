@@ -5,8 +5,6 @@ a step to a neighbour has a constant offset in memory. Rows are added below the 
 block.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Final

@@ -3,8 +3,6 @@
 It is NumPy's `.npz` without pickles. The same content always gives the same bytes.
 """
 
-from __future__ import annotations
-
 import json
 import zipfile
 import zlib
@@ -106,7 +104,7 @@ class WeightsArchive:
         model: str,
         specs: Mapping[str, ArraySpec],
         parse_camera: Callable[[Any], Any] | None = None,
-    ) -> WeightsArchive:
+    ) -> "WeightsArchive":
         """Read and check an archive.
 
         Args:

@@ -1,7 +1,5 @@
 """Background model of the panorama: the appearance of each pixel without people, moving with the robot."""
 
-from __future__ import annotations
-
 import math
 from typing import Final
 

@@ -1,7 +1,5 @@
 """Geometry of the floor in the panorama: distances of rows, and rows of distances."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Final
 

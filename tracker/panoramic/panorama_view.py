@@ -1,7 +1,5 @@
 """Properties that distinguish panoramic cameras: image size, height, and vertical angles of the rows."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -30,11 +28,11 @@ class PanoramaView:
     depression_deg: tuple[float, float, float]
 
     @classmethod
-    def of_plain(cls, plain: Mapping[str, Any]) -> PanoramaView:
+    def of_plain(cls, plain: Mapping[str, Any]) -> "PanoramaView":
         """Make a view from plain data, as written by `asdict` and JSON."""
         return cls(**{**plain, "depression_deg": tuple(plain["depression_deg"])})
 
-    def refusal(self, other: PanoramaView) -> str:
+    def refusal(self, other: "PanoramaView") -> str:
         """Return why a network for this camera does not fit another one; empty if it fits."""
         if (self.width_px, self.height_px) != (other.width_px, other.height_px):
             return f"panorama is {other.size}, but the network was trained on {self.size}"

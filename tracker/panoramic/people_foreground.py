@@ -1,7 +1,5 @@
 """Segmentation of people in panoramas, image after image."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import asdict, dataclass, field, fields
 from functools import cache
@@ -59,7 +57,7 @@ class ForegroundModel:
         WeightsArchive(arrays, self.about, asdict(self.view)).save(path)
 
     @classmethod
-    def load(cls, path: Path) -> ForegroundModel:
+    def load(cls, path: Path) -> "ForegroundModel":
         """Read a model.
 
         Raises:

@@ -1,7 +1,5 @@
 """Geometry of a depth image in metres."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,7 +34,7 @@ class DepthView:
     calibration: PinholeCalibration
 
     @classmethod
-    def of(cls, calibration: Calibration | None, camera: str) -> DepthView:
+    def of(cls, calibration: Calibration | None, camera: str) -> "DepthView":
         """Make the geometry of a calibrated camera.
 
         Raises:

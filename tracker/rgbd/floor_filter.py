@@ -1,7 +1,5 @@
 """Particle filter of a person's position on the floor (SA 4.6)."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 
@@ -28,7 +26,7 @@ class FloorFilter:
     state: Floats
 
     @classmethod
-    def begin(cls, place_m: Floats, config: FloorFilterConfig, rng: np.random.Generator) -> FloorFilter:
+    def begin(cls, place_m: Floats, config: FloorFilterConfig, rng: np.random.Generator) -> "FloorFilter":
         """Draw particles around a position (2,)."""
         state = np.zeros((config.particles, 4))
         state[:, :2] = place_m + rng.normal(0.0, config.random_m, (config.particles, 2))
@@ -40,13 +38,13 @@ class FloorFilter:
         """(2,) mean position."""
         return np.asarray(self.state[:, :2].mean(axis=0))
 
-    def carried(self, motion: Pose2) -> FloorFilter:
+    def carried(self, motion: Pose2) -> "FloorFilter":
         """Return the particles in the frame of the moved robot."""
         return FloorFilter(
             np.hstack([motion.points_to_local(self.state[:, :2]), motion.vectors_to_local(self.state[:, 2:])])
         )
 
-    def predicted(self, dt_s: float, config: FloorFilterConfig, rng: np.random.Generator) -> FloorFilter:
+    def predicted(self, dt_s: float, config: FloorFilterConfig, rng: np.random.Generator) -> "FloorFilter":
         """Predict: most particles keep walking, the others move at random (SA 4.6, as 3.7 to 3.10)."""
         count = len(self.state)
         walks = np.arange(count) < round(config.forward_share * count)
@@ -60,7 +58,7 @@ class FloorFilter:
 
     def weighed(
         self, view: RgbdView, body: Body, config: FloorFilterConfig, rng: np.random.Generator
-    ) -> Update:
+    ) -> "Update":
         """Weight particles by the images at their positions (SA eq. 4.26 to 4.28), and resample."""
         glance = look_at(view, self.state[:, :2], body, config.foreground_m)
         kernel = np.exp(-0.5 * (glance.miss_m / config.kernel_m) ** 2)

@@ -1,7 +1,5 @@
 """Windows of colour and depth images that are classified as human or not, near and far."""
 
-from __future__ import annotations
-
 import math
 from enum import StrEnum
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """Hypotheses: confirmed and tentative people of the RGB-D tracker."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from peopleboy.tracker.frame import Floats

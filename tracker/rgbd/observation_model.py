@@ -1,7 +1,5 @@
 """Observation model: colours and depth in the image at positions on the floor."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """Pre-detections: all objects of human size in a depth image."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Final

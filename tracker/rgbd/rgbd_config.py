@@ -1,7 +1,5 @@
 """Settings of the RGB-D tracker: as printed in its source, and improved."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Final
 

@@ -1,7 +1,5 @@
 """The tracker of people by depth and colour on a moving robot (SA chapter 4)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Initiation, update and deletion of hypotheses (SA 4.5)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """View from above: readings by depth and column, and their connected components."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Final
 

@@ -1,7 +1,5 @@
 """Detection of floor and ceiling as oblique lines in the v-disparity image."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
@@ -41,7 +39,7 @@ class HeightLine:
         """Return the image rows [px] of the plane at depths [m]."""
         return np.asarray(view.centre_v + view.focal_px * (self.slope + self.offset_m / depth_m))
 
-    def raised(self, height_m: float) -> HeightLine:
+    def raised(self, height_m: float) -> "HeightLine":
         """Return the plane raised by a height."""
         return HeightLine(self.slope, self.offset_m - height_m)
 

@@ -1,7 +1,5 @@
 """Detection of walls as straight lines in the u-disparity image, and their removal from the depth image."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Final
 

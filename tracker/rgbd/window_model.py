@@ -1,7 +1,5 @@
 """Linear support vector machines that classify windows as human, and their file."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -80,7 +78,7 @@ class WindowModel:
         WeightsArchive({str(kind): weights for kind, weights in self.weights.items()}, self.about).save(path)
 
     @classmethod
-    def load(cls, path: Path, *, sees_depth: bool) -> WindowModel:
+    def load(cls, path: Path, *, sees_depth: bool) -> "WindowModel":
         """Read a model for colour alone, or for colour and depth.
 
         Raises:

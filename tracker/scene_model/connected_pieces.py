@@ -1,7 +1,5 @@
 """Connected components of an image, by depth and by the time of change."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

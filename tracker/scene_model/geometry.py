@@ -1,7 +1,5 @@
 """Positions of depth pixels in the robot frame, and their temperature in the thermal image."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import cv2
@@ -33,7 +31,7 @@ class Geometry:
     focal_px: float
 
     @classmethod
-    def of(cls, frame: Frame) -> Geometry:
+    def of(cls, frame: Frame) -> "Geometry":
         """Make it from a frame.
 
         Raises:

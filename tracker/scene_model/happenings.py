@@ -1,7 +1,5 @@
 """Changes of objects: an object that disappears and appears elsewhere was moved, by the person near it."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Container, Sequence

@@ -1,7 +1,5 @@
 """Per-pixel layers: the background, the object in front of it, and candidates for either."""
 
-from __future__ import annotations
-
 from typing import Final
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Preprocessing of depth images: smoothing, and per-pixel noise estimated from the image."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import cv2
@@ -38,7 +36,7 @@ class Readings:
     count: int
 
     @classmethod
-    def of(cls, depth: Depth, before: Readings | None, memory: float) -> Readings:
+    def of(cls, depth: Depth, before: "Readings | None", memory: float) -> "Readings":
         """Make it from an (H, W) depth image [mm].
 
         Args:

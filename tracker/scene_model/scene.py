@@ -1,7 +1,5 @@
 """Output of a scene model: background, people, movable objects, and their changes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import StrEnum
 

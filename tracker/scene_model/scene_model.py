@@ -1,7 +1,5 @@
 """The scene model: confirmed layers, people by temperature or shape, objects and their changes."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import replace

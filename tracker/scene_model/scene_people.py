@@ -1,7 +1,5 @@
 """Detection of people in a depth image: by temperature, or by shape and motion outside the thermal image."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Movable objects: components in front of the background, or of a former background."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

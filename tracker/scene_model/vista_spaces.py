@@ -1,7 +1,5 @@
 """Registration of places seen from several standing positions: by odometry, and by their surfaces."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Final
@@ -37,7 +35,7 @@ class Surface:
     normals: Floats
 
     @classmethod
-    def of(cls, depth_m: Metres, geometry: Geometry) -> Surface:
+    def of(cls, depth_m: Metres, geometry: Geometry) -> "Surface":
         """Return the surface of a background (H, W) [m], in the robot frame, without edges."""
         origin = geometry.calibration.robot_from_camera[:3, 3]
         points = origin + geometry.rays.astype(np.float64) * depth_m[:, :, None]
@@ -51,18 +49,18 @@ class Surface:
         kept = is_whole & (length > 0.0)
         return cls(middle[kept], normals[kept] / length[kept][:, None]).thinned()
 
-    def thinned(self) -> Surface:
+    def thinned(self) -> "Surface":
         """Return it with one point per cell."""
         cells = np.floor(self.points_m / _CELL_M).astype(np.int64)
         _, first = np.unique(cells, axis=0, return_index=True)
         return Surface(self.points_m[first], self.normals[first])
 
-    def seen_from(self, pose: Pose2) -> Surface:
+    def seen_from(self, pose: Pose2) -> "Surface":
         """Transform it from the robot frame."""
         turn = Pose2(heading=pose.heading)
         return Surface(pose.transform_points(self.points_m), turn.transform_points(self.normals))
 
-    def joined(self, other: Surface) -> Surface:
+    def joined(self, other: "Surface") -> "Surface":
         """Return the union of two."""
         return Surface(
             np.concatenate([self.points_m, other.points_m]), np.concatenate([self.normals, other.normals])

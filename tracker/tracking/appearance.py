@@ -1,7 +1,5 @@
 """Appearance of people: colour histograms of torso and legs, and small thermal patterns."""
 
-from __future__ import annotations
-
 import math
 from typing import Final
 

@@ -1,7 +1,5 @@
 """Association of detections with tracks by position and appearance; recently seen tracks come first."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
@@ -144,7 +142,7 @@ class DescribedDetections:
     colours: Colours
 
     @classmethod
-    def of(cls, frame: Frame, found: Detections, view: Viewpoint, followed: int = 0) -> DescribedDetections:
+    def of(cls, frame: Frame, found: Detections, view: Viewpoint, followed: int = 0) -> "DescribedDetections":
         """Describe the detections of a frame, except the last few, which were located by their templates."""
         count = len(found.box)
         pattern, colours = np.zeros((count, SAMPLES), np.float32), np.zeros((count, FEATURES), np.float32)
@@ -157,7 +155,7 @@ class DescribedDetections:
     def __len__(self) -> int:
         return len(self.boxes)
 
-    def without_colours(self, rows: NDArray[np.bool_]) -> DescribedDetections:
+    def without_colours(self, rows: NDArray[np.bool_]) -> "DescribedDetections":
         """Return them without the colours of some (M,), which may be another person's."""
         return replace(self, colours=np.where(rows[:, None], np.float32(0.0), self.colours))
 

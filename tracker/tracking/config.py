@@ -1,7 +1,5 @@
 """Settings of the detection tracker. Lengths are metres, times seconds, scores log-odds."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from typing import Final

@@ -1,7 +1,5 @@
 """Detection schedule: search the whole image, rescore predicted boxes, or follow templates."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Final, NamedTuple

@@ -1,7 +1,5 @@
 """The detection tracker: detections in single images become lasting tracks."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence, Set
 from typing import Final, NamedTuple

@@ -1,7 +1,5 @@
 """Positions and velocities of people in metres: one extended Kalman filter per track, vectorised."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Final
@@ -39,17 +37,17 @@ class StateEstimates:
     def __len__(self) -> int:
         return len(self.mean)
 
-    def take(self, rows: NDArray[np.intp]) -> StateEstimates:
+    def take(self, rows: NDArray[np.intp]) -> "StateEstimates":
         """Return some of the states."""
         return StateEstimates(self.mean[rows], self.covariance[rows])
 
-    def joined(self, others: StateEstimates) -> StateEstimates:
+    def joined(self, others: "StateEstimates") -> "StateEstimates":
         """Return these and other states."""
         return StateEstimates(
             np.concatenate([self.mean, others.mean]), np.concatenate([self.covariance, others.covariance])
         )
 
-    def replaced(self, rows: NDArray[np.intp], others: StateEstimates) -> StateEstimates:
+    def replaced(self, rows: NDArray[np.intp], others: "StateEstimates") -> "StateEstimates":
         """Return a copy with some rows replaced."""
         mean, covariance = self.mean.copy(), self.covariance.copy()
         mean[rows], covariance[rows] = others.mean, others.covariance

@@ -1,7 +1,5 @@
 """Detection of people in single frames, in the thermal and the colour image."""
 
-from __future__ import annotations
-
 import math
 from typing import Protocol
 

@@ -4,8 +4,6 @@ While people overlap, their appearances mix. Appearance after an encounter is co
 it, which is not updated while a person resembles another one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

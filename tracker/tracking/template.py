@@ -4,8 +4,6 @@ A cheap step between two runs of the networks: normalised cross-correlation of a
 Normalized Cross-Correlation, 1995), at the predicted size.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Final
 
@@ -41,7 +39,7 @@ class Template:
     is_flat: bool
 
     @classmethod
-    def of(cls, grey: Grey, box: Floats) -> Template:
+    def of(cls, grey: Grey, box: Floats) -> "Template":
         """Cut the template from a box (4,) of an image (H, W)."""
         ratio = float(box[2] / box[3])
         cells = _cells(grey, box, _columns(ratio), 0)

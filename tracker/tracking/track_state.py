@@ -1,7 +1,5 @@
 """State of one track of the detection tracker, confirmed or tentative."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from typing import Final, NamedTuple
@@ -126,7 +124,7 @@ class TrackState:
         """Record that the person is not seen apart from others now."""
         self.clear_s, self.recent = 0.0, np.zeros_like(self.recent)
 
-    def inherit(self, before: TrackState) -> None:
+    def inherit(self, before: "TrackState") -> None:
         """Continue a lost track as this one."""
         self.id, self.born_s = before.id, before.born_s
         self.confirmed_s = min(self.confirmed_s, before.confirmed_s)

@@ -3,8 +3,6 @@
 The level frame has its origin in the camera: x to the right, y down, z ahead along the floor [m].
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Final
@@ -48,7 +46,7 @@ class Viewpoint:
         return (self.centre_px[0] + 0.5) / self.focal_px[0]
 
     @classmethod
-    def of(cls, calibration: Calibration | None, shape: tuple[int, int]) -> Viewpoint:
+    def of(cls, calibration: Calibration | None, shape: tuple[int, int]) -> "Viewpoint":
         """Make the viewpoint of a camera; an uncalibrated camera is assumed to be level.
 
         Args:

@@ -1,7 +1,5 @@
 """ROS 2 messages of cameras: images, points and calibrations, named as camera drivers name them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 

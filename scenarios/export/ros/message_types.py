@@ -3,8 +3,6 @@
 Stamps are whole nanoseconds, those of a run counted from its start or from an epoch.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any, Final, Literal
 

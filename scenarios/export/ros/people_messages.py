@@ -1,7 +1,5 @@
 """ROS 2 messages of people, true and tracked: boxes, places, markers for RViz, and people_msgs."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Final

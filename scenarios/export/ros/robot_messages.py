@@ -4,8 +4,6 @@ Frames: map -> odom -> base_link -> thermal_optical, colour_optical and one for 
 sonar and for each link; a frame per person, too.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from typing import Final

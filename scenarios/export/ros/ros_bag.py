@@ -1,7 +1,5 @@
 """MCAP: a ROS 2 bag for each run, for `ros2 bag`, Foxglove and rerun: RUN/RUN.mcap and RUN/metadata.yaml."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 from datetime import UTC, datetime
@@ -24,7 +22,7 @@ _LATEST_S: Final = 2**31  # at which the seconds of ROS's stamps, of 32 bits wit
 
 
 def write_mcap(
-    runs: Sequence[FinishedRun], folder: Path, play: Play, epoch: str = "0", ros_distro: RosDistro = "jazzy"
+    runs: Sequence[FinishedRun], folder: Path, play: Play, epoch: str = "0", ros_distro: "RosDistro" = "jazzy"
 ) -> None:
     """Write a bag for each run.
 
@@ -69,7 +67,7 @@ def epoch_ns(epoch: str) -> int:
     return round(seconds * 1e6) * 1000  # ISO times here have microseconds
 
 
-def _write_bag(run: FinishedRun, folder: Path, play: Play, start_ns: int, distro: RosDistro) -> None:
+def _write_bag(run: FinishedRun, folder: Path, play: Play, start_ns: int, distro: "RosDistro") -> None:
     from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
     from peopleboy.scenarios.export.ros.image_messages import image_messages

@@ -1,7 +1,5 @@
 """How errors depend on the distance, and on how much of a person is visible."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from itertools import pairwise

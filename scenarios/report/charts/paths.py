@@ -1,7 +1,5 @@
 """The plan of a run with the ways that people and robot really went."""
 
-from __future__ import annotations
-
 import numpy as np
 from markupsafe import Markup
 from matplotlib.axes import Axes

@@ -1,7 +1,5 @@
 """Lay out the rows of timelines: what could be seen of people, what trackers had, and where things were."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby

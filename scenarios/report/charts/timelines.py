@@ -1,7 +1,5 @@
 """Draw the timelines of a page: people, robot and things over the time of a run."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache

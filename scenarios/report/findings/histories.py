@@ -1,7 +1,5 @@
 """What became of each person in a run, frame by frame: what could be seen, and which track lay there."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import dataclass
 from enum import IntEnum

@@ -1,7 +1,5 @@
 """Find where people's numbers changed or went to other people, and what could be seen of them then."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum, auto

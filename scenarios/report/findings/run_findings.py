@@ -3,8 +3,6 @@
 Numbers that passed to another person come first, as nothing is graver.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """Render findings as sentences: every sentence of a report about a run stands in one of these tables."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final

@@ -1,7 +1,5 @@
 """Where tracks ended, and why, as far as the data say."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Run tasks on the workers of a Dask scheduler."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Generator, Iterator, Sequence
 from contextlib import contextmanager

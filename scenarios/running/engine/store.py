@@ -1,7 +1,5 @@
 """Results of finished tasks, one JSON line each, from which a killed command resumes."""
 
-from __future__ import annotations
-
 import json
 import os
 from collections.abc import Iterator, Mapping

@@ -1,7 +1,5 @@
 """Tasks, their outcome, and the workers that run them."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

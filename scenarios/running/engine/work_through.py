@@ -3,8 +3,6 @@
 Processes are joblib's; one that is killed costs only its current task.
 """
 
-from __future__ import annotations
-
 import os
 import signal
 import threading

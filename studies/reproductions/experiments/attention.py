@@ -3,8 +3,6 @@
 Source: thesis on situation awareness, chapters 5 and 6.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -34,7 +32,7 @@ from peopleboy.tracker.track import Box, Status, Track
 from peopleboy.tracker.trackers import make_tracker
 
 if TYPE_CHECKING:
-    from peopleboy.sim.world import World
+    pass
 
 PRINTED_NAME: Final = "printed"
 MATCHING: Final = "matching maps"

@@ -1,7 +1,5 @@
 """Experiments that measure time: of the trackers' steps on a drawn image, and of attention."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace

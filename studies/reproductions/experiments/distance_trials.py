@@ -1,7 +1,5 @@
 """The paper's experiments again: distance by a general and by personal models, position with the filter."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final

@@ -1,7 +1,5 @@
 """Tracks on the floor against the people who stand there: hits, misses, false alarms, errors."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import partial
@@ -161,7 +159,7 @@ class DriveRecord:
     false_sizes: int
 
     @classmethod
-    def of_plain(cls, plain: Mapping[str, Any]) -> DriveRecord:
+    def of_plain(cls, plain: Mapping[str, Any]) -> "DriveRecord":
         """Read what `DriveTracking.plain` gave."""
         hits = hit_rows(plain)
         return cls(
@@ -176,7 +174,7 @@ class DriveRecord:
         )
 
     @classmethod
-    def joined(cls, records: Iterable[DriveRecord]) -> DriveRecord:
+    def joined(cls, records: "Iterable[DriveRecord]") -> "DriveRecord":
         """Take drives together."""
         parts = list(records)
         join: dict[str, Callable[..., Any]] = {"hits": np.concatenate, "ms": np.mean}  # all others add up

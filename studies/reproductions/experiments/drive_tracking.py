@@ -1,7 +1,5 @@
 """Drives with a depth camera: the twelve data sets, the trackers that are compared, and their tracks."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial

@@ -1,7 +1,5 @@
 """Experiments with a depth camera, of the thesis on situation awareness: chapter 4 and appendix B."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, Final

@@ -1,7 +1,5 @@
 """Experiments on learning which of two people is in front: the thesis's tables 7.1 to 7.4."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

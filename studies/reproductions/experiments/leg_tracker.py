@@ -1,7 +1,5 @@
 """A tracker of legs by a laser near the floor, of the kind that was usual before depth cameras."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

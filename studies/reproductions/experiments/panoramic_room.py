@@ -1,7 +1,5 @@
 """Experiments of the 2003 paper: errors of distances, angles and positions by panorama, and of webcams."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 

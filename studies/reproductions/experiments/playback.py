@@ -1,7 +1,5 @@
 """Scenarios played for trackers and models that are compared: the same frames for each, and the truth."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field

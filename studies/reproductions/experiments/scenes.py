@@ -1,7 +1,5 @@
 """Scene models on recordings in which objects are moved: backgrounds, masks and events against the truth."""
 
-from __future__ import annotations
-
 import base64
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial

@@ -1,7 +1,5 @@
 """What a tracker does on one sequence of a data set, as plain data: its metrics and its delay."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import asdict, replace

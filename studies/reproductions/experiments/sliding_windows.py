@@ -3,8 +3,6 @@
 Source: thesis on situation awareness, sections 4.4.2, 4.7.4 and 4.7.8.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import partial

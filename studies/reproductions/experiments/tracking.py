@@ -1,7 +1,5 @@
 """Experiments in which trackers see the sequences of data sets, repeated with other random numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, is_dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Triangulation by webcams in the corners of a room (2003 paper, section 4), against the exact truth."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -31,7 +29,7 @@ X, Y, HEADING, RANGE = range(4)
 """Columns of the webcams' numbers: x, y [m], heading and angle of view [rad], counter-clockwise."""
 
 
-def bearings(columns: Floats, webcams: Floats, width: int) -> Floats:
+def bearings(columns: "Floats", webcams: "Floats", width: int) -> "Floats":
     """Turn hats' columns (..., C) [px] into angles (..., C) [rad] in the room; NaN stays NaN.
 
     Args:
@@ -43,7 +41,7 @@ def bearings(columns: Floats, webcams: Floats, width: int) -> Floats:
     return np.asarray(webcams[:, HEADING] + np.arctan2((width - 1) / 2.0 - columns, focal))
 
 
-def triangulate(angles: Floats, webcams: Floats) -> Floats:
+def triangulate(angles: "Floats", webcams: "Floats") -> "Floats":
     """Find the places (T, 2) [m] that angles (T, C) [rad] point at; NaN where no two webcams do.
 
     Every pair of webcams that sees the hat gives a point. The paper does not say how they are put together:
@@ -65,7 +63,7 @@ def triangulate(angles: Floats, webcams: Floats) -> Floats:
         return np.asarray(total / np.where(weight > 0.0, weight, np.nan)[:, None])
 
 
-def calibrate(columns: Floats, known_m: Floats, guess: Floats, width: int) -> Floats:
+def calibrate(columns: "Floats", known_m: "Floats", guess: "Floats", width: int) -> "Floats":
     """Fit the 16 numbers of four webcams, (C, 4), to hats' columns (T, C) at known places (T, 2) [m].
 
     Source: 2003 paper, section 4: the mean distance of the triangulated places from the known ones is made as

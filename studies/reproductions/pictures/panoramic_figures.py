@@ -1,7 +1,5 @@
 """Figures of the 2003 paper on a panoramic camera, and errors over the distance."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Plots of experiments' values, as SVG pictures that lie inside the page."""
 
-from __future__ import annotations
-
 import base64
 from collections.abc import Sequence
 

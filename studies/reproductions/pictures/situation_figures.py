@@ -1,7 +1,5 @@
 """Figures of the thesis on situation awareness: tracked drives, scene models and attention."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

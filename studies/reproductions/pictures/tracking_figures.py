@@ -1,7 +1,5 @@
 """Figures of the thesis on people tracking, and figure 4 of the 2005 paper."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final

@@ -1,7 +1,5 @@
 """Augmentation of thermal images: mirrored, cropped, of other cameras, with other spans of greys."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

@@ -3,8 +3,6 @@
 It takes 1.7 s of a processor where LightGBM takes 24 and scikit-learn 51, on the same windows.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -131,7 +129,7 @@ class Binned:
 
     def _grow(
         self,
-        lot: _Sample,
+        lot: "_Sample",
         tried: NDArray[np.int64],
         boosting: Boosting,
         feature: NDArray[np.int32],

@@ -1,7 +1,5 @@
 """What training of rescoring and of box refinement share: samples, augmentation of crops, the fit."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -68,7 +66,7 @@ class CropSamples(Arrays):
     offsets: Planes
 
     @classmethod
-    def empty(cls, size: CropSize) -> CropSamples:
+    def empty(cls, size: CropSize) -> "CropSamples":
         """Return no samples with crops of a size."""
         none = (size.rows, size.columns, CHANNELS), (FEATURES,), (), (OFFSETS,)
         kinds = (np.uint8, np.float32, np.float32, np.float32)
@@ -77,14 +75,14 @@ class CropSamples(Arrays):
     @classmethod
     def cut(
         cls, version: Version, found: Detections, overlap: Floats, offsets: Floats, size: CropSize
-    ) -> CropSamples:
+    ) -> "CropSamples":
         """Cut detections out of an image."""
         image, mount, _ = version
         crops = cut_crops(image.grey, image.change, found.box, size)
         features = crop_features(found, crops, (image.grey.shape[0], image.grey.shape[1]), mount)
         return cls(crops, features, overlap.astype(np.float32), offsets.astype(np.float32))
 
-    def mirror(self) -> CropSamples:
+    def mirror(self) -> "CropSamples":
         """Swap left and right."""
         features, offset = self.features.copy(), self.offsets.copy()
         features[:, 4:6] = self.features[:, [5, 4]]

@@ -1,7 +1,5 @@
 """Evaluation of the cascade in worlds that it was not trained on, and the calibration of its scores."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final

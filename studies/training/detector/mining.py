@@ -1,7 +1,5 @@
 """Hard-negative mining: windows with people, windows without, and those that the cascade takes for people."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Final, NamedTuple, TypeVar

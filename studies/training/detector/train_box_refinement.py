@@ -1,7 +1,5 @@
 """Train the network of box refinement on boxes round people, displaced as those of rescoring are."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, Final

@@ -1,7 +1,5 @@
 """Train the detector's trees: a soft cascade by hard-negative mining, and the regression of boxes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

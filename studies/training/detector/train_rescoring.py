@@ -1,7 +1,5 @@
 """Train the rescoring network on detections of the shipped cascade."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, Final

@@ -1,7 +1,5 @@
 """Rendered sequences of the thermal camera: images some time apart, what moved in them, and the people."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

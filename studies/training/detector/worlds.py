@@ -1,7 +1,5 @@
 """Random worlds that the detector is trained on: as drawn, full of people, plain, warm."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace

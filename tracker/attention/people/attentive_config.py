@@ -1,7 +1,5 @@
 """Settings of the re-identification of lost people."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 from typing import Final
 

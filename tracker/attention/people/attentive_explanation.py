@@ -1,7 +1,5 @@
 """State of the attentive tracker, for plots and recordings."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import singledispatch
@@ -37,7 +35,7 @@ class Attended:
     image: NDArray[np.uint8]
 
     @classmethod
-    def learned(cls, number: int, view: PersonView) -> Attended:
+    def learned(cls, number: int, view: PersonView) -> "Attended":
         """Learn a person from one image."""
         model = learn(ImageSums.of(view.image, TRACKING_ATTENTION), view.box, TRACKING_ATTENTION)
         return cls(number, view.camera, model, view.image)

@@ -1,7 +1,5 @@
 """A tracker wrapper that re-identifies people by appearance, however long they were absent."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace

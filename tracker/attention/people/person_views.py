@@ -1,7 +1,5 @@
 """Views of a tracked person in the colour cameras."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final

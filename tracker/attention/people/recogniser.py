@@ -1,7 +1,5 @@
 """Appearance models for re-identification: by colours, or by the attention of chapter 5."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Final, Protocol, Self, TypeVar
 
@@ -52,14 +50,14 @@ class ColourLook:
             return None
         return cls(np.array([_histogram(part, _BRIGHTNESS / light) for part in pixels]))
 
-    def likeness(self, other: ColourLook) -> float:
+    def likeness(self, other: "ColourLook") -> float:
         """Return the similarity of colours: 1 for equal, 0 for disjoint ones.
 
         Source: Bhattacharyya coefficient, as in the situation-awareness thesis, equation 4.25.
         """
         return float(np.sqrt(self.shares * other.shares).sum(axis=1) @ _WEIGHTS)
 
-    def updated(self, new: ColourLook, rate: float) -> ColourLook:
+    def updated(self, new: "ColourLook", rate: float) -> "ColourLook":
         """Update with the current appearance (situation-awareness thesis, equation 5.15)."""
         return ColourLook((1.0 - rate) * self.shares + rate * new.shares)
 

@@ -1,7 +1,5 @@
 """Appearance model: colours and thermal pattern, and their likelihood."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from typing import Final
@@ -46,7 +44,7 @@ class AppearanceView:
     @classmethod
     def build(
         cls, image: NDArray[np.uint8], colour: ColourView | None, config: AppearanceConfig
-    ) -> AppearanceView:
+    ) -> "AppearanceView":
         """Prepare a thermal image (H, W), and the colour image if there is one."""
         light = 0.0 if colour is None else float(colour.picture[::8, ::8].mean())
         picture = image[..., None]
@@ -124,11 +122,11 @@ class ColourModel:
         self.recent.setflags(write=False)
 
     @classmethod
-    def begin(cls, features: Floats, config: ColourDescriptorConfig) -> ColourModel:
+    def begin(cls, features: Floats, config: ColourDescriptorConfig) -> "ColourModel":
         """Start with one description (F,)."""
         return cls(np.array(features, dtype=np.float32)[None], config.frames)
 
-    def updated(self, features: Floats) -> ColourModel:
+    def updated(self, features: Floats) -> "ColourModel":
         """Update with the description (F,) of one more frame.
 
         Invisible parts keep their mean; if nothing is visible, the model does not change.

@@ -1,7 +1,5 @@
 """Moments of an image's channels over rectangles of people, by integral images."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -108,7 +106,7 @@ class RegionSums:
     pixels: Integers
     area: Integers
 
-    def __sub__(self, part: RegionSums) -> RegionSums:
+    def __sub__(self, part: "RegionSums") -> "RegionSums":
         """Subtract regions that lie inside these."""
         return RegionSums(self.power - part.power, self.pixels - part.pixels, self.area - part.area)
 
@@ -127,7 +125,7 @@ class PowerSums:
     integral: NDArray[np.integer[Any]]
 
     @classmethod
-    def build(cls, picture: NDArray[np.uint8], degree: int) -> PowerSums:
+    def build(cls, picture: NDArray[np.uint8], degree: int) -> "PowerSums":
         """Make them from a picture (H, W, C) and its powers up to `degree`.
 
         Raises:
@@ -169,7 +167,7 @@ class ColourView:
     @classmethod
     def build(
         cls, colour: NDArray[np.uint8], thermal_shape: tuple[int, int], config: ColourDescriptorConfig
-    ) -> ColourView:
+    ) -> "ColourView":
         """Prepare an RGB image (H, W, 3) that was taken with a thermal image of `thermal_shape`."""
         picture = channels_of(colour, config)
         moments = REPRESENTATIONS[config.representation]

@@ -1,7 +1,5 @@
 """The mean of an image over head, torso and legs of many people at once."""
 
-from __future__ import annotations
-
 from typing import Any, Final
 
 import numpy as np

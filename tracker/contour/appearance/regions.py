@@ -1,7 +1,5 @@
 """Regions of head, torso and legs: upright rectangles from the elliptic contour."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

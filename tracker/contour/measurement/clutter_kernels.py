@@ -1,7 +1,5 @@
 """Kernels that measure the clutter of an image."""
 
-from __future__ import annotations
-
 from typing import Final
 
 import numpy as np

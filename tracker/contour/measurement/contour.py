@@ -4,8 +4,6 @@ Every point on or near the contour is the body's centre plus a fixed linear comb
 contour model is therefore a table of coefficients (`Probes`), computed once for an image size.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -3,8 +3,6 @@
 All variants share the one kernel that reads the image.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -84,7 +82,7 @@ class ContourModel:
     weights: NDArray[np.float64]
 
     @classmethod
-    def build(cls, shape: tuple[int, int], config: ContourConfig) -> ContourModel:
+    def build(cls, shape: tuple[int, int], config: ContourConfig) -> "ContourModel":
         """Make the model for images of (H, W) pixels."""
         size = shape[0] / REFERENCE_HEIGHT_PX
         return cls(shape, config, build_probes(config, size), build_response(config), section_weights(config))
@@ -93,7 +91,7 @@ class ContourModel:
         """Convert a thermal image (H, W) to the one in which contours are measured."""
         return person_grey(thermal, self.config)
 
-    def amid(self, clutter_grey: float) -> ContourModel:
+    def amid(self, clutter_grey: float) -> "ContourModel":
         """Return a model whose response saturates at this clutter, if that is larger."""
         bend = round(self.config.clutter_share * clutter_grey)
         if bend <= self.config.saturation_grey:

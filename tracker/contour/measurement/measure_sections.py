@@ -1,7 +1,5 @@
 """Kernels that sample an image along contours, point by point and section by section."""
 
-from __future__ import annotations
-
 from typing import Final
 
 import numpy as np

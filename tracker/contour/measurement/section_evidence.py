@@ -1,7 +1,5 @@
 """Evidence of the image for and against a contour, section by section; for analysis only."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache

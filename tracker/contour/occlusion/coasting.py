@@ -1,7 +1,5 @@
 """Coasting of occluded people: they keep walking, are searched for, and are output while that is certain."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

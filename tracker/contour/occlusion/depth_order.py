@@ -1,7 +1,5 @@
 """Depth order of people, predicted before the image is measured."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol

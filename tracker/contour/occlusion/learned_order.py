@@ -1,7 +1,5 @@
 """Depth order by the learned classifier: pairwise votes, and order from front to back."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -41,7 +39,7 @@ class LearnedOrder:
     remembers_feet: bool = True
 
     @classmethod
-    def build(cls, table: LearnedTable, *, remembers_feet: bool = True) -> LearnedOrder:
+    def build(cls, table: LearnedTable, *, remembers_feet: bool = True) -> "LearnedOrder":
         """Make it from a table."""
         weak = table.classifiers
         scale = np.array([table.scale[name] for name in FEATURES])

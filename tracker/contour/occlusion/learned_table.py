@@ -1,7 +1,5 @@
 """The learned classifier as a readable file."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Literal
@@ -94,7 +92,7 @@ class LearnedTable:
         path.write_text(_HEADER + about + text, encoding="utf-8")
 
     @classmethod
-    def load(cls, path: Path) -> LearnedTable:
+    def load(cls, path: Path) -> "LearnedTable":
         """Read and validate a table.
 
         Raises:

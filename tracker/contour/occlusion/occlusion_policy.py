@@ -1,7 +1,5 @@
 """Interface of the policies for occluded and lost people, and the thesis's policy."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol

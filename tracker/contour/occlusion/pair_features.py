@@ -1,7 +1,5 @@
 """Six features that indicate which of two people is in front."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Weak classifiers: a threshold on one feature, or on a weighted sum of two or three."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import combinations, product
 
@@ -53,7 +51,7 @@ class SortedSums:
     example: NDArray[np.int32]
 
     @classmethod
-    def build(cls, examples: Features, weights: Features) -> SortedSums:
+    def build(cls, examples: Features, weights: Features) -> "SortedSums":
         """Sort the sums of examples (N, features) by rows of weights (T, features)."""
         sums = (weights @ examples.T).astype(np.float32)
         order = np.argsort(sums, axis=1).astype(np.int32)

@@ -1,7 +1,5 @@
 """Silhouettes in the panorama, and the three features that indicate a person's distance."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The distance network of the 2003 paper: three inputs, four hidden units, one output."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -86,7 +84,7 @@ class DistanceModel:
         WeightsArchive(arrays, self.about, asdict(self.view)).save(path)
 
     @classmethod
-    def load(cls, path: Path) -> DistanceModel:
+    def load(cls, path: Path) -> "DistanceModel":
         """Read and validate a model.
 
         Raises:

@@ -1,7 +1,5 @@
 """The tracker of one person around a standing robot of the OMNIVIS 2003 paper."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The paper's Kalman filter over a person's position on the floor, equations 1 to 10."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """Appearance of a person: illumination-invariant mean colours of height bands."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Final
@@ -33,13 +31,13 @@ class BandColours:
 
     colours: Map
 
-    def joined(self, newest: BandColours) -> BandColours:
+    def joined(self, newest: "BandColours") -> "BandColours":
         """Update with one more image."""
         grown = self.colours + _LEARNING * (newest.colours - self.colours)
         known = np.where(np.isnan(self.colours), newest.colours, self.colours)
         return BandColours(np.where(np.isnan(grown), known, grown).astype(np.float32))
 
-    def unlikeness(self, other: BandColours) -> float:
+    def unlikeness(self, other: "BandColours") -> float:
         """Return the mean squared difference of two people in standard deviations; NaN if none is common."""
         return float(_unlikeness(self.colours, other.colours))
 

@@ -1,7 +1,5 @@
 """Patches of the panorama at a person's position: small maps in metres, independent of the distance."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Final
@@ -41,7 +39,7 @@ class FigureMap:
     calibration: PanoramaCalibration
 
     @classmethod
-    def build(cls, people: Map, new: Map, covered: Map, calibration: PanoramaCalibration) -> FigureMap:
+    def build(cls, people: Map, new: Map, covered: Map, calibration: PanoramaCalibration) -> "FigureMap":
         """Integrate maps (H, W): foreground probability, novelty, and covered pixels."""
         return cls(_summed(people, new, covered), calibration)
 

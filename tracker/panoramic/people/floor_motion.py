@@ -1,7 +1,5 @@
 """Motion of people on the floor: a Kalman filter of position and velocity."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Final
 
@@ -38,21 +36,21 @@ class FloorMotion:
         return self.covariance[:2, :2]
 
     @classmethod
-    def begin(cls, place_m: Floats, error_m2: Floats) -> FloorMotion:
+    def begin(cls, place_m: Floats, error_m2: Floats) -> "FloorMotion":
         """Initiate at a measured position (2,) with a covariance (2, 2) and an unknown walking velocity."""
         covariance = np.zeros((4, 4))
         covariance[:2, :2] = error_m2
         covariance[2, 2] = covariance[3, 3] = FIRST_SPEED_SD_M_S**2
         return cls(np.concatenate([place_m, np.zeros(2)]), covariance)
 
-    def later(self, dt_s: float, restlessness: float) -> FloorMotion:
+    def later(self, dt_s: float, restlessness: float) -> "FloorMotion":
         """Predict with white acceleration of this spectral density [m2/s3].
 
         Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 6.2.2.
         """
         return FloorMotion(*_later(self.state, self.covariance, dt_s, restlessness))
 
-    def corrected(self, place_m: Floats, error_m2: Floats) -> FloorMotion:
+    def corrected(self, place_m: Floats, error_m2: Floats) -> "FloorMotion":
         """Update with a measured position (2,) [m] with this covariance (2, 2) [m2]."""
         (a, b), (c, d) = (self.place_m2 + error_m2).tolist()
         gain = self.covariance[:, :2] @ (np.array([[d, -b], [-c, a]]) / (a * d - b * c))
@@ -63,7 +61,7 @@ class FloorMotion:
         covariance = self.covariance - gain @ self.covariance[:2]
         return FloorMotion(state, (covariance + covariance.T) / 2.0)
 
-    def slowed(self, dt_s: float, tau_s: float) -> FloorMotion:
+    def slowed(self, dt_s: float, tau_s: float) -> "FloorMotion":
         """Decay the velocity, as unseen people rarely walk straight for long."""
         state = self.state.copy()
         state[2:] *= np.exp(-dt_s / tau_s)

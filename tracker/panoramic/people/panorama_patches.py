@@ -1,7 +1,5 @@
 """One panorama, processed from the nearest person to the farthest."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache
@@ -56,7 +54,7 @@ class PanoramaScene:
     @classmethod
     def of(
         cls, image: NDArray[np.uint8], foreground: Map, new: Map, calibration: PanoramaCalibration
-    ) -> PanoramaScene:
+    ) -> "PanoramaScene":
         """Make one without people."""
         covered = np.zeros_like(foreground)
         figures = FigureMap.build(foreground, new, covered, calibration)

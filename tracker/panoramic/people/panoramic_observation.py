@@ -1,7 +1,5 @@
 """Detection of one person in a panorama: near a prediction, or anywhere."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The tracker of several people around a standing or moving robot."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """State of the tracks of the panoramic tracker."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -56,7 +54,7 @@ class PanoramicPerson:
         """Whether it was detected in the newest image."""
         return self.status is not Status.TOTALLY_OCCLUDED
 
-    def known_as(self, known: PanoramicPerson) -> PanoramicPerson:
+    def known_as(self, known: "PanoramicPerson") -> "PanoramicPerson":
         """Continue a known person's track: take over its id, age and appearance."""
         born_s = min(known.born_s, self.born_s)
         return replace(self, id=known.id, born_s=born_s, strange_s=0.0, clothing=known.clothing)

@@ -1,7 +1,5 @@
 """Learned model of patches: presence of a person, exact position, and its uncertainty."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -77,7 +75,7 @@ class PlaceModel:
         WeightsArchive(arrays, self.about, asdict(self.view)).save(path)
 
     @classmethod
-    def load(cls, path: Path = SHIPPED / FILE) -> PlaceModel:
+    def load(cls, path: Path = SHIPPED / FILE) -> "PlaceModel":
         """Read and validate a model.
 
         Raises:

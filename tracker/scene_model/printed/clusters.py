@@ -1,7 +1,5 @@
 """Small clusters of nearby points with similar motion, on the floor (SA 3.5)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import cv2

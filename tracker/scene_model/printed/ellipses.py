@@ -1,7 +1,5 @@
 """Moving objects as upright ellipses, each tracked by a particle filter with mean shift (SA 3.5)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

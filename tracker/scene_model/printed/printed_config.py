@@ -1,7 +1,5 @@
 """Settings of the printed scene model, and its four variants; most numbers are not printed but chosen."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Final

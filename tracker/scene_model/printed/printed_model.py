@@ -1,7 +1,5 @@
 """The articulated scene model as printed: static background, moving entities, movable objects (SA 3.2)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import cv2
