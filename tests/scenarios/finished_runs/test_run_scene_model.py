@@ -123,7 +123,7 @@ def test_bad_input_is_refused_in_a_line_and_leaves_nothing(run: Path, tmp_path: 
     with pytest.raises(BadInput, match="has no images; run the scenario with --frames"):
         watch(str(copy))
     (tmp_path / "mine").mkdir()
-    with pytest.raises(BadInput, match="will not be replaced"):
+    with pytest.raises(BadInput, match="is not replaced"):
         watch(str(run), "--out", str(tmp_path / "mine"))
 
 

@@ -22,7 +22,7 @@ def frames_of_four(count):
 
 
 def modules_entered(work):
-    """Name our modules of which any function is entered; compiled kernels are no frames of Python's."""
+    """Name the tracker's modules of which any function is entered; compiled kernels are no frames of Python's."""
     names = set()
 
     def note(frame, event, _):
@@ -34,7 +34,7 @@ def modules_entered(work):
         work()
     finally:
         sys.setprofile(None)
-    return {name for name in names if name.startswith("peopleboy.")}
+    return {name for name in names if name.startswith("peopleboy.tracker.")}
 
 
 def test_one_tick_of_the_tracker_can_be_read_in_a_dozen_modules():
