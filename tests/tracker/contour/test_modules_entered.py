@@ -22,7 +22,7 @@ def frames_of_four(count):
 
 
 def modules_entered(work):
-    """Name the tracker's modules of which any function is entered; compiled kernels are no frames of Python's."""
+    """Name the tracker's modules that are entered; compiled kernels are no frames of Python's."""
     names = set()
 
     def note(frame, event, _):
