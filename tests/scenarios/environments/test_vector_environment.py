@@ -172,7 +172,7 @@ def test_images_made_together_are_there_by_all_their_names_until_their_instant_i
         together.step(only, command)
         other.step(0.3, 0.2)
         other.observe()
-        with pytest.raises(BadInput, match="over"):
+        with pytest.raises(BadInput, match="not read in time"):
             found.images["colour"]
         last = together.step(only, command)[0].senses(0)
         other.step(0.3, 0.2)
