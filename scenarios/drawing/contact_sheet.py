@@ -44,8 +44,8 @@ PAGE: Final[Rgb] = (22, 24, 28)
 STRONG: Final[Rgb] = (240, 240, 240)
 WEAK: Final[Rgb] = (165, 170, 178)
 
-_TRUTH_LEGEND: Final = "dashed: truth, with the share that is visible"
-_TRACK_LEGEND: Final = "solid: tracks, with number and confidence; dim, with ?: not yet confirmed"
+_TRUTH_LEGEND: Final = "dashed: ground truth with visible fraction"
+_TRACK_LEGEND: Final = "solid: tracks with id and confidence; dim with ?: tentative"
 
 
 def draw_head(page: Image.Image, title: str, length: str, *, has_truth: bool = True) -> None:
