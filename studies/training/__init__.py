@@ -1,1 +1,1 @@
-"""Training of the learned models: one command, `peopleboy train MODEL`, and one module a model."""
+"""Training of the learned models: one command, `peopleboy train MODEL`, and one module per model."""

@@ -1,4 +1,4 @@
-"""Train the distance network of the 2003 paper: from a silhouette's cues to how far away a person is."""
+"""Train the distance network of the 2003 paper, which estimates a person's distance from silhouette cues."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -41,16 +41,16 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class DistanceSamples(Arrays):
-    """The samples of one run, in the order of time.
+    """The samples of one run, in order of time.
 
     Attributes:
         person: (N,) number of the person.
-        time_s: (N,) of the image [s].
-        cues: (N, 3) as `DepthCues` has them [px].
-        bearing_rad: (N,) where the silhouette is, left positive [rad].
-        true_m: (N, 2) where the person stands in the robot's frame [m]; the middle between the feet, not the
-            hat of the paper.
-        missed: (1,) how many images of the run do not show the person who is there.
+        time_s: (N,) time of the image [s].
+        cues: (N, 3) silhouette cues in the order of `DepthCues` [px].
+        bearing_rad: (N,) bearing of the silhouette, left positive [rad].
+        true_m: (N, 2) true position of the person in the robot's frame [m]: the middle between the feet, and
+            not the hat as in the paper.
+        missed: (1,) number of images in which the person was not detected.
     """
 
     person: NDArray[np.int64]
@@ -67,18 +67,18 @@ class DistanceSamples(Arrays):
 
     @property
     def angle_error_rad(self) -> Floats:
-        """What the silhouette's bearing is off by, (N,) in 0..pi [rad]."""
+        """Absolute errors (N,) of the silhouette's bearing, in 0..pi [rad]."""
         off = self.bearing_rad - np.arctan2(self.true_m[:, 1], self.true_m[:, 0])
         return np.asarray(np.abs(np.angle(np.exp(1j * off))), np.float64)
 
     def positions_at(self, distance_m: Floats) -> Floats:
-        """Place people on the floor, (N, 2) in the robot's frame, at estimated distances (N,) [m]."""
+        """Return positions (N, 2) on the floor in the robot's frame [m], for estimated distances (N,) [m]."""
         way = np.stack([np.cos(self.bearing_rad), np.sin(self.bearing_rad)], axis=1)
         return np.asarray(distance_m[:, None] * way, np.float64)
 
     @classmethod
     def from_rows(cls, rows: Sequence[Sequence[float]], missed: int = 0) -> "DistanceSamples":
-        """Take rows of person, time, three cues, bearing, and where the person stands, x and y."""
+        """Build samples from rows of person, time, three cues, bearing, and true position x and y."""
         person, time_s, *cues, bearing_rad, x, y = np.array(rows, np.float64).reshape(-1, 8).T
         return cls(
             person=person.astype(np.int64),
@@ -91,11 +91,11 @@ class DistanceSamples(Arrays):
 
 
 def collect_distances(scenario: str, seed: int) -> DistanceSamples:
-    """Run a scenario with the panoramic camera, and keep what is measured while one person is there.
+    """Run a scenario with the panoramic camera, and collect measurements of a single person.
 
     Raises:
-        BadInput: an unknown scenario, a person in the first images, or a camera that nobody can calibrate or
-            that sees no floor where people walk.
+        BadInput: an unknown scenario, a person in the first images, or a camera that cannot be calibrated or
+            that does not see the floor where people walk.
     """
     loaded = load_scenario(scenario).mounting((PANORAMA,))
     config = loaded.world(seed)
@@ -104,21 +104,21 @@ def collect_distances(scenario: str, seed: int) -> DistanceSamples:
 
 
 def check_floor(config: WorldConfig, scenario: str) -> PanoramaView:
-    """Describe the panoramic camera, before anything is rendered.
+    """Return the calibration of the panoramic camera, without rendering.
 
     Raises:
-        BadInput: it cannot be calibrated, or nobody ever walks where it sees the floor.
+        BadInput: it cannot be calibrated, or it does not see the floor where people walk.
     """
     camera, calibrations = config.robot.cameras[PANORAMA], calibrations_of(config.robot.cameras)
     if PANORAMA not in calibrations:
         raise BadInput(f"{scenario}: camera {PANORAMA!r} of kind {camera.kind!r} cannot be calibrated")
     ways = [point.at_m for person in config.people for point in person.path]
     if not ways:
-        raise BadInput(f"{scenario}: nobody walks there")
+        raise BadInput(f"{scenario}: no person walks in this scenario")
     away = np.subtract(ways, config.robot.at_m)
     farthest = np.array([[float(np.hypot(*away.T).max()), 0.0, 0.0]])
     row = float(calibrations[PANORAMA].project(farthest)[0, 1])
-    if not row < camera.camera.height:  # as below: steeper than any row looks; NaN: no lens sees it
+    if not row < camera.camera.height:  # also true for NaN, a point that the lens does not see
         raise BadInput(
             f"{scenario}: camera {PANORAMA!r} sees no floor where people walk; take another mirror"
         )
@@ -126,8 +126,8 @@ def check_floor(config: WorldConfig, scenario: str) -> PanoramaView:
 
 
 def panoramas(config: WorldConfig, duration_s: float) -> Iterator[tuple[NDArray[np.uint8], ImageFreeTruth]]:
-    """Yield every image (H, W, 3) of the panoramic camera, and the people there; render no others."""
-    from peopleboy.sim.world import World  # here, as samples that are there can be read without PyBullet
+    """Yield every image (H, W, 3) of the panoramic camera, and the people present; render no other images."""
+    from peopleboy.sim.world import World  # imported late: reading existing samples does not need PyBullet
 
     with World(config) as world:
         for _ in range(round(duration_s * config.control_hz)):
@@ -139,7 +139,7 @@ def panoramas(config: WorldConfig, duration_s: float) -> Iterator[tuple[NDArray[
 
 
 def _measured(instants: Iterator[tuple[NDArray[np.uint8], ImageFreeTruth]], scenario: str) -> DistanceSamples:
-    """Measure the one person of each image after the empty ones, and count the images that show nobody."""
+    """Measure the single person in each image after the empty ones, and count missed detections."""
     first = list(islice(instants, EMPTY_IMAGES))
     if len(first) < EMPTY_IMAGES or any(scene.people for _, scene in first):
         raise BadInput(
@@ -161,14 +161,14 @@ def _measured(instants: Iterator[tuple[NDArray[np.uint8], ImageFreeTruth]], scen
 class Backpropagation:
     """Settings of the paper's online backpropagation.
 
-    The paper gives the hidden units and the rate, with which it did best. It gives neither how often the
-    samples are gone through nor the first weights; ours are these.
+    Hidden units and learning rate are the paper's best ones. The paper does not give the number of epochs and
+    the initial weights; those are chosen here.
 
     Attributes:
         hidden: units of the hidden layer.
-        rate: by which each sample's gradient changes the weights.
-        epochs: how often all samples are gone through, each time in another order.
-        first_weight: the first weights are drawn evenly between this and its negative.
+        rate: learning rate of the online updates.
+        epochs: number of passes through the samples, each in another order.
+        first_weight: the initial weights are uniform between this and its negative.
     """
 
     hidden: int = 4
@@ -183,20 +183,20 @@ def fit_distances(
     """Train a network online by backpropagation of the squared error.
 
     Args:
-        cues: (N, 3) of the samples [px].
+        cues: (N, 3) silhouette cues [px].
         distances_m: (N,) true distances [m].
-        rng: draws the first weights and the order of the samples.
-        settings: of the training.
+        rng: draws the initial weights and the order of the samples.
+        settings: settings of the training.
 
-    Raises:
-        BadInput: next to no samples, or all at one distance.
+        Raises:
+            BadInput: too few samples, or all at one distance.
 
     Source: OMNIVIS 2003, section 4.4.
     """
     if len(cues) < 10:
-        raise BadInput(f"{len(cues)} samples of distances: at least 10 are needed; take more sequences")
+        raise BadInput(f"{len(cues)} samples of distances: at least 10 are needed; use more sequences")
     if np.ptp(distances_m) <= 0.0 or np.any(np.ptp(cues, axis=0) <= 0.0):
-        raise BadInput("samples of distances: all are alike, so there is nothing to train on")
+        raise BadInput("samples of distances: all are equal, so there is nothing to train on")
     settings = Backpropagation() if settings is None else settings
     ranges = np.stack([cues.min(axis=0), cues.max(axis=0)], axis=1)
     nearest, farthest = float(distances_m.min()), float(distances_m.max())
@@ -221,7 +221,7 @@ def run_epoch(
     output: Floats,
     rate: float,
 ) -> None:
-    """Go once through the samples, and change the weights in place after each.
+    """Run one epoch: go once through the samples, and update the weights in place after each.
 
     Each change is the negative gradient of half the squared error, times the rate.
     """
@@ -241,7 +241,7 @@ def run_epoch(
 
 
 def walks(run: DistanceSamples, measured: Floats) -> list[tuple[Floats, Floats]]:
-    """Cut a run where the person changes or an image is missing: true and measured positions (N, 2) [m]."""
+    """Split a run where the person changes or an image is missing: true and measured positions (N, 2) [m]."""
     is_cut = (np.diff(run.person) != 0) | (np.diff(run.time_s) > 1.5 * STEP_S)
     cuts = np.flatnonzero(is_cut) + 1
     pieces = zip(np.split(run.true_m, cuts), np.split(measured, cuts), strict=True)
@@ -249,14 +249,14 @@ def walks(run: DistanceSamples, measured: Floats) -> list[tuple[Floats, Floats]]
 
 
 TRAINING_SHARE: Final = 0.3
-"""Share of the samples that is trained on (OMNIVIS 2003, section 4.4)."""
-_LEAST_SAMPLES: Final = 100  # of a run
+"""Share of the samples used for training (OMNIVIS 2003, section 4.4)."""
+_LEAST_SAMPLES: Final = 100  # least number of samples in a run
 BLOCKS: Final = 20
-"""Parts into which a sequence is cut where neighbouring images must not count as independent."""
+"""Number of blocks of a sequence, for a split in which neighbouring images are not independent."""
 
 
 def block_split(count: int, rng: np.random.Generator) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Split so many images by whole stretches of time, 30 to 70."""
+    """Split images by blocks of time, 30 to 70."""
     block = np.arange(count) * BLOCKS // count
     is_training = np.isin(block, rng.permutation(BLOCKS)[: round(TRAINING_SHARE * BLOCKS)])
     return np.flatnonzero(is_training), np.flatnonzero(~is_training)
@@ -264,9 +264,9 @@ def block_split(count: int, rng: np.random.Generator) -> tuple[NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DistanceTraining(Specification[list[DistanceSamples]]):
-    """Train on a scenario that begins with five empty panoramas, and has one person at a time later."""
+    """Train on a scenario that begins with five empty panoramas, and then shows one person at a time."""
 
-    HINT: ClassVar[str] = "`peopleboy reproduce --paper panoramic` measures it by the paper's experiments"
+    HINT: ClassVar[str] = "`peopleboy reproduce --paper panoramic` evaluates it in the paper's experiments"
 
     sequences: Annotated[
         int, Field(ge=1, alias="seeds", description="Number of seeds, each a run of the scenario.")
@@ -275,11 +275,11 @@ class DistanceTraining(Specification[list[DistanceSamples]]):
     epochs: Annotated[int, Field(ge=1, description="Training epochs.")] = 2000
 
     def default_folder(self, model: str) -> Path:
-        """Return a folder of the scenario's own."""
+        """Return a separate folder for each scenario."""
         return Path("runs") / f"{model}-{Path(self.scenario).stem}"
 
     def tasks(self, out: Path) -> Tasks:
-        """Run the scenario; samples that are there are used if neither code nor scenario has changed."""
+        """Run the scenario; existing samples are reused unless the code or the scenario has changed."""
         scenario = load_scenario(self.scenario).mounting((PANORAMA,))
         check_floor(scenario.world(0), self.scenario)
         folder = sample_folder(out, Path(__file__))
@@ -298,8 +298,8 @@ class DistanceTraining(Specification[list[DistanceSamples]]):
         for seed, run in enumerate(runs):
             if len(run) < _LEAST_SAMPLES:
                 raise BadInput(
-                    f"{self.scenario}, seed {seed}: one person alone is in {len(run)} panoramas; at least "
-                    f"{_LEAST_SAMPLES} are needed to train on"
+                    f"{self.scenario}, seed {seed}: {len(run)} panoramas show exactly one person; at least "
+                    f"{_LEAST_SAMPLES} are needed"
                 )
         return runs
 
@@ -316,13 +316,13 @@ class DistanceTraining(Specification[list[DistanceSamples]]):
             about={
                 "trained on": f"{len(samples)} images of {scenario.name}, seeds 0 to {len(data) - 1}",
                 "training": f"{settings.epochs} epochs, rate {settings.rate:g}, online",
-                "left out": f"{samples.missed.sum()} images in which the person was not seen",
+                "left out": f"{samples.missed.sum()} images in which the person was not detected",
             },
         )
         return {file_name(scenario.name): model}
 
     def evaluate(self, model: DistanceModel, data: list[DistanceSamples]) -> Mapping[str, str]:
-        """Measure the error on the samples, and where 30 % of each run were trained on, by blocks of time."""
+        """Measure the training error, and the validation error after training on 30 % of each run, by blocks."""
         settings, seen, unseen = Backpropagation(epochs=self.epochs), [], []
         for run in data:
             seen.append(model.network.predict(run.cues) - run.distance_m)
@@ -330,10 +330,10 @@ class DistanceTraining(Specification[list[DistanceSamples]]):
             rows, rest = block_split(len(run), rng)
             network = fit_distances(run.cues[rows], run.distance_m[rows], rng, settings)
             unseen.append((network.predict(run.cues) - run.distance_m)[rest])
-        return {"error on those": _error(seen), "error on the rest, by blocks": _error(unseen)}
+        return {"training error": _error(seen), "validation error, split by blocks": _error(unseen)}
 
     def is_replaced(self, path: Path, model: DistanceModel) -> bool:
-        """Return whether a shipped file is of the same mirror."""
+        """Return whether a shipped file belongs to the same mirror."""
         return path.match(file_name("*")) and not DistanceModel.load(path).view.refusal(model.view)
 
 

@@ -24,7 +24,7 @@ _BATCH: Final = "N"
 
 @dataclass(slots=True)
 class _Graph:
-    """A graph under construction: each operation returns the name of its result."""
+    """Builder of a graph; each method adds operations and returns the name of their result."""
 
     helper: Any
     tensor: Callable[[NDArray[Any], str], Any]
@@ -54,13 +54,13 @@ class _Graph:
 
 @dataclass(frozen=True, slots=True)
 class OnnxExport:
-    """How a network is exported.
+    """Specification of the export of a network.
 
     Attributes:
-        summary: what it is for.
-        inputs, outputs: shape and meaning by name; a word in a shape is a size that is not fixed.
-        about: what it was trained on.
-        build: adds the operations to a graph.
+        summary: purpose of the network.
+        inputs, outputs: shape and meaning by name; a word in a shape is a variable size.
+        about: description of its training.
+        build: function that adds the operations to a graph.
     """
 
     summary: str
@@ -96,8 +96,8 @@ def _crop_network(network: CropNetwork, summary: str, meaning: str) -> OnnxExpor
     return OnnxExport(
         summary,
         {
-            "crops": (crop, "grey, change of grey and what lies inside the image, normalised"),
-            "features": ((_BATCH, shape.features), "numbers beside each crop, such as the box's height"),
+            "crops": (crop, "grey, change of grey, and mask of the image area, normalised"),
+            "features": ((_BATCH, shape.features), "scalar features of each crop, such as the box's height"),
         },
         {"outputs": ((_BATCH, shape.outputs), meaning)},
         network.about,
@@ -108,7 +108,7 @@ def _crop_network(network: CropNetwork, summary: str, meaning: str) -> OnnxExpor
 def _place_model(model: PlaceModel) -> OnnxExport:
     heads = {"presence": model.presence, "place": model.place, "doubt": model.doubt}
     meanings = {
-        "presence": "log odds that a person is there",
+        "presence": "log odds of a person",
         "place": "offset of the person [m]",
         "doubt": "logarithms of the offset's standard deviations [m]",
     }
@@ -121,7 +121,7 @@ def _place_model(model: PlaceModel) -> OnnxExport:
     outputs = {
         name: ((_BATCH, len(network.layers[-1][1])), meanings[name]) for name, network in heads.items()
     }
-    inputs = {"inputs": ((_BATCH, size), "patch of the panorama's foreground, and distance in two forms")}
+    inputs = {"inputs": ((_BATCH, size), "patch of the panorama's foreground, and the distance in two forms")}
     return OnnxExport("Position of a person in a patch of a panorama.", inputs, outputs, model.about, build)
 
 
@@ -131,7 +131,7 @@ def _foreground(model: ForegroundModel) -> OnnxExport:
     columns = model.view.width_px // BLOCK
 
     def wrapped(graph: _Graph, planes: str, by: int) -> str:
-        """Carry the image on over its seam at either side."""
+        """Pad the image across its seam on both sides."""
         axis, step = graph.constant(np.array([3], np.int64)), graph.constant(np.array([1], np.int64))
 
         def part(first: int, last: int) -> str:
@@ -178,18 +178,18 @@ NETWORKS: Final[Mapping[str, Callable[[], OnnxExport]]] = {
     "places": lambda: _place_model(PlaceModel.load()),
     "foreground": lambda: _foreground(ForegroundModel.load(SHIPPED / FILE)),
 }
-"""The networks that can be exported, by the name of their training."""
+"""The networks that can be exported, by the name of their training command."""
 
 
 def export_onnx(names: tuple[str, ...], out: Path) -> list[Path]:
     """Write NAME.onnx for each network, and one model card, README.md.
 
     Args:
-        names: of networks; all if there are none.
-        out: folder.
+        names: names of networks; empty for all.
+        out: output folder.
 
     Returns:
-        The files.
+        The paths of the files.
 
     Raises:
         BadInput: an unknown name, or the package onnx is missing.
@@ -235,7 +235,7 @@ def export_onnx(names: tuple[str, ...], out: Path) -> list[Path]:
 def _card(exports: Mapping[str, OnnxExport]) -> Iterator[str]:
     yield from ("---", "license: mit", "library_name: onnx", "tags: [people-tracking, thermal]", "---")
     yield f"# Networks of PeopleBoy {version('peopleboy')}\n"
-    yield "Trained on rendered images only. Parts of PeopleBoy's trackers: prepare inputs as they do."
+    yield "Parts of PeopleBoy's trackers, trained on rendered images only. Prepare inputs like the trackers."
     yield "Outputs agree with those of PeopleBoy to about 1e-4.\n"
     for name, export in exports.items():
         yield f"## {name}.onnx\n\n{export.summary}\n"

@@ -35,28 +35,28 @@ Sample = tuple[NDArray[np.float16], NDArray[np.bool_]]
 
 UNITS: Final = 24
 EVERY: Final = 4
-"""Which images of a sequence are trained on; all are played."""
+"""Images of a sequence that are used for training; the network runs on all of them."""
 WIDE: Final = 40
-"""Columns of squares of a sample: most of an image shows nothing to train on."""
+"""Width of a sample in columns of squares. Most of an image is background, so samples are excerpts."""
 BATCH: Final = 8
 RATES: Final = (4e-3, 1e-4)
-"""Learning rate at the beginning and at the end; it falls by the same factor in each round."""
+"""Learning rate at the beginning and at the end; it decays by the same factor in each round."""
 NEAREST_M: Final = 1.2
 FARTHEST_M: Final = 6.0
-"""Between these distances people are evaluated one by one."""
+"""Distances between which people are evaluated individually."""
 
-_SEQUENCES_A_ROUND: Final = 100  # samples of so many are in memory
-_RARE: Final = -3.0  # evidence that the last layer begins with, since few pixels are people
-_LEAST_PX: Final = 12  # of a person, to be evaluated
-_REACH_PX: Final = 6  # round a person, within which foreground counts as that person's
+_SEQUENCES_A_ROUND: Final = 100  # whose samples are in memory at a time
+_RARE: Final = -3.0  # initial bias of the last layer, since few pixels are people
+_LEAST_PX: Final = 12  # visible pixels from which on a person is evaluated
+_REACH_PX: Final = 6  # margin around a person within which foreground counts as that person's
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForegroundTraining(Specification[Tasks]):
-    """Train on panoramas of scenes drawn at random.
+    """Train on panoramas of random scenes.
 
-    In each round a hundred scenes are played to the network as it is by then, so that the background in its
-    input is one that it has helped to make itself, as when it is used.
+    In each round the current network runs on a hundred scenes. The background model in its input therefore
+    depends on its own output, as it does in use.
     """
 
     sequences: Annotated[
@@ -66,12 +66,12 @@ class ForegroundTraining(Specification[Tasks]):
     rounds: Annotated[int, Field(ge=1, description="Training rounds, each on a hundred of the scenes.")] = 12
 
     def tasks(self, out: Path) -> Tasks:
-        """Render the scenes; they are many, so that files are read when they are needed."""
+        """Render the scenes. They do not all fit into memory, so each file is read when it is needed."""
         seeds = range(FIRST_SEED, FIRST_SEED + self.sequences), range(self.validation)
         return Split(*([render_task(out / "sequences", seed) for seed in part] for part in seeds))
 
     def fit(self, data: Tasks) -> Mapping[str, ForegroundModel]:
-        """Train in rounds, and report the loss of each."""
+        """Train in rounds, and print the loss of each."""
         paths, calibration = [task.path for task in data.training], scene_calibration(data.training[0])
         height, width = PanoramaSequence.load(paths[0]).images.shape[1:3]
         view, rng = view_of(calibration, width, height), np.random.default_rng(0)
@@ -83,15 +83,15 @@ class ForegroundTraining(Specification[Tasks]):
             samples = [one for path in chosen for one in collect_samples(path, model, calibration, rng)]
             for ends in ((first, last), (last, last)):
                 loss = optimiser.run(batches(samples, rng, ends))["entropy"]
-            report(f"round {number} of {self.rounds}: {loss:.4f} nat a pixel")
+            report(f"round {number} of {self.rounds}: {loss:.4f} nat per pixel")
         about = {
-            "trained on": f"{len(paths)} scenes drawn at random, seeds from {FIRST_SEED}",
+            "trained on": f"{len(paths)} random scenes, seeds from {FIRST_SEED}",
             "training": f"{self.rounds} rounds, {optimiser.steps} steps",
         }
         return {FILE: ForegroundModel(network=MaskNetwork(**optimiser.weights), view=view, about=about)}
 
     def evaluate(self, model: ForegroundModel, data: Tasks) -> Mapping[str, str]:
-        """Measure overlap and single people, of a standing and of a driving robot."""
+        """Measure overlap and errors per person, for a standing and for a driving robot."""
         calibration = scene_calibration(data.training[0])
         sums = {"a standing robot": MaskScores(), "a driving robot": MaskScores()}
         for task in data.validation:
@@ -102,7 +102,7 @@ class ForegroundTraining(Specification[Tasks]):
 
 
 def segment(sequence: PanoramaSequence, model: ForegroundModel, calibration: Calibration) -> Iterator[Linear]:
-    """Yield for each image of a sequence the probability (H, W) that a pixel is a person."""
+    """Yield the probability (H, W) that a pixel shows a person, for each image of a sequence."""
     foreground = Foreground(model)
     for k, image in enumerate(sequence.images):
         yield foreground.update(image, float(sequence.time_s[k]), sequence.odometry(k), calibration)
@@ -111,7 +111,7 @@ def segment(sequence: PanoramaSequence, model: ForegroundModel, calibration: Cal
 def collect_samples(
     path: Path, model: ForegroundModel, calibration: Calibration, rng: np.random.Generator
 ) -> Iterator[Sample]:
-    """Play an augmented sequence, and yield two excerpts of some images: anywhere, and round a person."""
+    """Run on an augmented sequence, and yield two excerpts of some images: at random, and around a person."""
     sequence = _augment(PanoramaSequence.load(path), rng)
     foreground, begin = Foreground(model), int(rng.integers(EVERY))
     for k, image in enumerate(sequence.images):
@@ -128,7 +128,7 @@ def collect_samples(
 def batches(
     samples: Sequence[Sample], rng: np.random.Generator, rates: tuple[float, float]
 ) -> Iterator[tuple[tuple[Linear, Linear], float]]:
-    """Yield all samples once, in batches, with a rate that goes from one to another."""
+    """Yield all samples once, in batches, with a learning rate that changes from the first to the second."""
     order = rng.permutation(len(samples))
     for start in range(0, len(order), BATCH):
         batch = [samples[k] for k in order[start : start + BATCH]]
@@ -137,7 +137,7 @@ def batches(
 
 
 def first_weights(rows: int, rng: np.random.Generator) -> Weights:
-    """Draw an untrained network for images of so many rows of squares."""
+    """Initialise a network for images with a number of rows of squares."""
     layers = len(DILATIONS)
     return {
         "first": he_weights(rng, (INPUTS, UNITS), INPUTS),
@@ -154,7 +154,7 @@ def mask_loss(weights: Weights, batch: Any, key: jax.Array) -> tuple[jax.Array, 
     squares, people = batch
     units = jax.nn.relu(squares @ weights["first"] + weights["rows"][:, None])
     for kernel, bias, dilation in zip(weights["between"], weights["biases"], DILATIONS, strict=True):
-        # Columns wrap round, while there is nothing above and below the image.
+        # Columns wrap around; rows are padded with zeros.
         ring = jnp.pad(units, ((0, 0), (0, 0), (dilation, dilation), (0, 0)), mode="wrap")
         grown = jax.lax.conv_general_dilated(
             ring,
@@ -171,13 +171,13 @@ def mask_loss(weights: Weights, batch: Any, key: jax.Array) -> tuple[jax.Array, 
 
 
 def _excerpt(squares: Linear, people: NDArray[np.bool_], middle: int) -> Sample:
-    """Cut out the columns round one, over the seam."""
+    """Cut out the columns around a column, across the seam."""
     chosen = np.arange(middle - WIDE // 2, middle + WIDE // 2) % people.shape[1]
     return squares[:, chosen].astype(np.float16), people[:, chosen]
 
 
 def _augment(sequence: PanoramaSequence, rng: np.random.Generator) -> PanoramaSequence:
-    """Permute colours, and swap left and right in half of all sequences: more rooms than were rendered."""
+    """Permute the colour channels, and mirror half of all sequences."""
     images = sequence.images[..., rng.permutation(3)]
     if rng.random() < 0.5:
         return replace(sequence, images=np.ascontiguousarray(images))
@@ -191,7 +191,7 @@ def _augment(sequence: PanoramaSequence, rng: np.random.Generator) -> PanoramaSe
 
 
 def _squares(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Cut a mask (H, W) into squares (H / BLOCK, W / BLOCK, OUTPUTS), whose pixels go row by row."""
+    """Cut a mask (H, W) into squares (H / BLOCK, W / BLOCK, OUTPUTS), with the pixels in row order."""
     height, width = mask.shape
     pixels = mask.reshape(height // BLOCK, BLOCK, width // BLOCK, BLOCK).transpose(0, 2, 1, 3)
     return pixels.reshape(height // BLOCK, width // BLOCK, OUTPUTS)
@@ -199,14 +199,15 @@ def _squares(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 @dataclass(slots=True, kw_only=True)
 class MaskScores:
-    """Sums over images, and errors of single people.
+    """Sums over images, and errors per person.
 
     Attributes:
-        both, either: pixels that are people in truth and as predicted, and those that are one of both.
-        false_px, images: predicted pixels far from any person, and images.
-        foot_px: by how many rows the lowest one is off, positive if it is too low.
-        column_px: by how many columns the mean one is off.
-        found: for each person that was evaluated, whether half of it was predicted.
+        both, either: pixels in the intersection and in the union of true and predicted people.
+        false_px: predicted pixels far from any person.
+        images: number of images.
+        foot_px: error of the lowest row per person, positive if too low [px].
+        column_px: error of the mean column per person [px].
+        found: per evaluated person, whether at least half of the silhouette was predicted.
     """
 
     both: int = 0
@@ -221,13 +222,13 @@ class MaskScores:
         foot, column = _mean_size(self.foot_px), _mean_size(self.column_px)
         return (
             f"overlap {self.both / max(self.either, 1):.3f}, {_mean_size(self.found):.1%} of people found, "
-            f"lowest foot off by {foot:.2f} rows, middle by {column:.2f} columns, "
-            f"{self.false_px / max(self.images, 1):.1f} false pixels an image"
+            f"error of the lowest row {foot:.2f} px, of the middle column {column:.2f} px, "
+            f"{self.false_px / max(self.images, 1):.1f} false pixels per image"
         )
 
 
 def score_masks(sequence: PanoramaSequence, predicted: Iterable[Linear], sums: MaskScores) -> None:
-    """Score probabilities for each image of a sequence, and add to the sums."""
+    """Score the probabilities for each image of a sequence, and add them to the sums."""
     for k, probability in enumerate(predicted):
         _score_image(sums, sequence.person[k], probability > 0.5, np.hypot(*sequence.place_m[k].T))
 
@@ -259,7 +260,7 @@ def _mean_size(values: Sequence[float]) -> float:
 
 
 def _lowest(mask: NDArray[np.bool_]) -> int:
-    """Return the lowest row with two pixels, or with one if no row has more."""
+    """Return the lowest row with at least two pixels, or with one if no row has two."""
     counts = mask.sum(axis=1)
     return int(np.flatnonzero(counts >= min(2, counts.max()))[-1])
 
@@ -270,7 +271,7 @@ def _mean_direction(mask: NDArray[np.bool_]) -> complex:
 
 
 def _dilate(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Grow a mask on all sides, over the seam."""
+    """Dilate a mask on all sides, across the seam."""
     ring = np.pad(mask.astype(np.uint8), ((0, 0), (_REACH_PX, _REACH_PX)), mode="wrap")
     size = 2 * _REACH_PX + 1
     return np.asarray(cv2.dilate(ring, np.ones((size, size), np.uint8))[:, _REACH_PX:-_REACH_PX], np.bool_)

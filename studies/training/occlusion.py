@@ -50,35 +50,36 @@ SCENARIOS = (
     "leader_swap",
     "same_uniform",
 )
-"""Where people occlude each other, and samples come from."""
+"""Scenarios in which people occlude each other, from which samples are collected."""
 
 LEAST = 20
-"""Fewer pairs are not trained on."""
+"""Least number of pairs for training."""
 
-# A tracked person is the true one whose box it overlaps most, and by at least this (thesis, section 3.4).
+# A track matches the true person whose box it overlaps most, by at least this IoU (thesis, section 3.4).
 _LEAST_IOU = 0.5
-# With less than this of a person in view, the moment of total occlusion has come: earlier than in the event
-# log, as so little of a person has no appearance to measure.
+# Visible share below which a person counts as totally occluded. It is higher than in the event log, since
+# appearance cannot be measured on so small a part of a person.
 _TOTAL = 0.15
-# Neither is in front if one occludes less than this share of the other, and their distances differ by less.
+# Neither person is in front if one occludes less than this share of the other and their distances differ by
+# less than this.
 _LEAST_HIDDEN, _LEAST_GAP_M = 0.02, 0.3
-# Frames between two samples of one occlusion, and frames apart after which it is another one.
+# Frames between two samples of one occlusion, and gap in frames after which it counts as a new one.
 _EVERY, _PAUSE = 2, 15
 
 
 PairRow = tuple[int, str, str, Features, bool]
-"""Frame, names of the one and the other, features, and whether the one is in front."""
+"""Frame, names of the first and the second person, features, and whether the first is in front."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PairSamples(Arrays):
-    """N times two overlapping people at one instant.
+    """N pairs of overlapping people.
 
     Attributes:
-        scenario, seed, frame: (N,) where they are from.
-        one, other: (N,) their names.
-        features: (N, 6) the one's minus the other's.
-        is_front: (N,) whether the one is in front.
+        scenario, seed, frame: (N,) origin of the pair.
+        one, other: (N,) names of the two people.
+        features: (N, 6) features of `one` minus those of `other`.
+        is_front: (N,) whether `one` is in front.
     """
 
     scenario: NDArray[np.str_]
@@ -91,7 +92,7 @@ class PairSamples(Arrays):
 
     @classmethod
     def from_rows(cls, scenario: str, seed: int, rows: Sequence[PairRow]) -> "PairSamples":
-        """Take the pairs of a run."""
+        """Build samples from the pairs of a run."""
         frame, one, other, features, is_front = zip(*rows, strict=True) if rows else [()] * 5
         return cls(
             scenario=np.full(len(rows), scenario),
@@ -104,9 +105,9 @@ class PairSamples(Arrays):
         )
 
     def mirror(self) -> tuple[Features, NDArray[np.bool_]]:
-        """Return features (2 N, 6) and labels (2 N,) of all pairs one way round, then of all the other way.
+        """Return features (2 N, 6) and labels (2 N,) of all pairs, followed by those of the swapped pairs.
 
-        So as many are positive as negative (thesis, section 7.4).
+        The classes are therefore balanced (thesis, section 7.4).
         """
         labels = np.concatenate([self.is_front, ~self.is_front])
         return np.concatenate([self.features, -self.features]), labels
@@ -114,12 +115,12 @@ class PairSamples(Arrays):
 
 @dataclass(slots=True)
 class RecordingOrder:
-    """An order of people that answers like another, and keeps what it was asked since `asked` was cleared.
+    """A depth order that delegates to another one and records its inputs.
 
     Attributes:
         remembers_feet: as in `pair_features`.
-        order: that answers.
-        asked: the people who overlap, two by two, with their features.
+        order: the wrapped depth order.
+        asked: recorded pairs of overlapping people with their features; cleared by the caller.
     """
 
     remembers_feet: bool
@@ -127,7 +128,7 @@ class RecordingOrder:
     asked: list[tuple[ExpectedPerson, ExpectedPerson, Features]] = field(default_factory=list)
 
     def __call__(self, figures: Sequence[ExpectedPerson], view: FrameView) -> Leads:
-        """Return who is in front."""
+        """Return whether the first person is in front."""
         seen = [figure for figure in figures if not figure.person.is_hidden]
         if len(seen) > 1:
             pairs = overlapping_pairs(np.stack([figure.state for figure in seen]))
@@ -138,16 +139,16 @@ class RecordingOrder:
 
 @dataclass(slots=True)
 class Episodes:
-    """The occlusions that are going on, by the names of the two."""
+    """Current occlusions, by the names of the two people."""
 
     last_frame: dict[frozenset[str], int] = field(default_factory=dict)
     last_taken: dict[frozenset[str], int] = field(default_factory=dict)
     over: set[frozenset[str]] = field(default_factory=set)
 
     def takes(self, one: PersonTruth, other: PersonTruth, frame: int) -> bool:
-        """Return whether to keep this sample: not every frame, and none from a total occlusion on.
+        """Return whether to keep this sample: not in every frame, and not after a total occlusion.
 
-        Source: thesis, section 7.4: only what precedes the moment of total occlusion.
+        Source: thesis, section 7.4: only frames before the moment of total occlusion.
         """
         pair = frozenset((one.name, other.name))
         if frame - self.last_frame.get(pair, frame) > _PAUSE:
@@ -162,7 +163,7 @@ class Episodes:
 
 
 def is_in_front(one: PersonTruth, other: PersonTruth) -> bool | None:
-    """Tell whether the one is in front: it hides more of the other, or is clearly nearer; None if neither."""
+    """Return whether the first occludes more of the second, or is clearly nearer; None if undecided."""
     hides = other.hidden_by.get(one.name, 0.0) - one.hidden_by.get(other.name, 0.0)
     if abs(hides) >= _LEAST_HIDDEN:
         return hides > 0.0
@@ -171,12 +172,12 @@ def is_in_front(one: PersonTruth, other: PersonTruth) -> bool | None:
 
 
 def collect_pairs(scenario: str, seed: int, config: TrackerConfig) -> PairSamples:
-    """Run a tracker through a scenario, and keep what it measures of people who overlap.
+    """Run a tracker through a scenario, and collect its features of overlapping people.
 
     Raises:
         BadInput: an unknown scenario.
     """
-    from peopleboy.sim.world import World  # here, as samples that are there can be read without PyBullet
+    from peopleboy.sim.world import World  # imported late: reading existing samples does not need PyBullet
 
     loaded = load_scenario(scenario)
     order, episodes = RecordingOrder(config.depth.remembers_feet), Episodes()
@@ -197,7 +198,7 @@ def collect_pairs(scenario: str, seed: int, config: TrackerConfig) -> PairSample
 
 
 def _true_person(figure: ExpectedPerson, people: Sequence[PersonTruth]) -> PersonTruth | None:
-    """Return the person whose box a tracked one overlaps most; None if it overlaps none enough."""
+    """Return the person whose box a track overlaps most; None if the overlap is too small."""
     boxed = [person for person in people if person.box is not None]
     if not boxed:
         return None
@@ -207,13 +208,13 @@ def _true_person(figure: ExpectedPerson, people: Sequence[PersonTruth]) -> Perso
 
 
 def accuracy(table: LearnedTable, samples: PairSamples) -> float:
-    """Return the share of right answers [%] among pairs and their mirror images; no answer counts half."""
+    """Return the accuracy [%] on pairs and swapped pairs; an undecided answer counts half."""
     features, is_front = samples.mirror()
     return share_right(LearnedOrder.build(table).lead(features), is_front)
 
 
 def share_right(lead: Features, is_front: NDArray[np.bool_]) -> float:
-    """Return the share of right answers [%]; no answer counts half, NaN without any question."""
+    """Return the accuracy [%]; an undecided answer counts half; NaN without samples."""
     if len(lead) == 0:
         return float("nan")
     right = np.where(is_front, lead, -lead)
@@ -221,21 +222,21 @@ def share_right(lead: Features, is_front: NDArray[np.bool_]) -> float:
 
 
 TRACKERS: dict[str, TrackerConfig] = {"contour": CONTOUR, "thesis": THESIS_OCCLUSION}
-"""The trackers that order people by a learned table, by name."""
+"""The trackers that order people by a learned classifier, by name."""
 
 ROUNDS = 40
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OcclusionTraining(Specification[PairSamples]):
-    """Train on pairs of people that overlap in scenarios, as a tracker measures them.
+    """Train on pairs of overlapping people in scenarios, with the features that a tracker measures.
 
-    The table of the tracker of that name is trained on all pairs. It is evaluated on each scenario by a table
-    that was trained on the others.
+    The tracker's classifier is trained on all pairs. It is evaluated by cross-validation: on each scenario,
+    after training on the others.
     """
 
     SHIPPED_IN: ClassVar[Path] = TABLES
-    HINT: ClassVar[str] = "`peopleboy reproduce 7.1 7.2 7.3 7.4` measures it by the thesis's experiments"
+    HINT: ClassVar[str] = "`peopleboy reproduce 7.1 7.2 7.3 7.4` evaluates it in the thesis's experiments"
 
     sequences: Annotated[
         int, Field(ge=1, alias="seeds", description="Number of seeds, each a run of every scenario.")
@@ -243,7 +244,7 @@ class OcclusionTraining(Specification[PairSamples]):
     tracker: Annotated[Literal["contour", "thesis"], Field(description="Tracker to train.")] = "contour"
 
     def default_folder(self, model: str) -> Path:
-        """Return a folder of the tracker's own, since each measures other features."""
+        """Return a separate folder for each tracker, since their features differ."""
         return Path("runs") / f"{model}-{self.tracker}"
 
     def tasks(self, out: Path) -> Tasks:
@@ -263,28 +264,28 @@ class OcclusionTraining(Specification[PairSamples]):
         return load_samples(PairSamples, tasks.training)
 
     def fit(self, data: PairSamples) -> Mapping[str, LearnedTable]:
-        """Boost weighted pairs of features."""
+        """Train the classifier by AdaBoost."""
         if len(data) < LEAST:
-            raise BadInput(f"{len(data)} pairs: at least {LEAST} are needed; take more sequences")
+            raise BadInput(f"{len(data)} pairs: at least {LEAST} are needed; use more sequences")
         with Console(stderr=True).status("training"):
             table = boost(*data.mirror())
         listed = ", ".join(f"{name} {count}" for name, count in Counter(data.scenario.tolist()).items())
         about = {
-            "trained on": f"{len(data)} pairs and their mirror images: {listed}",
+            "trained on": f"{len(data)} pairs and the swapped pairs: {listed}",
             "weak classifiers": "weighted pairs of the six features (thesis, equation 7.4)",
         }
         return {f"{self.tracker}.yaml": replace(table, about=about)}
 
     def evaluate(self, model: LearnedTable, data: PairSamples) -> Mapping[str, str]:
-        """Measure the share of right answers."""
+        """Measure the accuracy on the training samples, and by cross-validation."""
         return {
-            "right on those": f"{accuracy(model, data):.1f} %",
-            "right on each scenario, trained on the others": f"{cross_accuracy(data):.1f} %",
+            "training accuracy": f"{accuracy(model, data):.1f} %",
+            "accuracy on each scenario, trained on the others": f"{cross_accuracy(data):.1f} %",
         }
 
 
 def cross_accuracy(samples: PairSamples, rounds: int = ROUNDS) -> float:
-    """Leave one scenario out after the other, and return the share of right answers [%] on all of them."""
+    """Return the accuracy [%] of a cross-validation that leaves out one scenario at a time."""
     right = 0.0
     for name, count in Counter(samples.scenario.tolist()).items():
         is_left_out = samples.scenario == name
@@ -306,14 +307,14 @@ def boost(
     """Boost weak classifiers on pairs of people.
 
     Args:
-        features: (N, 6) of pairs.
-        is_front: (N,) whether the one is in front of the other.
-        most: how many features a weak classifier may add up.
-        rounds: how many weak classifiers to choose.
-        uses: names of the features to train on.
+        features: (N, 6) features of the pairs.
+        is_front: (N,) whether the first person is in front.
+        most: largest number of features that a weak classifier sums.
+        rounds: number of weak classifiers.
+        uses: names of the features to use.
 
-    Raises:
-        BadInput: samples in which all these features are 0.
+        Raises:
+            BadInput: all these features are 0 in all samples.
 
     Source: thesis, algorithm 5.
     """
@@ -325,7 +326,7 @@ def boost(
     sums, counts = SortedSums.build(samples, weights), np.full(len(samples), 1.0 / len(samples))
     chosen: list[WeakClassifier] = []
     for _ in range(rounds):
-        counts = np.maximum(counts, np.finfo(np.float64).eps)  # what counts nothing would never count again
+        counts = np.maximum(counts, np.finfo(np.float64).eps)  # a weight of 0 would remain 0
         stump = best_stump(sums, is_front, counts)
         answer = stump.parity * (samples @ weights[stump.row]) < stump.parity * stump.threshold
         error = float(np.average(answer != is_front, weights=counts))

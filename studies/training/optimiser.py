@@ -1,4 +1,4 @@
-"""The optimiser of all networks: Adam by JAX and Optax, which a running tracker does without."""
+"""Optimiser of all networks: Adam with JAX and Optax, which are needed for training only."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator
@@ -14,30 +14,30 @@ Floats = NDArray[np.float32]
 Weights = dict[str, Any]
 """Arrays by name."""
 Loss = Callable[[Weights, Any, jax.Array], tuple[jax.Array, dict[str, jax.Array]]]
-"""Of weights, a batch and a random key: what is minimised, and results to report by name."""
+"""Function of weights, a batch and a random key that returns the loss, and results to report by name."""
 
-_LEAST_SHARE: Final = 0.002  # of a step's weights in the average (Polyak and Juditsky 1992)
-_WARM_UP: Final = 9.0  # steps, so that the n-th has a share of 9 / (9 + n) at first
+_LEAST_SHARE: Final = 0.002  # of the latest weights in the running average (Polyak and Juditsky 1992)
+_WARM_UP: Final = 9.0  # at first the weights of step n have a share of 9 / (9 + n)
 
 
 class Optimiser:
-    """Weights that are trained step by step.
+    """Optimiser of a network's weights.
 
     Attributes:
-        steps: taken so far.
+        steps: number of steps so far.
     """
 
     def __init__(
         self, loss: Loss, weights: Weights, *, seed: int = 0, decay: float = 0.0, averages: bool = False
     ) -> None:
-        """Begin with some weights.
+        """Initialise the optimiser.
 
         Args:
-            loss: to minimise.
-            weights: to begin with.
-            seed: of the keys that the loss gets.
-            decay: share of the rate by which matrices shrink in each step (AdamW, ICLR 2019).
-            averages: whether the result is a running average of the weights of all steps.
+            loss: loss to minimise.
+            weights: initial weights.
+            seed: seed of the random keys that are passed to the loss.
+            decay: weight decay of matrices, relative to the learning rate (AdamW, ICLR 2019).
+            averages: whether the result is a running average of the weights.
         """
         self.steps = 0
         self._weights: Weights = {name: jnp.asarray(array) for name, array in weights.items()}
@@ -56,7 +56,7 @@ class Optimiser:
         self._step = jax.jit(step)
 
     def step(self, batch: Any, rate: float) -> dict[str, float]:
-        """Take a step of a learning rate on a batch; return the results of the loss."""
+        """Take a step on a batch with a learning rate, and return the results of the loss."""
         self.steps += 1
         key = jax.random.fold_in(self._key, self.steps)
         self._weights, self._state, results = self._step(self._weights, self._state, batch, key, rate)
@@ -74,23 +74,23 @@ class Optimiser:
 
     @property
     def weights(self) -> dict[str, Floats]:
-        """The weights, or their average."""
+        """The weights, or their running average."""
         kept = self._weights if self._average is None else self._average
         return {name: np.array(array) for name, array in kept.items()}
 
 
 def shuffled(count: int, size: int, rng: np.random.Generator) -> Iterator[NDArray[np.int64]]:
-    """Yield the rows of whole batches of so many samples, in a random order."""
+    """Yield the row numbers of full batches, in random order."""
     order = rng.permutation(count)
     for begin in range(0, count - size + 1, size):
         yield order[begin : begin + size]
 
 
 def he_weights(rng: np.random.Generator, shape: tuple[int, ...], inputs: int) -> Floats:
-    """Draw first weights for rectified linear units with so many inputs (He et al., ICCV 2015)."""
+    """Draw initial weights for rectified linear units (He et al., ICCV 2015)."""
     return (rng.standard_normal(shape) * math.sqrt(2.0 / inputs)).astype(np.float32)
 
 
 def huber(off: jax.Array, linear_from: float) -> jax.Array:
-    """Return half of squares, that go on as lines from some value on (Huber 1964)."""
+    """Return the Huber loss: half the square, continued linearly beyond a threshold (Huber 1964)."""
     return jnp.where(off < linear_from, 0.5 * off * off, linear_from * (off - 0.5 * linear_from))

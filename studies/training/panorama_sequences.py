@@ -1,4 +1,4 @@
-"""Rendered sequences of the panoramic camera, with the truth about every pixel."""
+"""Rendered sequences of the panoramic camera, with ground truth for every pixel."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,14 +25,14 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PanoramaSequence(Arrays):
-    """The images of one run, with the truth about them.
+    """The images of one run, with ground truth.
 
     Attributes:
         images: (N, H, W, 3) uint8 RGB.
         person: (N, H, W) uint8 number of the person at each pixel, 0 for none.
-        time_s: (N,) of the images [s].
-        motion: (N, 3) forward [m], to the left [m] and turn [rad] since the image before, by odometry.
-        place_m: (N, P, 2) where people 1, 2, ... stand in the robot's frame [m]; NaN while they are away.
+        time_s: (N,) times of the images [s].
+        motion: (N, 3) motion since the previous image by odometry: forward [m], left [m], rotation [rad].
+        place_m: (N, P, 2) positions of people 1, 2, ... in the robot's frame [m]; NaN while they are absent.
     """
 
     # A hundred sequences of 10 MB are read in each round of training.
@@ -46,11 +46,11 @@ class PanoramaSequence(Arrays):
 
     @property
     def is_driven(self) -> bool:
-        """Whether the robot moves by more than its wheels' noise."""
+        """Whether the robot moves by more than the odometry noise."""
         return bool(np.abs(self.motion).sum() > 0.05)
 
     def odometry(self, k: int) -> Odometry | None:
-        """Return how the robot moved before image k; None for the first."""
+        """Return the robot's motion before image k; None for the first image."""
         if k == 0:
             return None
         advance, aside, turn = self.motion[k].tolist()
@@ -58,7 +58,7 @@ class PanoramaSequence(Arrays):
 
 
 def render_panoramas(scenario: Scenario, seed: int) -> PanoramaSequence:
-    """Render a scenario with the panoramic camera; other cameras' images are never made.
+    """Render a scenario with the panoramic camera; other cameras are not rendered.
 
     Raises:
         BadInput: the robot needs images to drive.
@@ -79,7 +79,7 @@ def render_panoramas(scenario: Scenario, seed: int) -> PanoramaSequence:
 
 
 def render_random_scene(folder: Path, seed: int) -> PanoramaSequence:
-    """Draw the scene of a seed, leave its scenario in the folder, and render it."""
+    """Draw the scene of a seed, write its scenario to the folder, and render it."""
     path = scenario_path(folder, seed)
     with atomic(path) as part:
         part.write_text(yaml.safe_dump(random_scene(seed), sort_keys=False), encoding="utf-8")
@@ -87,7 +87,7 @@ def render_random_scene(folder: Path, seed: int) -> PanoramaSequence:
 
 
 def scenario_path(folder: Path, seed: int) -> Path:
-    """Return the path of the scenario of a seed."""
+    """Return the path of the scenario file of a seed."""
     return folder / f"scene_{seed}.yaml"
 
 
@@ -97,7 +97,7 @@ def render_task(folder: Path, seed: int) -> SampleTask:
 
 
 def scene_calibration(task: SampleTask) -> PanoramaCalibration:
-    """Return the calibration of the camera that rendered the scene of a task that is done."""
+    """Return the calibration of the camera that rendered the scene of a completed task."""
     folder, seed = task.arguments
     return panorama_calibration(load_scenario(scenario_path(folder, seed)), seed)
 
@@ -107,7 +107,7 @@ def panorama_calibration(scenario: Scenario, seed: int) -> PanoramaCalibration:
     cameras = scenario.mounting((PANORAMA,)).world(seed).robot.cameras
     calibration = calibrations_of(cameras)[PANORAMA]
     if not isinstance(calibration, PanoramaCalibration):
-        raise TypeError(f"{scenario.name}: camera {PANORAMA} is no panoramic one")
+        raise TypeError(f"{scenario.name}: camera {PANORAMA} is not panoramic")
     return calibration
 
 

@@ -1,4 +1,4 @@
-"""Train the networks on patches of panoramas: whether a person is there, where, and how sure that is."""
+"""Train the networks on patches of panoramas: presence of a person, position, and its uncertainty."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -40,25 +40,25 @@ from peopleboy.tracker.panoramic.people_foreground import Foreground
 Floats = NDArray[np.float64]
 
 LIBRARY: Final = {"room_long": 12, "panoramic_crossing": 10, "panoramic_moving": 14}
-"""Runs of scenarios of the library, which are trained on, too."""
+"""Scenarios of the library that are used for training, too, with their seeds."""
 VALIDATION: Final = 20
-"""Scenes of the validation split: the first ones."""
+"""Number of scenes of the validation split, which have the first seeds."""
 
 IMAGES: Final = 300
-"""At most so many images of a sequence are sampled, and at most half of them; all are played."""
+"""Largest number of sampled images per sequence, at most half of them; the tracker runs on all images."""
 
 NEAREST_M: Final = 0.8
 FARTHEST_M: Final = 8.0
 LEAST_PX: Final = 10
 BLIND_SHARE: Final = 0.7
-"""A person that is nearer, farther, smaller, or occluded more is neither positive nor negative."""
+"""People who are nearer, farther, smaller, or occluded more are neither positives nor negatives."""
 
 NEAR_M: Final = 0.42
 APART_M: Final = 0.6
-"""Within the first of these from a person a place is positive; beyond the second from all, negative."""
+"""Places nearer than the first to a person are positives; farther than the second from all, negatives."""
 
 _SPREADS: Final = ((0.05, 0.03), (0.18, 0.1), (0.18, 0.1))
-"""Deviations, away and across, of the places that are sampled round a person: nearly right, and expected."""
+"""Standard deviations of places sampled around a person, along and across the line of sight."""
 
 _WARM_UP_S: Final = 0.5
 
@@ -68,9 +68,10 @@ class PlaceSamples(Arrays):
     """N samples.
 
     Attributes:
-        patches: (N, PATCH) of the panorama.
-        distance_m: (N,) of the place that is evaluated.
-        offset_m: (N, 2) where the person is from there, farther away and to the left; NaN for a negative.
+        patches: (N, PATCH) patches of the panorama.
+        distance_m: (N,) distance of the evaluated place.
+        offset_m: (N, 2) position of the person relative to it, away from the camera and to the left; NaN for
+            a negative.
     """
 
     patches: NDArray[np.float16]
@@ -79,12 +80,12 @@ class PlaceSamples(Arrays):
 
     @property
     def inputs(self) -> Map:
-        """Inputs of the networks, (N, INPUTS)."""
+        """Inputs (N, INPUTS) of the networks."""
         return with_distance(self.patches.astype(np.float32), self.distance_m)
 
     @property
     def is_person(self) -> NDArray[np.bool_]:
-        """Whether a person is there, (N,)."""
+        """Labels (N,): whether a person is present."""
         return ~np.isnan(self.offset_m[:, 0])
 
 
@@ -92,7 +93,7 @@ _NONE: Final = PlaceSamples(np.zeros((0, PATCH), np.float16), np.zeros(0), np.ze
 
 
 class _Standing(NamedTuple):
-    """A person in an image: number, place (2,) and its polar form, and how many pixels show it."""
+    """A person in an image: number, place (2,) and its polar form, and number of visible pixels."""
 
     number: int
     place_m: tuple[float, float]
@@ -108,7 +109,7 @@ class _Standing(NamedTuple):
 
 
 def sample_places(sequence: PanoramaSequence, calibration: PanoramaCalibration, seed: int) -> PlaceSamples:
-    """Play a sequence to the tracker's foreground, and keep patches at and beside people."""
+    """Run the tracker's foreground segmentation on a sequence, and collect patches at and beside people."""
     rng, foreground = np.random.default_rng((seed, 2003)), Foreground()
     parts = [_NONE]
     every = max(2, math.ceil(len(sequence.images) / IMAGES))
@@ -122,7 +123,7 @@ def sample_places(sequence: PanoramaSequence, calibration: PanoramaCalibration, 
 
 
 def _people(sequence: PanoramaSequence, k: int) -> list[_Standing]:
-    """List the people that are there, the nearest first."""
+    """Return the people in an image, the nearest first."""
     pixels = np.bincount(sequence.person[k].ravel(), minlength=len(sequence.place_m[k]) + 1)
     found = [
         _Standing(number + 1, (x, y), int(pixels[number + 1]))
@@ -135,7 +136,7 @@ def _people(sequence: PanoramaSequence, k: int) -> list[_Standing]:
 def _sample_image(
     scene: PanoramaScene, people: Sequence[_Standing], rng: np.random.Generator
 ) -> Iterator[PlaceSamples]:
-    """Search an image as the tracker does: nearest first, covering those that are found, then newcomers."""
+    """Search an image like the tracker: nearest people first, masking those found, then new people."""
     yield _sample(scene, promising_places(scene.figures, 3), people)
     for one in people:
         yield _sample(scene, _beside(one, rng), people)
@@ -151,7 +152,7 @@ def _sample_image(
 
 
 def _sample(scene: PanoramaScene, polar: Floats, people: Sequence[_Standing]) -> PlaceSamples:
-    """Label places (N, 2), bearing and distance; what is neither clearly a person nor none is left out."""
+    """Label places (N, 2), bearing and distance; ambiguous places are left out."""
     places = polar[:, 1:] * np.stack([np.cos(polar[:, 0]), np.sin(polar[:, 0])], axis=1)
     offset, is_sure = np.full((len(polar), 2), np.nan), np.ones(len(polar), np.bool_)
     for one in people:
@@ -177,7 +178,7 @@ def _offsets(polar: Floats, one: _Standing) -> Floats:
 
 
 def _around(one: _Standing, rng: np.random.Generator) -> Floats:
-    """Draw places (N, 2), bearing and distance, at which a person that is here may be expected."""
+    """Draw places (N, 2), bearing and distance, at which a tracker may predict a person."""
     off = rng.normal(0.0, 1.0, (len(_SPREADS), 2)) * _SPREADS
     off = np.clip(off, -0.3, 0.3)
     distance = np.maximum(one.distance_m + off[:, 0], 0.6)
@@ -185,7 +186,7 @@ def _around(one: _Standing, rng: np.random.Generator) -> Floats:
 
 
 def _beside(one: _Standing, rng: np.random.Generator) -> Floats:
-    """Draw places beside, before and behind a person, and one anywhere."""
+    """Draw places beside, in front of and behind a person, and one random place."""
     side, depth = rng.choice([-1.0, 1.0], 2)
     beside = one.bearing_rad + side * rng.uniform(0.55, 1.2) / one.distance_m, one.distance_m
     behind = one.bearing_rad + rng.normal(0.0, 0.05), one.distance_m + depth * rng.uniform(0.65, 2.5)
@@ -196,7 +197,7 @@ def _beside(one: _Standing, rng: np.random.Generator) -> Floats:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlacesTraining(Specification[Split[PlaceSamples]]):
-    """Train on scenes drawn at random, after `peopleboy train foreground --ship`, which it builds on."""
+    """Train on random scenes; run `peopleboy train foreground --ship` first, whose network it uses."""
 
     sequences: Annotated[
         int, Field(ge=2, alias="seeds", description="Number of random scenes to train on.")
@@ -206,7 +207,7 @@ class PlacesTraining(Specification[Split[PlaceSamples]]):
     ] = Path("runs/foreground/sequences")
 
     def tasks(self, out: Path) -> Tasks:
-        """Render scenes and sample them; samples depend on the foreground network."""
+        """Render scenes and collect samples; these depend on the foreground network."""
         with writing_to(self.rendered, "--rendered"):
             self.rendered.mkdir(parents=True, exist_ok=True)
         folder = sample_folder(out, Path(__file__), SHIPPED / FOREGROUND)
@@ -228,28 +229,28 @@ class PlacesTraining(Specification[Split[PlaceSamples]]):
         samples, people = data.training, int(data.training.is_person.sum())
         calibration = panorama_calibration(load_scenario(next(iter(LIBRARY))), FIRST_SEED)
         about = {
-            "trained on": f"{people} patches of people and {len(samples) - people} of none, "
-            f"in {self.sequences} scenes drawn at random, and {', '.join(LIBRARY)}, seeds from {FIRST_SEED}"
+            "trained on": f"{people} patches with people and {len(samples) - people} without, "
+            f"from {self.sequences} random scenes, and {', '.join(LIBRARY)}, seeds from {FIRST_SEED}"
         }
         view = view_of(calibration, calibration.width, calibration.height)
         return {FILE: replace(fit_places(samples, view), about=about)}
 
     def evaluate(self, model: PlaceModel, data: Split[PlaceSamples]) -> Mapping[str, str]:
-        """Measure offsets, their deviations, and presence."""
+        """Evaluate offsets, their predicted deviations, and presence."""
         samples = data.validation
         found = model.look(samples.patches.astype(np.float32), samples.distance_m)
         is_person, is_found = samples.is_person, found.evidence > 0
         along, across = np.abs(found.offset_m - samples.offset_m)[is_person].mean(axis=0)
         squared = ((found.offset_m - samples.offset_m) / found.deviation_m)[is_person] ** 2
         return {
-            "on other scenes": f"off by {along:.3f} m in distance and {across:.3f} m across, squared error "
+            "on other scenes": f"error {along:.3f} m in distance and {across:.3f} m across, squared error "
             f"over predicted variance {squared.mean():.2f}; people found {is_found[is_person].mean():.1%}, "
             f"false positives {is_found[~is_person].mean():.1%}"
         }
 
 
 def collect_places(scenario: str, seed: int, rendered: Path) -> PlaceSamples:
-    """Sample a scenario of the library, or a scene drawn at random, which is rendered unless it is there."""
+    """Sample a scenario of the library, or a random scene, which is rendered unless its file exists."""
     if scenario:
         loaded = load_scenario(scenario)
         sequence = render_panoramas(loaded, seed)
@@ -262,13 +263,13 @@ def collect_places(scenario: str, seed: int, rendered: Path) -> PlaceSamples:
 
 
 class DenseRecipe(NamedTuple):
-    """How a dense network is trained.
+    """Hyperparameters for training a dense network.
 
     Attributes:
-        units: of the hidden layers.
-        epochs: of full rate, followed by a quarter as many with a tenth of it.
-        rate: of learning.
-        shrinkage: weight of the squared weights in the loss of all samples.
+        units: units of the hidden layers.
+        epochs: epochs at full learning rate, followed by a quarter as many at a tenth of it.
+        rate: learning rate.
+        shrinkage: weight of the squared weights in the loss over all samples.
     """
 
     units: tuple[int, ...]
@@ -283,18 +284,19 @@ DOUBT: Final = DenseRecipe((24,), 8, 2e-3, 1e-2)
 _BATCH: Final = 200
 _LEAST_ERROR_M: Final = 1e-3
 _LOG_OF_NORMAL: Final = 0.6352
-"""Minus the mean of log |e| for a normal e of deviation 1."""
+"""Minus the mean of log |e| for a standard normal e."""
 
 
 def fit_places(samples: PlaceSamples, view: PanoramaView, *, seed: int = 0) -> PlaceModel:
-    """Train where people are, how sure that is, and whether they are there.
+    """Train the networks for position, uncertainty and presence.
 
-    How sure it is, is trained on the errors on that half of the samples that a network was not trained on.
+    The uncertainty is trained by cross-validation: each half of the samples is predicted by a network that
+    was trained on the other half.
 
     Args:
-        samples: in the order in which they were collected, so that halves have other scenes.
-        view: of the camera that they are of.
-        seed: draws first weights and order.
+        samples: samples in the order of collection, so that the halves contain different scenes.
+        view: view of the camera of the samples.
+        seed: seed of the initial weights and the order of samples.
     """
     inputs, is_person = samples.inputs, samples.is_person
     people, offset = inputs[is_person], samples.offset_m[is_person]
@@ -318,7 +320,7 @@ def fit_dense(
     targets: NDArray[Any],
     seed: int,
 ) -> DenseNetwork:
-    """Train a dense network to lower an error of outputs and targets (N, outputs), summed over outputs."""
+    """Train a dense network to minimise an error of outputs and targets (N, outputs), summed over outputs."""
     rng, targets = np.random.default_rng(seed), targets.astype(np.float32)
     widths, size = (inputs.shape[1], *recipe.units, targets.shape[1]), min(_BATCH, len(inputs))
     optimiser = Optimiser(
@@ -332,7 +334,7 @@ def fit_dense(
 
 
 def _glorot(widths: Sequence[int], rng: np.random.Generator) -> Weights:
-    """Draw first weights (Glorot and Bengio, AISTATS 2010)."""
+    """Draw initial weights (Glorot and Bengio, AISTATS 2010)."""
     weights: Weights = {}
     for k, (before, after) in enumerate(pairwise(widths)):
         limit = math.sqrt(6.0 / (before + after))

@@ -1,4 +1,4 @@
-"""Scenes to train on: places, things, people and drives drawn at random, as scenario data."""
+"""Training scenes: random places, objects, people and drives, as scenario data."""
 
 from functools import partial
 from typing import Final
@@ -16,10 +16,10 @@ from peopleboy.scenarios.random_worlds.draw_scene import (
 Draw = np.random.Generator
 
 FIRST_SEED: Final = 100
-"""Scenes to train on have seeds from here on; those of the validation split have the first ones."""
+"""First seed of the training scenes; the validation split has the seeds below it."""
 
 IMAGES: Final = {3: 60, 5: 60, 15: 90}
-"""How many images a scene has, by the camera's rate [Hz]."""
+"""Number of images of a scene; the duration depends on the camera's rate [Hz]."""
 
 _STANDING: Final = (
     "cabinet", "table", "chair", "block", "pillar", "round_pillar", "plant", "floor_lamp", "robot",
@@ -32,20 +32,20 @@ _LENGTHS: Final = {
 
 
 def random_scene(seed: int, camera: str = "panorama") -> Data:
-    """Draw a scene: the data of a scenario file, the same for the same seed.
+    """Draw a scene, the data of a scenario file. Equal seeds give equal scenes.
 
-    Every other scene's robot drives; one to four people walk or stand about.
+    The robot drives in every other scene; one to four people walk or stand.
 
     Args:
-        seed: of all that is drawn.
-        camera: kind of the camera that renders it.
+        seed: seed of everything that is drawn.
+        camera: kind of the camera that renders the scene.
     """
     rng = np.random.default_rng((seed, 2003))
     rate = int(rng.choice(list(IMAGES), p=[0.3, 0.2, 0.5]))
     duration_s = IMAGES[rate] / rate
     scene: Data = {
         "name": f"scene_{seed}",
-        "description": "A scene drawn at random, to train on.",
+        "description": "A random scene for training.",
         "duration_s": duration_s,
         "clothes_differ": bool(rng.random() < 0.5),
         "lights": [{"at_s": 0.0, "level": rounded(rng.uniform(0.55, 1.1))}],
@@ -60,7 +60,7 @@ def random_scene(seed: int, camera: str = "panorama") -> Data:
 
 
 def _stage(rng: Draw, camera: str, rate: int, duration_s: float) -> Data:
-    """Draw a place, and a robot in it that stands, or drives as it likes."""
+    """Draw a place with a robot that stands, or drives at random."""
     place = _place(rng)
     robot: Data = {
         "at_m": _point(rng, place),
@@ -82,7 +82,7 @@ def _place(rng: Draw) -> Data:
 
 
 def _drive(rng: Draw, duration_s: float) -> list[Data]:
-    """Draw commands: straight on, turning on the spot, curves, and stops."""
+    """Draw commands: straight motion, turns on the spot, curves, and stops."""
     commands, at = [], float(rng.uniform(0.0, 1.0))
     while at < duration_s:
         ways = rng.choice(["straight", "turn", "curve", "stop"], p=[0.3, 0.2, 0.4, 0.1])
@@ -130,7 +130,7 @@ def _waypoint(rng: Draw, place: Data) -> Data:
 
 
 def _point(rng: Draw, place: Data) -> list[float]:
-    """Draw a point of the rectangle round the place; whether it is floor, the reader of the scene checks."""
+    """Draw a point in the bounding rectangle of the place; parsing the scene checks whether it is floor."""
     long = sum(place.get(key, 0.0) for key in ("length_m", "first_m", "stem_m"))
     side = max(place["width_m"], place.get("second_m", 0.0), place.get("bar_m", 0.0))
     return [rounded(rng.uniform(0.3, long - 0.3)), rounded((rng.random() - 0.5) * side)]

@@ -1,4 +1,4 @@
-"""Samples to train on: arrays in files, and the tasks that collect them, sequence by sequence."""
+"""Training samples: arrays in files, and the tasks that collect them, one per sequence."""
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
@@ -29,26 +29,26 @@ class Arrays:
         return {each.name: getattr(self, each.name) for each in fields(self)}
 
     def save(self, path: Path) -> None:
-        """Write the arrays, whole or not at all."""
+        """Write the arrays atomically."""
         write: Callable[..., None] = np.savez_compressed if self.IS_COMPRESSED else np.savez
         with atomic(path) as part, part.open("wb") as file:
             write(file, **self.arrays())
 
     @classmethod
     def load(cls, path: Path) -> Self:
-        """Read such arrays."""
+        """Read arrays from a file."""
         with np.load(path, allow_pickle=False) as arrays:
             return cls(**arrays)
 
     @classmethod
     def join(cls, parts: Sequence[Self]) -> Self:
-        """Concatenate at least one part, array by array."""
+        """Concatenate one or more parts, array by array."""
         return cls(
             **{each.name: np.concatenate([getattr(one, each.name) for one in parts]) for each in fields(cls)}
         )
 
     def take(self, rows: NDArray[Any]) -> Self:
-        """Return some rows of samples, whose arrays all have as many, by number or by a mask."""
+        """Select rows of all arrays, by index or by mask; all arrays must have the same length."""
         return type(self)(**{name: array[rows] for name, array in self.arrays().items()})
 
     def to_plain(self) -> dict[str, Any]:
@@ -57,7 +57,7 @@ class Arrays:
 
     @classmethod
     def from_plain(cls, plain: Mapping[str, Any]) -> Self:
-        """Make arrays of plain data, equal to the last digit."""
+        """Restore the arrays from plain data exactly."""
         return cls(**{name: np.array(one, kind).reshape(shape) for name, (kind, shape, one) in plain.items()})
 
 
@@ -66,7 +66,7 @@ Part = TypeVar("Part")
 
 
 class Split(NamedTuple, Generic[Part]):
-    """What a model is trained on, and what it is evaluated on."""
+    """Training and validation split."""
 
     training: Part
     validation: Part
@@ -74,12 +74,12 @@ class Split(NamedTuple, Generic[Part]):
 
 @dataclass(frozen=True, slots=True)
 class SampleTask:
-    """Collect the samples of one sequence, and leave them in a file.
+    """Collect the samples of one sequence, and write them to a file.
 
     Attributes:
-        path: of the file.
-        collect: a function of a module, so that it can be sent to another process.
-        arguments: of the function.
+        path: path of the file.
+        collect: a module-level function, so that it can be pickled for another process.
+        arguments: its arguments.
     """
 
     path: Path
@@ -89,7 +89,7 @@ class SampleTask:
 
     @property
     def name(self) -> str:
-        """Which sequence."""
+        """Name of the sequence."""
         return self.path.stem
 
     def __call__(self, tell: Tell) -> None:  # noqa: ARG002
@@ -101,12 +101,12 @@ Tasks = Split[list[SampleTask]]
 
 
 def sample_folder(out: Path, *further: Path) -> Path:
-    """Return a folder in which all samples come from the code, and from other files, as they are now."""
+    """Return a folder for samples that depends on the current code, and on the content of other files."""
     return out / f"samples-{code_digest(*further)}"
 
 
 def collect_missing(tasks: Tasks, workers: Workers) -> None:
-    """Collect the samples of all tasks whose files are not there, so that a killed call resumes.
+    """Collect the samples of all tasks whose files are missing, so that an interrupted run resumes.
 
     Raises:
         BadInput: a path that cannot be used.
@@ -122,9 +122,9 @@ def collect_missing(tasks: Tasks, workers: Workers) -> None:
     finally:
         for folder in folders:
             with suppress(OSError):
-                folder.rmdir()  # which refuses, unless nothing was left there
+                folder.rmdir()  # fails unless the folder is empty
 
 
 def load_samples(kind: type[AnyArrays], tasks: Sequence[SampleTask]) -> AnyArrays:
-    """Read the samples of tasks that are done."""
+    """Read the samples of completed tasks."""
     return kind.join([kind.load(task.path) for task in tasks])

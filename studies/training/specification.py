@@ -1,4 +1,4 @@
-"""What a model is trained on and how, and the one procedure that trains all of them."""
+"""Training specifications of the learned models, and the procedure that trains each of them."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -43,14 +43,14 @@ MODELS: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "distance": (
         "distance:DistanceTraining",
-        "Network of the tracker panoramic-paper: how far away a person in the panorama is.",
+        "Network of the tracker panoramic-paper: distance of a person in the panorama.",
     ),
     "windows": (
         "windows:WindowsTraining",
         "Support vector machines of the tracker rgbd: whether a window shows a person.",
     ),
 }
-"""For each model, where its specification is and what the model does."""
+"""For each model, the location of its specification and a description."""
 
 _PACKAGES: Final = {"jax": "jax", "optax": "optax", "sklearn": "scikit-learn"}  # of the extra `train`
 
@@ -59,32 +59,32 @@ Data = TypeVar("Data")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Specification(ABC, Generic[Data]):
-    """A model's training: its fields are the options, its methods are the steps.
+    """Specification of a model's training: its fields are the options, its methods are the steps.
 
-    Every model has an option `sequences`, how many are rendered or run to train on. A trained model is a
-    dataclass with `about`, which is for the reader of its file, and `save(path)`.
+    Every model has an option `sequences`, the number of sequences to render or run for training. A trained
+    model is a dataclass with `about`, a description that is stored in its file, and `save(path)`.
     """
 
     SHIPPED_IN: ClassVar[Path] = SHIPPED
     HINT: ClassVar[str] = ""
-    """What to do next, printed after training."""
+    """Next step for the user, printed after training."""
 
     sequences: int
 
     def default_folder(self, model: str) -> Path:
-        """Return the folder of samples and weights if none is given."""
+        """Return the default folder of samples and weights."""
         return Path("runs") / model
 
     @abstractmethod
     def tasks(self, out: Path) -> Tasks:
-        """Return the tasks that collect samples; a file that is in the folder already is used.
+        """Return the tasks that collect samples; files that are already in the folder are reused.
 
         Raises:
             BadInput: sequences that cannot be used.
         """
 
     def load(self, tasks: Tasks) -> Data:
-        """Read what the tasks left; without a method of its own, a model is trained on the files.
+        """Load the results of the tasks; by default a model is trained on the files themselves.
 
         Raises:
             BadInput: there are too few samples.
@@ -93,7 +93,7 @@ class Specification(ABC, Generic[Data]):
 
     @abstractmethod
     def fit(self, data: Data) -> Mapping[str, Any]:
-        """Train on samples, and return the trained models by the names of their files.
+        """Train on samples, and return the trained models by file name.
 
         Raises:
             BadInput: a package is missing, or there are too few samples.
@@ -101,7 +101,7 @@ class Specification(ABC, Generic[Data]):
 
     @abstractmethod
     def evaluate(self, model: Any, data: Data) -> Mapping[str, str]:
-        """Measure a trained model on the validation split: results by what they were measured on."""
+        """Evaluate a trained model on the validation split, and return the results by data set."""
 
     def is_replaced(self, path: Path, model: Any) -> bool:  # noqa: ARG002
         """Return whether a shipped file is removed when a model is shipped under another name."""
@@ -125,17 +125,17 @@ def load_specification(model: str) -> type[Specification[Any]]:
 
 
 def train(specification: Specification[Data], out: Path, workers: Workers, *, ship: bool) -> Sequence[Path]:
-    """Collect samples, train on them, evaluate the models and write them.
+    """Collect samples, train on them, evaluate the models, and write them.
 
     Args:
-        specification: of the model.
+        specification: specification of the model.
         out: folder of samples, and of the weights unless they are shipped.
-        workers: that collect samples.
-        ship: whether to put the weights among those that come with the trackers.
+        workers: number of processes that collect samples.
+        ship: whether to write the weights to the folder of weights that are shipped with the trackers.
 
     Raises:
-        BadInput: a path that cannot be used, a missing package, or too few samples; a new folder is not left
-            behind empty then.
+        BadInput: a path that cannot be used, a missing package, or too few samples; a new empty folder is
+            removed again.
         TasksFailed: some sequences failed, after all others were done.
     """
     with writing_to(out):
@@ -165,10 +165,10 @@ def train(specification: Specification[Data], out: Path, workers: Workers, *, sh
 
 
 def report(line: str) -> None:
-    """Print a line of progress on standard error."""
+    """Print a line of progress to standard error."""
     Console(stderr=True).print(line, highlight=False)
 
 
 def missing_package(what: str, package: str) -> BadInput:
-    """Make the refusal of a training whose package is not installed."""
+    """Return the error for a training whose package is not installed."""
     return BadInput(f"training of {what} needs {package}: pip install {package}")

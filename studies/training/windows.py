@@ -1,4 +1,4 @@
-"""Train linear support vector machines that tell people by windows of colour and depth images."""
+"""Train linear support vector machines that classify windows of colour and depth images as people."""
 
 import math
 import warnings
@@ -39,7 +39,7 @@ from peopleboy.tracker.track import Box
 
 COST: Final = {WindowRange.FAR: 0.01, WindowRange.NEAR: 0.01}
 FALSE_ALARMS: Final = 0.01
-"""Share of windows without people at which recall is measured."""
+"""False positive rate at which recall is measured."""
 VALIDATION: Final[Mapping[str, int]] = {
     "": 30,
     "crossing_2_moving": 2,
@@ -47,19 +47,19 @@ VALIDATION: Final[Mapping[str, int]] = {
     "fast_turn": 2,
     "hall_visits": 1,
 }
-"""Sequences of the validation split: of scenes drawn at random, and of scenarios in other places."""
+"""Sequences of the validation split: random scenes, and scenarios in other places."""
 APART_S: Final = 0.4
-"""Between two images that are kept."""
+"""Time between two sampled images."""
 
-_SIZE: Final = HumanSize(least=0.005)  # more unlike a human is too easy as a negative
+_SIZE: Final = HumanSize(least=0.005)  # less human-like candidates are too easy as negatives
 _NEAR_M: Final = 0.5
 _APART_M: Final = 0.9
 _LEAST_VISIBLE: Final = 0.6
-_MOST_SHOWN: Final = 0.15  # share of a negative window that may show people
+_MOST_SHOWN: Final = 0.15  # largest share of a negative window that shows people
 _JITTERS: Final = 3
-_SHIFT: Final = 0.04  # deviation of a window's place, in its sizes
-_SCALE: Final = 0.06  # deviation of the logarithm of its size
-_FLATS: Final = 2  # windows of an image that are placed anywhere
+_SHIFT: Final = 0.04  # standard deviation of a window's position, in window sizes
+_SCALE: Final = 0.06  # standard deviation of the logarithm of its size
+_FLATS: Final = 2  # randomly placed windows per image
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -86,12 +86,12 @@ class WindowSamples(Arrays):
 
 
 def collect_windows(scenario: str, seed: int, has_jitter: bool) -> WindowSamples:
-    """Run a scenario, and keep the windows of what has about the size of a human.
+    """Run a scenario, and collect windows of candidates that have about the size of a human.
 
     Args:
-        scenario: name in the library; empty for a scene drawn at random.
+        scenario: name in the library; empty for a random scene.
         seed: of scene and run.
-        has_jitter: whether windows are also taken a little off, and mirrored, as augmentation.
+        has_jitter: whether to augment: add displaced and mirrored windows.
 
     Raises:
         BadInput: the robot needs images to drive.
@@ -140,7 +140,7 @@ def _scenario(name: str, seed: int) -> Scenario:
 
 
 def _is_person(found: PreDetection, truth: Truth, view: DepthView) -> bool | None:
-    """Return whether something is a person; None for what is neither clearly one nor clearly none."""
+    """Return whether a candidate is a person; None if it is ambiguous."""
     at = view.on_floor(np.array([found.x_m]), np.array([found.z_m]))[0]
     answer: bool | None = False
     for person in truth.people:
@@ -154,7 +154,7 @@ def _is_person(found: PreDetection, truth: Truth, view: DepthView) -> bool | Non
 
 
 def _has_head(person: PersonTruth) -> bool:
-    """Return whether the head is in the image: without it no window shows enough of a person."""
+    """Return whether the head is in the image; without it no window shows enough of the person."""
     return person.whole_box is not None and person.whole_box[1] > -0.02 * person.whole_box[3]
 
 
@@ -167,7 +167,7 @@ def _shows_people(found: PreDetection, truth: Truth) -> bool:
 def _anywhere(
     layout: Layout, view: DepthView, shape: tuple[int, int], rng: np.random.Generator
 ) -> Iterator[PreDetection]:
-    """Place bodies anywhere, mostly on plain walls and floors, of which a near window must not pass."""
+    """Place windows at random, mostly on plain walls and floors, which the near classifier must reject."""
     size = HumanSize()
     for _ in range(_FLATS):
         z_m = float(rng.uniform(1.2, 8.0))
@@ -183,7 +183,7 @@ def _anywhere(
 
 
 def _describe(patches: Sequence[Image], kind: WindowRange, *, is_mirrored: bool) -> list[NDArray[np.float16]]:
-    """Return the histograms of the patches of a window, and those of their mirror images."""
+    """Return the histograms of a window's patches, and of their mirror images."""
     sides = [patches, [np.ascontiguousarray(patch[:, ::-1]) for patch in patches]]
     return [
         np.concatenate([hog(patch, kind) for patch in side]).astype(np.float16)
@@ -201,14 +201,14 @@ def _jittered(window: Box, rng: np.random.Generator) -> Box:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WindowsTraining(Specification[Split[WindowSamples]]):
-    """Train machines for near and far windows, by colour alone and with depth, on scenes drawn at random."""
+    """Train classifiers of near and far windows, on colour alone and with depth, on random scenes."""
 
     sequences: Annotated[
         int, Field(ge=1, alias="seeds", description="Number of random scenes to train on.")
     ] = 300
 
     def tasks(self, out: Path) -> Tasks:
-        """Run scenes, and keep windows."""
+        """Run scenes, and collect windows."""
         folder = sample_folder(out, Path(__file__))
 
         def task(scenario: str, seed: int, *, has_jitter: bool) -> SampleTask:
@@ -225,8 +225,8 @@ class WindowsTraining(Specification[Split[WindowSamples]]):
         return Split(*(load_samples(WindowSamples, part) for part in tasks))
 
     def fit(self, data: Split[WindowSamples]) -> Mapping[str, WindowModel]:
-        """Train both pairs of machines."""
-        about = {"trained on": f"{self.sequences} scenes drawn at random, seeds from {FIRST_SEED}"}
+        """Train both pairs of classifiers."""
+        about = {"trained on": f"{self.sequences} random scenes, seeds from {FIRST_SEED}"}
         return {
             file_name(sees_depth=sees): WindowModel(
                 {kind: fit_machine(data.training, kind, sees_depth=sees) for kind in WindowRange}, about
@@ -242,41 +242,41 @@ class WindowsTraining(Specification[Split[WindowSamples]]):
 
 
 def fit_machine(samples: WindowSamples, kind: WindowRange, *, sees_depth: bool) -> Features:
-    """Train a linear support vector machine; return its weights, the bias last.
+    """Train a linear support vector machine, and return its weights with the bias last.
 
     Raises:
-        BadInput: scikit-learn is missing, or there are no people or nothing else in this range.
+        BadInput: scikit-learn is missing, or this range has no positives or no negatives.
     """
     try:
-        from sklearn.svm import LinearSVC  # here, as evaluations use this module without it
+        from sklearn.svm import LinearSVC  # imported late: evaluation does not need it
     except ImportError:
         raise missing_package("windows", "scikit-learn") from None
     is_person = samples.is_person(kind)
     if is_person.all() or not is_person.any():
-        raise BadInput(f"{kind} windows: {len(is_person)} with {is_person.sum()} people; take more sequences")
+        raise BadInput(f"{kind} windows: {len(is_person)} with {is_person.sum()} people; use more sequences")
     count = (1 + sees_depth) * feature_length(kind)
     machine = LinearSVC(C=COST[kind], class_weight="balanced", random_state=0, max_iter=4000)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # that it did not converge to the last digit
+        warnings.simplefilter("ignore")  # about convergence, which need not be exact
         machine.fit(samples.features(kind)[:, :count].astype(np.float32), is_person)
     return np.concatenate([machine.coef_[0], machine.intercept_]).astype(np.float32)
 
 
 def recall_at(scores: NDArray[np.float64], is_person: NDArray[np.bool_], false_alarms: float) -> float:
-    """Return the share of people that score above all but a share of the negatives."""
+    """Return the recall at a given false positive rate."""
     limit = np.quantile(scores[~is_person], 1.0 - false_alarms)
     return float(np.mean(scores[is_person] > limit))
 
 
 def scores_of(model: WindowModel, samples: WindowSamples, kind: WindowRange) -> NDArray[np.float64]:
-    """Return the scores (N,) of all windows of a range."""
+    """Return the scores (N,) of the windows of a range."""
     weights = model.weights[kind]
     features = samples.features(kind)[:, : len(weights) - 1].astype(np.float64)
     return np.asarray(features @ weights[:-1] + weights[-1])
 
 
 def evaluate_machine(model: WindowModel, samples: WindowSamples, kind: WindowRange) -> str:
-    """Return recall and false alarms of the machine of a range, in words."""
+    """Return a text with recall and false alarms of the classifier of a range."""
     scores, is_person = scores_of(model, samples, kind), samples.is_person(kind)
     if is_person.all() or not is_person.any():
         return "no samples"

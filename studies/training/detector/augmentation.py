@@ -1,4 +1,4 @@
-"""Augmentation of thermal images: mirrored, cropped, of other cameras, with other spans of greys."""
+"""Augmentation of thermal images: mirroring, crops, other cameras, and other temperature spans."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -17,16 +17,16 @@ from peopleboy.tracker.detector.window import WindowKind
 Grey = NDArray[np.uint8]
 Draw = np.random.Generator
 
-# Shares of images, unless something else is said.
+# Shares of the images, unless noted otherwise.
 _SPANNED: Final = 0.5
-_NEGATED: Final = 0.15  # a camera that shows what is hot black, or people colder than all else
-_FAINT: Final = 0.15  # something hotter and something colder take most of the greys
+_NEGATED: Final = 0.15  # a camera that shows hot objects dark, or people colder than the background
+_FAINT: Final = 0.15  # hotter and colder objects take up most of the grey range
 _SOFT: Final = 0.3
 _CROPPED: Final = 0.3
-_CROPPED_AT_THE_FEET: Final = 0.7  # of those; others at the head
+_CROPPED_AT_THE_FEET: Final = 0.7  # of the cropped images; the others are cropped at the head
 _MOST_CROPPED: Final = 0.4  # of the height
 _FEWEST_ROWS: Final = 60
-_TALL_PX: Final = 36.0  # least height of a person at whom an image is cropped
+_TALL_PX: Final = 36.0  # least height of a person at whose head or feet an image is cropped
 _MOST_BLACK: Final = 0.97
 _LEAST_SPAN: Final = 60.0  # [grey]
 _GAINS: Final = (0.6, 1.6)
@@ -37,7 +37,7 @@ _FAINT_GAINS: Final = (0.15, 0.6)
 
 
 def augment(image: ThermalImage, rng: Draw) -> ThermalImage:
-    """Return an image as it is or otherwise: mirrored, cropped, and with other greys."""
+    """Mirror, crop and recolour an image, each with some probability."""
     image = mirror(image) if rng.random() < 0.5 else image
     if rng.random() < _CROPPED:
         image = crop(image, rng)
@@ -53,7 +53,7 @@ def mirror(image: ThermalImage) -> ThermalImage:
 
 
 def recolour(image: ThermalImage, rng: Draw) -> ThermalImage:
-    """Return an image as it is or with other greys: negated, of a poorer camera, in another span, faint."""
+    """Change greys with some probability: negate, degrade, change the span, or reduce contrast."""
     if rng.random() < _NEGATED:
         image = replace(image, grey=255 - image.grey)
     if rng.random() < _SOFT:
@@ -64,7 +64,7 @@ def recolour(image: ThermalImage, rng: Draw) -> ThermalImage:
 
 
 def soften(image: ThermalImage, rng: Draw) -> ThermalImage:
-    """Simulate a camera with poorer optics, more noise, and another curve of greys."""
+    """Simulate a camera with poorer optics, more noise, and another grey curve."""
     blur, noise = rng.uniform(*_BLURS_PX), rng.uniform(0.0, _MOST_NOISE)
     curve = 255.0 * (np.arange(256.0) / 255.0) ** math.exp(rng.uniform(*_CURVES))
     soft = cv2.GaussianBlur(curve[image.grey], (0, 0), blur) + rng.normal(0.0, noise, image.grey.shape)
@@ -73,18 +73,18 @@ def soften(image: ThermalImage, rng: Draw) -> ThermalImage:
 
 
 def change_span(image: ThermalImage, rng: Draw) -> ThermalImage:
-    """Simulate a camera of another span: what is colder than that is black, hotter white."""
+    """Simulate a camera with another temperature span: colder is black, hotter is white."""
     coldest = np.quantile(image.grey[::4, ::4], rng.uniform(0.0, _MOST_BLACK))
     gain = rng.uniform(*_GAINS) * 255.0 / max(255.0 - coldest, _LEAST_SPAN)
     grey = np.clip((image.grey - coldest) * gain, 0.0, 255.0)
-    # What was and is beyond the span does not change; of what came from there, a part is missing.
+    # Pixels that were black before count as unchanged; elsewhere, a change outside the span is lost.
     was_black = image.grey.astype(np.float64) + image.change <= coldest
     change = np.where(was_black, 0.0, np.clip(image.change * gain, 0.0, 255.0))
     return replace(image, grey=grey.astype(np.uint8), change=change.astype(np.uint8))
 
 
 def _fade(image: ThermalImage, rng: Draw) -> ThermalImage:
-    """Reduce contrast, as where something is much hotter or colder than all the rest."""
+    """Reduce contrast, as when one object is much hotter or colder than the rest of the image."""
     gain = rng.uniform(*_FAINT_GAINS)
     grey = 255.0 * rng.uniform(0.0, 1.0 - gain) + gain * image.grey
     return replace(image, grey=_to_grey(grey), change=np.rint(gain * image.change).astype(np.uint8))
@@ -95,7 +95,7 @@ def _to_grey(values: NDArray[np.floating]) -> Grey:
 
 
 def crop(image: ThermalImage, rng: Draw) -> ThermalImage:
-    """Crop an image at a person's feet or head, so that some of that person is outside."""
+    """Crop an image at a person's feet or head, so that a part of the person is outside."""
     top, bottom = image.box[:, 1], image.box[:, 1] + image.box[:, 3]
     tall = np.flatnonzero(image.is_good & (image.box[:, 3] > _TALL_PX))
     if not len(tall):
@@ -109,7 +109,7 @@ def crop(image: ThermalImage, rng: Draw) -> ThermalImage:
 
 
 def take_rows(image: ThermalImage, first: float, end: float, fewest: int) -> ThermalImage:
-    """Return some rows of an image; all of it, if those are fewer than so many."""
+    """Return a range of rows of an image; the whole image if the range is too small."""
     begin, stop = max(round(first), 0), min(round(end), len(image.grey))
     if stop - begin < fewest:
         return image
@@ -131,24 +131,24 @@ def take_rows(image: ThermalImage, first: float, end: float, fewest: int) -> The
     )
 
 
-# Images that cut people off: near ones of whom a camera shows legs, or a face and shoulders.
+# Images that truncate people: near people of whom a camera shows only legs, or face and shoulders.
 
 _UNCUT: Final = 0.2
-_CUT_AT_THE_FEET: Final = 0.4  # of the others; likewise at the head, and the rest at both
+_CUT_AT_THE_FEET: Final = 0.4  # of the others; the same share at the head, and the rest at both
 _CUT_AT_THE_HEAD: Final = 0.4
-_CUT_TALL_PX: Final = 60.0  # least height of a person that is cut off
+_CUT_TALL_PX: Final = 60.0  # least height of a person that is truncated
 _CUT_FEWEST_ROWS: Final = 40
 _ABOVE: Final = (0.15, 0.65)  # shares of the height
 _BELOW: Final = (0.3, 0.65)
 _BOTH: Final = (0.2, 0.4)
-_LEAST_ABOVE: Final = 0.2  # share of a person that is above the image, or
-_LEAST_BELOW: Final = 0.35  # below, for windows of people that are cut off
+_LEAST_ABOVE: Final = 0.2  # least share of a person above the image ...
+_LEAST_BELOW: Final = 0.35  # ... or below it, for windows of truncated people
 _MOST_BEYOND: Final = 0.66
 _MOST_ASIDE: Final = 0.5  # of the width
 
 
 def augment_for(image: ThermalImage, rng: Draw, kind: WindowKind) -> ThermalImage:
-    """Augment an image for windows of a kind; people that are good in it are positives of that kind."""
+    """Augment an image for windows of a kind; the good people in it are positives of that kind."""
     if kind is WindowKind.WHOLE:
         return augment(image, rng)
     side = mirror(image) if rng.random() < 0.5 else image
@@ -158,19 +158,19 @@ def augment_for(image: ThermalImage, rng: Draw, kind: WindowKind) -> ThermalImag
 
 
 def calibration_pair(image: ThermalImage, rng: Draw, kind: WindowKind) -> tuple[ThermalImage, ThermalImage]:
-    """Return two versions of an image, by which scores of windows of a kind are calibrated."""
+    """Return two versions of an image, for calibrating the scores of windows of a kind."""
     if kind is WindowKind.WHOLE:
         return image, change_span(image, rng)
     return augment_for(image, rng, kind), augment_for(image, rng, kind)
 
 
 def has_people(image: ThermalImage, kind: WindowKind) -> bool:
-    """Return whether there are people to train on, for windows of a kind."""
+    """Return whether an image has people to train windows of a kind on."""
     return bool((image.is_good if kind is WindowKind.WHOLE else _is_tall(image)).any())
 
 
 def is_cut_off(image: ThermalImage) -> NDArray[np.bool_]:
-    """Return which people (P,) that are clear are cut off at head or feet, but not nearly all of them."""
+    """Return which of the clear people (P,) are truncated at head or feet, but not almost entirely."""
     rows, columns = image.grey.shape
     left, top, width, height = image.box.T
     above = np.maximum(-top, 0.0) / height
@@ -202,10 +202,10 @@ def cut_off(image: ThermalImage, rng: Draw) -> ThermalImage:
     return take_rows(image, top + upper * height, top + (1.0 - lower) * height, _CUT_FEWEST_ROWS)
 
 
-# What a camera's electronics and files do to images: they spread greys, sharpen edges, and compress.
+# Effects of a camera's electronics and file format: gain control, edge sharpening, compression.
 
 _EQUALISED: Final = 0.25
-_MOST_EQUALISED: Final = 0.8  # of full histogram equalisation
+_MOST_EQUALISED: Final = 0.8  # share of full histogram equalisation
 _SHARPENED: Final = 0.3
 _RADII_PX: Final = (0.8, 3.0)
 _MOST_SHARPENED: Final = 1.5
@@ -214,7 +214,7 @@ _QUALITIES: Final = (25, 92)
 
 
 def simulate_electronics(image: ThermalImage, rng: Draw) -> ThermalImage:
-    """Return an image as it is, or as a camera puts it out that processes images for people's eyes."""
+    """Simulate, with some probability, a camera that processes its images for display."""
     if rng.random() < _EQUALISED:
         image = equalise(image, rng.uniform(0.0, _MOST_EQUALISED))
     if rng.random() < _SHARPENED:
@@ -226,9 +226,9 @@ def simulate_electronics(image: ThermalImage, rng: Draw) -> ThermalImage:
 
 
 def equalise(image: ThermalImage, share: float) -> ThermalImage:
-    """Equalise the histogram by a share, as an automatic gain with a plateau does.
+    """Equalise the histogram partly, like an automatic gain control with plateau equalisation.
 
-    Changes are multiplied by the slope of the curve of greys.
+    The image of changes is multiplied by the slope of the grey curve.
     """
     counts = np.bincount(image.grey.ravel(), minlength=256)
     rank = 255.0 * np.cumsum(counts) / counts.sum()
@@ -241,9 +241,9 @@ def equalise(image: ThermalImage, share: float) -> ThermalImage:
 
 
 def sharpen(grey: Grey, radius_px: float, gain: float) -> Grey:
-    """Exaggerate what is finer than a radius, which leaves rims around what is warm.
+    """Sharpen details finer than a radius, which leaves rims around warm objects.
 
-    The simulated camera does so in kelvin, before greys are encoded; here only greys are known.
+    The simulated camera sharpens in kelvin, before greys are encoded; here only the greys are available.
     """
     values = grey.astype(np.float32)
     finer = values - cv2.GaussianBlur(values, (0, 0), radius_px)
@@ -260,8 +260,8 @@ class Version(NamedTuple):
 
     Attributes:
         image: the image.
-        mount: of the camera, if it is known.
-        rng: draws whatever else is drawn.
+        mount: mount of the camera, if known.
+        rng: random generator for further draws.
     """
 
     image: ThermalImage
@@ -270,7 +270,7 @@ class Version(NamedTuple):
 
 
 def versions(images: Sequence[ThermalImage], rng: Draw, count: int) -> Iterator[Version]:
-    """Yield each image in so many augmented versions; as it is, with its mount, for a count of 0."""
+    """Yield `count` augmented versions of each image; for 0, the unchanged image with its mount."""
     for image in images:
         if count == 0:
             yield Version(image, image.mount, rng)

@@ -1,4 +1,4 @@
-"""What training of rescoring and of box refinement share: samples, augmentation of crops, the fit."""
+"""Common parts of training rescoring and box refinement: samples, augmentation of crops, and the fit."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -41,23 +41,23 @@ Array = jax.Array | Planes
 BATCH: Final = 64
 _RATE: Final = 1.5e-3
 _WARM_UP: Final = 300  # batches
-_DECAY: Final = 0.02  # of kernels, in a batch, of the rate
-_REPORTED: Final = 200  # batches
+_DECAY: Final = 0.02  # weight decay of kernels per batch, relative to the learning rate
+_REPORTED: Final = 200  # batches between two progress lines
 _LAST: Final = 0.1  # first weights of the last layer, relative to He's
-_HELD_BACK: Final = 10  # of so many worlds one is not trained on
-_AT_ONCE: Final = 256  # crops
+_HELD_BACK: Final = 10  # one in so many worlds is held back
+_AT_ONCE: Final = 256  # crops per prediction batch
 
 
 @jax.tree_util.register_dataclass
 @dataclass(frozen=True, slots=True, eq=False)
 class CropSamples(Arrays):
-    """Crops of images, with the people that they show.
+    """Crops of images, labelled with the people in them.
 
     Attributes:
         crops: (N, rows, columns, 3) uint8.
         features: (N, 9), see `crop_features`.
-        overlap: (N,) IoU with a person that is visible, at most.
-        offsets: (N, 4) of that person, see `encode_boxes`; 0 if there is none.
+        overlap: (N,) largest IoU with a visible person.
+        offsets: (N, 4) offsets to that person, see `encode_boxes`; 0 without a person.
     """
 
     crops: Crops
@@ -67,7 +67,7 @@ class CropSamples(Arrays):
 
     @classmethod
     def empty(cls, size: CropSize) -> "CropSamples":
-        """Return no samples with crops of a size."""
+        """Return empty samples with crops of a given size."""
         none = (size.rows, size.columns, CHANNELS), (FEATURES,), (), (OFFSETS,)
         kinds = (np.uint8, np.float32, np.float32, np.float32)
         return cls(*(np.empty((0, *shape), kind) for shape, kind in zip(none, kinds, strict=True)))
@@ -91,11 +91,11 @@ class CropSamples(Arrays):
 
 
 CropLoss = Callable[[jax.Array, CropSamples], tuple[jax.Array, dict[str, jax.Array]]]
-"""Of the outputs (N, outputs) of a network, and the samples: what is minimised, and results to report."""
+"""Function of the outputs (N, outputs) and the samples that returns the loss, and results to report."""
 
 
 class CropData(NamedTuple):
-    """Tasks of sequences, and the samples of all."""
+    """Tasks, one per sequence, and the samples of all of them."""
 
     tasks: Tasks
     samples: Split[CropSamples]
@@ -103,16 +103,17 @@ class CropData(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CropTraining(Specification[CropData]):
-    """Base of the training of networks on crops, on worlds that the cascade was not trained on.
+    """Base class for training networks on crops, in worlds on which the cascade was not trained.
 
-    The cascade would be surer in worlds that it knows. A tenth of the worlds is held back for validation.
+    The cascade's scores are too high in its own training worlds. A tenth of the worlds is held back for
+    validation.
     """
 
     NETWORK: ClassVar[type[CropNetwork]]
     EPOCHS: ClassVar[int]
     DROPOUT: ClassVar[float]
     VERSIONS: ClassVar[int]
-    """Of each image to train on."""
+    """Number of augmented versions of each training image."""
 
     sequences: Annotated[
         int, Field(ge=5, le=2000, alias="seeds", description="Number of random worlds to train on.")
@@ -124,19 +125,19 @@ class CropTraining(Specification[CropData]):
 
     @abstractmethod
     def sample(self, version: Version, *, augments: bool) -> CropSamples:
-        """Collect the samples of an image; its random numbers draw how they are augmented."""
+        """Collect the samples of an image, augmented by its random generator."""
 
     @abstractmethod
     def check(self, others: CropSamples) -> None:
-        """Refuse samples by which the network cannot be evaluated.
+        """Check that the network can be evaluated on samples.
 
         Raises:
-            BadInput: they cannot.
+            BadInput: it cannot.
         """
 
     @abstractmethod
     def loss(self, outputs: jax.Array, batch: CropSamples) -> tuple[jax.Array, dict[str, jax.Array]]:
-        """Return what is minimised for the outputs for a batch, and results to report."""
+        """Return the loss of the outputs for a batch, and results to report."""
 
     def tasks(self, out: Path) -> Tasks:
         """Render worlds."""
@@ -159,7 +160,7 @@ class CropTraining(Specification[CropData]):
         for task in tasks:
             images, rng = load_images([task.path]), np.random.default_rng(seed_of(task))
             drawn = versions(images, rng, self.VERSIONS if augments else 0)
-            # Only augmented images have random numbers of their own.
+            # Only augmented images have a random generator.
             each = in_threads if augments else map
             parts += each(partial(self.sample, augments=augments), drawn)
         return CropSamples.join(parts)
@@ -173,7 +174,7 @@ class CropTraining(Specification[CropData]):
 
 
 def later_seeds(worlds: int) -> list[int]:
-    """Return the seeds of so many worlds that the cascade is not trained on."""
+    """Return the seeds of a number of worlds that are not used for training the cascade."""
     return [seed + LATER for seed in seeds_of(worlds)]
 
 
@@ -183,7 +184,7 @@ def seed_of(task: SampleTask) -> int:
 
 
 def predictions(network: Any, samples: CropSamples) -> Floats:
-    """Return what a network predicts (N, outputs) for samples."""
+    """Return a network's outputs (N, outputs) for samples."""
     parts = [
         network.predict(normalise_crops(samples.crops[k : k + _AT_ONCE]), samples.features[k : k + _AT_ONCE])
         for k in range(0, len(samples), _AT_ONCE)
@@ -192,7 +193,7 @@ def predictions(network: Any, samples: CropSamples) -> Floats:
 
 
 def mean_overlaps(offsets: Floats, samples: CropSamples, rows: NDArray[np.bool_]) -> tuple[float, float]:
-    """Return the mean IoU of some samples as they were, and with predicted offsets (N, 4)."""
+    """Return the mean IoU of selected samples before and after applying predicted offsets (N, 4)."""
     window = np.tile([0.0, 0.0, 1.0, 1.0], (int(rows.sum()), 1))
     true = decode_boxes(window, samples.offsets[rows].astype(np.float64))
     overlap = iou(decode_boxes(window, offsets[rows]), true)
@@ -200,7 +201,7 @@ def mean_overlaps(offsets: Floats, samples: CropSamples, rows: NDArray[np.bool_]
 
 
 def first_weights(architecture: Architecture, rng: np.random.Generator) -> dict[str, Planes]:
-    """Draw an untrained network."""
+    """Initialise a network."""
     weights: dict[str, Planes] = {}
     for name, shape in architecture.shapes().items():
         weights[name] = he_weights(rng, shape, shape[0]) if len(shape) > 1 else np.zeros(shape, np.float32)
@@ -214,21 +215,21 @@ def fit_crops(
     """Train a network; half of the batches are mirrored.
 
     Args:
-        architecture: of the network.
-        loss: to minimise.
-        samples: to train on.
-        epochs: how often each is seen.
-        dropout: share of units that are left out, others in each batch (Srivastava et al., JMLR 2014).
+        architecture: architecture of the network.
+        loss: loss to minimise.
+        samples: training samples.
+        epochs: number of passes through the samples.
+        dropout: dropout rate (Srivastava et al., JMLR 2014).
 
     Returns:
-        The average of the weights of the last batches.
+        The average of the weights over the last batches.
 
     Raises:
         BadInput: there are too few samples.
     """
     rng, count = np.random.default_rng(0), epochs * (len(samples) // BATCH)
     if not count:
-        raise BadInput(f"{len(samples)} samples, at least {BATCH} are needed; take more sequences")
+        raise BadInput(f"{len(samples)} samples, at least {BATCH} are needed; use more sequences")
 
     def augmented_loss(
         weights: Weights, inputs: tuple[Planes, CropSamples], key: jax.Array
@@ -271,11 +272,11 @@ def network_outputs(
     """Return the outputs (N, outputs) of the last layer, as `CropNetwork.outputs` does.
 
     Args:
-        architecture: of the network.
-        weights: of it.
+        architecture: architecture of the network.
+        weights: its weights.
         planes: (N, rows, columns, 3) crops.
-        features: (N, 9) of the detections, of which it gets the last ones.
-        kept: (N, units) by what units are multiplied, for dropout.
+        features: (N, 9) features of the detections; the network uses the last ones.
+        kept: (N, units) factors of the hidden units, for dropout.
     """
     here = jnp.asarray(planes)
     for layer, (side, stride, depth) in enumerate(architecture.layers):
@@ -293,18 +294,18 @@ def network_outputs(
     return jnp.asarray(units @ weights["last"] + weights["last_bias"])
 
 
-_STILL: Final = 0.15  # of crops, without motion
-_MOTION: Final = 0.2  # deviation of the logarithm of the gain of motion
-_NOISY: Final = 0.5  # of crops
-_MOST_NOISE: Final = 0.25  # of deviations of the crop
-_SLOPE: Final = 0.25  # deviation of greys that rise from one side to the other
-_COVERED: Final = 0.2  # of crops, in part
-_TALL: Final = (0.1, 0.5)  # shares of the crop that are covered
+_STILL: Final = 0.15  # share of crops without motion
+_MOTION: Final = 0.2  # standard deviation of the logarithm of the motion's gain
+_NOISY: Final = 0.5  # share of crops with noise
+_MOST_NOISE: Final = 0.25  # largest noise, in standard deviations of the crop
+_SLOPE: Final = 0.25  # standard deviation of the grey gradient across the crop
+_COVERED: Final = 0.2  # share of crops that are covered in part
+_TALL: Final = (0.1, 0.5)  # covered share of the crop
 _WIDE: Final = (0.1, 0.6)
 
 
 def augment_crops(planes: jax.Array, key: jax.Array) -> jax.Array:
-    """Augment crops (N, rows, columns, 3) by motion, noise and slopes of greys; cover parts of some."""
+    """Augment crops (N, rows, columns, 3) with motion, noise, grey gradients, and covered parts."""
     keys = iter(jax.random.split(key, 8))
     count, rows, columns, _ = planes.shape
     grey, change, inside = planes[..., :1], planes[..., 1:2], planes[..., 2:]
@@ -327,7 +328,7 @@ def augment_crops(planes: jax.Array, key: jax.Array) -> jax.Array:
 
 
 def _cover(drawn: jax.Array, rows: int, columns: int) -> jax.Array:
-    """Tell which pixels (N, rows, columns, 1) are covered, by random numbers (N, 5, 1, 1, 1) from 0 to 1."""
+    """Return which pixels (N, rows, columns, 1) are covered, from random numbers (N, 5, 1, 1, 1) in 0..1."""
     high, wide = (
         size * (least + (most - least) * drawn[:, k])
         for k, (size, (least, most)) in enumerate(((rows, _TALL), (columns, _WIDE)))

@@ -1,4 +1,4 @@
-"""Evaluation of the cascade in worlds that it was not trained on, and the calibration of its scores."""
+"""Evaluation of the cascade on validation worlds, and the calibration of its scores."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -20,9 +20,9 @@ from peopleboy.tracker.detector.window import WindowKind
 Floats = NDArray[np.float64]
 
 _HIT: Final = 0.5  # IoU
-_THERE: Final = 0.4  # IoU with a person who is there
+_THERE: Final = 0.4  # IoU with a person, from which on a detection is a positive for calibration
 _LEAST_SCORE: Final = -2.0
-_TALLEST: Final = 0.75  # of the image's rows: the window of a taller person does not fit into it
+_TALLEST: Final = 0.75  # of the image height; the window of a taller person does not fit into the image
 FALSE_PER_IMAGE: Final = 0.1
 """False positives per image at which recall is reported."""
 
@@ -32,11 +32,11 @@ class DetectionScores:
     """Detections in some images, matched with the truth.
 
     Attributes:
-        score: (N,) of the detections, without those of people that do not count.
-        is_person: (N,) whether they match a person.
-        overlap: (N,) IoU with that one.
-        people: how many count.
-        images: how many there were.
+        score: (N,) scores of the detections, without matches of ignored people.
+        is_person: (N,) whether the detection matches a person.
+        overlap: (N,) IoU with that person.
+        people: number of people that count.
+        images: number of images.
     """
 
     score: Floats
@@ -46,7 +46,7 @@ class DetectionScores:
     images: int
 
     def recall(self, false_per_image: float) -> float:
-        """Return the share of people that are detected with so many false positives per image."""
+        """Return the recall at a number of false positives per image."""
         if not self.people:
             return float("nan")
         order = np.argsort(-self.score, kind="stable")
@@ -66,16 +66,16 @@ class DetectionScores:
     def __str__(self) -> str:
         overlap = self.overlap[self.is_person]
         return (
-            f"{self.people} people in {self.images} images: average precision {self.precision():.3f}, recall "
-            f"{self.recall(FALSE_PER_IMAGE):.3f} at {FALSE_PER_IMAGE} false positives an image, mean overlap "
-            f"{overlap.mean() if len(overlap) else 0.0:.3f}"
+            f"{self.people} people in {self.images} images: average precision {self.precision():.3f}, "
+            f"recall {self.recall(FALSE_PER_IMAGE):.3f} at {FALSE_PER_IMAGE} false positives per image, "
+            f"mean IoU {overlap.mean() if len(overlap) else 0.0:.3f}"
         )
 
 
 def evaluate_trees(
     model: PeopleModel, samples: Iterable[ThermalImage], *, knows_mount: bool
 ) -> DetectionScores:
-    """Detect people in images; those that are small, hidden or not upright are neither right nor wrong."""
+    """Detect people in images and match them; small, occluded and non-upright people are ignored."""
     parts: list[tuple[Floats, NDArray[np.bool_], Floats]] = []
     people = images = 0
     for image in samples:
@@ -90,13 +90,13 @@ def evaluate_trees(
 
 
 def calibrate(kind: WindowKind, trees: PeopleTrees, samples: Sequence[ThermalImage]) -> tuple[float, float]:
-    """Return gain and offset that turn scores of windows of a kind into log odds of a person.
+    """Return the gain and offset that map scores of windows of a kind to log odds of a person.
 
-    It is a logistic regression (Platt 1999) over detections in images; people count, however hidden.
+    They are fitted by logistic regression (Platt 1999) on detections in images; occluded people count, too.
 
     Raises:
-        BadInput: scikit-learn is missing, detections are all right or all wrong, or people score no more than
-            negatives.
+        BadInput: scikit-learn is missing, all detections are positive or all negative, or people do not score
+            higher than negatives.
     """
     model = PeopleModel({kind: trees})
     scores: list[float] = []
@@ -110,18 +110,18 @@ def calibrate(kind: WindowKind, trees: PeopleTrees, samples: Sequence[ThermalIma
             is_person += np.any(overlap >= _THERE, axis=1).tolist()
     gain, offset = log_odds_line(np.array(scores), np.array(is_person, np.bool_))
     if gain <= 0.0:
-        raise BadInput(f"people score no more than negatives, gain {gain:.3f}; take more sequences")
+        raise BadInput(f"people do not score higher than negatives, gain {gain:.3f}; use more sequences")
     return gain, offset
 
 
 def log_odds_line(score: Floats, is_person: NDArray[np.bool_]) -> tuple[float, float]:
-    """Fit gain and offset that turn scores (N,) into log odds, by logistic regression (Platt 1999).
+    """Fit the gain and offset that map scores (N,) to log odds, by logistic regression (Platt 1999).
 
     Raises:
         BadInput: scikit-learn is missing, or all samples have the same label.
     """
     try:
-        from sklearn.linear_model import LogisticRegression  # here, so that evaluation does without it
+        from sklearn.linear_model import LogisticRegression  # imported late: evaluation does not need it
     except ImportError:
         raise missing_package("the detector", "scikit-learn") from None
     check_labels(is_person)
@@ -130,21 +130,21 @@ def log_odds_line(score: Floats, is_person: NDArray[np.bool_]) -> tuple[float, f
 
 
 def check_labels(is_person: NDArray[np.bool_]) -> None:
-    """Refuse detections that are all right or all wrong.
+    """Check that detections include positives and negatives.
 
     Raises:
-        BadInput: they are.
+        BadInput: all are positive, or all are negative.
     """
     if is_person.all() or not is_person.any():
         raise BadInput(
-            f"{is_person.sum()} of {len(is_person)} validation detections are people; take more sequences"
+            f"{is_person.sum()} of {len(is_person)} validation detections are people; use more sequences"
         )
 
 
 def _match(
     found: Detections, box: Floats, is_counted: NDArray[np.bool_]
 ) -> tuple[Floats, NDArray[np.bool_], Floats]:
-    """Return score, whether it matches a person, and overlap of each detection, the surest first."""
+    """Return score, whether it matches a person, and IoU of each detection, by descending score."""
     is_free = np.ones(len(box), np.bool_)
     rows: list[tuple[float, bool, float]] = []
     for score, overlap in zip(found.score.tolist(), iou(found.box[:, None], box[None]), strict=True):

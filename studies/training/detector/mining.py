@@ -1,4 +1,4 @@
-"""Hard-negative mining: windows with people, windows without, and those that the cascade takes for people."""
+"""Hard-negative mining: windows with people, windows without people, and false positives of the cascade."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -22,27 +22,27 @@ from peopleboy.tracker.detector.window import CELL_PX, COLUMNS, PERSON_PX, ROWS,
 Floats = NDArray[np.float64]
 Windows = NDArray[np.float16]
 Drawn = tuple[ThermalImage, np.random.Generator]
-"""An augmented image, with random numbers of its own."""
+"""An augmented image with its own random generator."""
 Found = TypeVar("Found")
 
 CELLS: Final = CHANNELS * ROWS * COLUMNS
-"""Of a window, by channel, row and column."""
+"""Cells of a window, indexed by channel, row and column."""
 
-_AUGMENTED: Final = 2  # versions of each image
-_FITS: Final = 1.1 * math.log2(STEP) / 2.0  # a person is looked for in the level, or two, of about their size
-_BESIDE: Final = 0.3  # IoU with a person from which on a window is no negative
-_ALIKE: Final = 0.6  # IoU of windows of which one is enough
-_LEAST_SCORE: Final = -1.0  # of a window that is hard enough
-_A_PERSON: Final = 6  # detected windows
-_SURENESS: Final = 0.5  # final boxes are means that weigh exp(score); with less, samples are more diverse
-_HARDLY: Final = 1e-4  # share of such weights that is nothing
-_ASIDE: Final = 1.5 * CELL_PX / PERSON_PX  # heights; boxes that are moved by more end up on another person
-_A_LEVEL: Final = 6  # windows that are placed anywhere
-_AN_IMAGE: Final = 12  # negatives
+_AUGMENTED: Final = 2  # augmented versions of each image
+_FITS: Final = 1.1 * math.log2(STEP) / 2.0  # a person fits one or two levels of the pyramid
+_BESIDE: Final = 0.3  # IoU with a person, from which on a window is not a negative
+_ALIKE: Final = 0.6  # IoU from which on two windows are duplicates
+_LEAST_SCORE: Final = -1.0  # least score of a hard negative
+_A_PERSON: Final = 6  # detected windows per person
+_SURENESS: Final = 0.5  # final boxes are means weighted by exp(score); lower values diversify samples
+_HARDLY: Final = 1e-4  # share of such weights that is neglected
+_ASIDE: Final = 1.5 * CELL_PX / PERSON_PX  # heights; a box displaced by more belongs to another person
+_A_LEVEL: Final = 6  # random windows per level
+_AN_IMAGE: Final = 12  # negatives per image
 
 
 class _Hits(NamedTuple):
-    """Windows in which the cascade detects people: boxes (N, 4), scores (N,), and where each begins."""
+    """Windows in which the cascade detects people: boxes (N, 4), scores (N,), and start cells."""
 
     box: Floats
     score: Floats
@@ -52,17 +52,17 @@ class _Hits(NamedTuple):
 def windows_with_people(
     images: Sequence[ThermalImage], rng: np.random.Generator, kind: WindowKind
 ) -> Windows:
-    """Collect windows (N, 1800) that people fill, in augmented images, each also a cell off."""
+    """Collect windows (N, 1800) that fit people in augmented images, and copies displaced by a cell."""
     return _stacked(_collect(_filled, _with_people(images, rng, kind)))
 
 
 def detected_windows(
     images: Sequence[ThermalImage], cascade: Cascade, rng: np.random.Generator, kind: WindowKind
 ) -> tuple[Windows, Floats]:
-    """Collect windows (N, 1800) in which the cascade detects people, however badly these fill them.
+    """Collect windows (N, 1800) in which the cascade detects people, however badly they fit.
 
     Returns:
-        The windows, and the offsets of the people (N, 4): see `encode_boxes`.
+        The windows, and the offsets (N, 4) of the people, see `encode_boxes`.
     """
     found = _collect(lambda drawn: _let_through(*drawn, cascade, kind), _with_people(images, rng, kind))
     return _stacked([window for window, _ in found]), np.array([each for _, each in found]).reshape(-1, 4)
@@ -71,7 +71,7 @@ def detected_windows(
 def _collect(
     work: Callable[[Drawn], list[Found]], images: Iterable[Drawn], most: float = math.inf
 ) -> list[Found]:
-    """Collect what is found in images, on all cores, until it is enough."""
+    """Collect windows from images on all cores, until there are enough."""
     found: list[Found] = []
     for here in in_threads(work, images):
         found += here
@@ -87,14 +87,14 @@ def _stacked(windows: Sequence[Windows]) -> Windows:
 def _with_people(
     images: Sequence[ThermalImage], rng: np.random.Generator, kind: WindowKind
 ) -> Iterator[Drawn]:
-    """Yield augmented images with people to train on, with random numbers of their own."""
+    """Yield augmented images with people to train on, each with its own random generator."""
     return _augment(
         (image for image in images if has_people(image, kind) for _ in range(_AUGMENTED)), rng, kind
     )
 
 
 def _augment(images: Iterable[ThermalImage], rng: np.random.Generator, kind: WindowKind) -> Iterator[Drawn]:
-    """Yield augmented images, each with random numbers of its own."""
+    """Yield augmented images, each with its own random generator."""
     for image in images:
         own = np.random.default_rng(rng.integers(2**63))
         yield augment_for(image, own, kind), own
@@ -136,10 +136,10 @@ def windows_anywhere(
     """Collect windows (N, 1800) without people.
 
     Args:
-        images: images, which are augmented.
-        rng: draws which images, and where.
-        most: how many are enough.
-        kind: of windows.
+        images: images to augment.
+        rng: draws images and positions.
+        most: largest number of windows.
+        kind: kind of windows.
     """
     found: list[Windows] = []
     for k in rng.permutation(len(images)).tolist():
@@ -160,14 +160,14 @@ def windows_anywhere(
 def false_positives(
     images: Sequence[ThermalImage], cascade: Cascade, rng: np.random.Generator, most: int, kind: WindowKind
 ) -> Windows:
-    """Collect windows (N, 1800) without people that the cascade detects, the worst of each image.
+    """Collect windows (N, 1800) of false positives of the cascade, those with the highest scores per image.
 
     Args:
-        images: images, which are augmented.
-        cascade: whose errors are collected.
-        rng: draws which images.
-        most: how many are enough.
-        kind: of windows.
+        images: images to augment.
+        cascade: cascade whose false positives are collected.
+        rng: draws images.
+        most: largest number of windows.
+        kind: kind of windows.
     """
     order = _augment((images[k] for k in rng.permutation(len(images)).tolist()), rng, kind)
     return _stacked(_collect(lambda drawn: _false_positives(drawn[0], cascade, kind), order, most))
@@ -199,34 +199,35 @@ def _hits(image: ThermalImage, cascade: Cascade, kind: WindowKind) -> _Hits:
 
 
 def _is_clear(box: Floats, image: ThermalImage) -> NDArray[np.bool_]:
-    """Return which boxes (N, 4) overlap no person much; a part of a person is a negative."""
+    """Return which boxes (N, 4) have little overlap with people; a part of a person is a negative, too."""
     return np.asarray((iou(box[:, None], image.box[None]) < _BESIDE).all(axis=1), np.bool_)
 
 
 def _cut(cells: Cells, row: int, column: int) -> Windows:
-    """Return the cells (1800,) of a window; beyond the border the last cell is repeated."""
+    """Return the cells (1800,) of a window, padded by repeating the cells at the border."""
     _, high, wide = cells.shape
     rows = np.clip(np.arange(row, row + ROWS), 0, high - 1)
     columns = np.clip(np.arange(column, column + COLUMNS), 0, wide - 1)
     return cells[:, rows[:, None], columns].astype(np.float16).ravel()
 
 
-# The features that trees may choose from.
+# The pool of features for the trees.
 
 Box = tuple[int, int, int, int]
 
 DRAWN: Final = 6000
-_GROWS: Final = (0.25, 0.35)  # chance that a rectangle has no more rows, columns
+_GROWS: Final = (0.25, 0.35)  # probability that a rectangle stops growing, by rows and by columns
 _MOST_ROWS: Final = 16
-_ALONE: Final = 0.25  # of what is drawn
-_ADJACENT: Final = 0.35  # likewise, of equal size beside, above or below each other
-_MIRRORED: Final = 0.2  # likewise; the rest lie anywhere
+# Shares of the drawn features; the remaining ones are pairs at random positions.
+_ALONE: Final = 0.25  # single rectangles
+_ADJACENT: Final = 0.35  # pairs of equal size beside, above or below each other
+_MIRRORED: Final = 0.2  # pairs mirrored left to right
 _NOTHING: Final = (0, 0, 0, 0)
 _SEED: Final = 5
 
 
 def patch_pool(drawn: int = DRAWN) -> Patches:
-    """Return every cell of every channel, and rectangles and pairs drawn at random; always the same."""
+    """Return every cell of every channel, and random rectangles and pairs; the result is always the same."""
     rng = np.random.default_rng(_SEED)
     cells = [(row, column, row + 1, column + 1) for row in range(ROWS) for column in range(COLUMNS)]
     first, second = cells * CHANNELS, [_NOTHING] * (len(cells) * CHANNELS)
@@ -247,7 +248,7 @@ def _rectangle(rng: np.random.Generator) -> Box:
 
 
 def _partner(box: Box, rng: np.random.Generator) -> Box:
-    """Draw the rectangle that is subtracted from another."""
+    """Draw the rectangle that is subtracted from another one."""
     top, left, bottom, right = box
     kind = rng.random()
     if kind < _ALONE:

@@ -1,4 +1,4 @@
-"""Train the network of box refinement on boxes round people, displaced as those of rescoring are."""
+"""Train the box refinement network on people's boxes with the typical errors of rescored boxes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -26,26 +26,27 @@ from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.detector.rescoring import BoxRefinementNetwork
 from peopleboy.tracker.detector.window import Floats
 
-_HARDLY_VISIBLE: Final = 0.3  # of people that are hidden or not upright are trained on
-_INSIDE: Final = 0.25  # of a box, at least
+_HARDLY_VISIBLE: Final = 0.3  # share of occluded or non-upright people that are sampled
+_INSIDE: Final = 0.25  # least share of a box inside the image
 _TALL_PX: Final = 16.0
-# Errors of rescored boxes: deviations of middle, head and feet in heights, of the width's logarithm.
+# Errors of rescored boxes: standard deviations of middle, head and feet in heights, and of the logarithm of
+# the width.
 _MIDDLE, _HEAD, _FEET, _WIDTH = 0.018, 0.03, 0.055, 0.1
-_FAR_OFF: Final = 0.3  # of boxes
-_FARTHER: Final = 2.2  # times as far
-_LOWEST: Final = 0.4  # least height of a box in heights of its person
+_FAR_OFF: Final = 0.3  # share of boxes with larger errors
+_FARTHER: Final = 2.2  # factor on their errors
+_LOWEST: Final = 0.4  # least height of a box, relative to its person
 
 _OVERLAP: Final = 4.0  # weight of 1 - IoU
-_UNITS: Final = 0.3  # weight of errors in units
-_LINEAR_FROM: Final = 1.0  # units
-_MOST: Final = 8.0  # of the loss of a unit: a box that is farther off is of another person
-_CLIPPED: Final = 12.0  # units, as boxes that are wildly off have no gradient of IoU
+_UNITS: Final = 0.3  # weight of the errors in units
+_LINEAR_FROM: Final = 1.0  # error in units, from which on the loss is linear
+_MOST: Final = 8.0  # largest loss per offset; a box that is farther off belongs to another person
+_CLIPPED: Final = 12.0  # units; boxes without overlap have no gradient of IoU
 _NOTHING: Final = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoxRefinementTraining(CropTraining):
-    """Train on people in random worlds that the cascade was not trained on."""
+    """Train on people in random worlds on which the cascade was not trained."""
 
     NETWORK: ClassVar[type[BoxRefinementNetwork]] = BoxRefinementNetwork
     EPOCHS: ClassVar[int] = 2
@@ -53,7 +54,7 @@ class BoxRefinementTraining(CropTraining):
     VERSIONS: ClassVar[int] = 4
 
     def sample(self, version: Version, *, augments: bool) -> CropSamples:  # noqa: ARG002
-        """Collect the people of an image, with displaced boxes."""
+        """Collect the people of an image with displaced boxes."""
         people = version.image.box[_is_sampled(version.image, version.rng)]
         boxes = _displace(people, version.rng)
         found = Detections.from_trees(boxes, np.zeros(len(boxes)))
@@ -61,9 +62,9 @@ class BoxRefinementTraining(CropTraining):
         return CropSamples.cut(version, found, iou(boxes, people), encode_boxes(boxes, people), size)
 
     def check(self, others: CropSamples) -> None:
-        """Refuse sequences without people."""
+        """Check that people are visible in the validation sequences."""
         if not len(others):
-            raise BadInput("no people are visible in the validation sequences; take more sequences")
+            raise BadInput("no people are visible in the validation sequences; use more sequences")
 
     def loss(self, outputs: jax.Array, batch: CropSamples) -> tuple[jax.Array, dict[str, jax.Array]]:
         """Return the losses of overlap (Yu et al., UnitBox 2016) and of offsets in units."""
@@ -76,7 +77,7 @@ class BoxRefinementTraining(CropTraining):
         return whole.mean(), {"overlap": overlap.mean(), "units off": off.mean()}
 
     def evaluate(self, model: BoxRefinementNetwork, data: CropData) -> Mapping[str, str]:
-        """Measure by how much boxes are nearer to people."""
+        """Measure how much the overlap of boxes with people improves."""
         others = data.samples.validation
         rows = np.ones(len(others), np.bool_)
         before, after = mean_overlaps(predictions(model, others), others, rows)
@@ -85,7 +86,7 @@ class BoxRefinementTraining(CropTraining):
 
 
 def _is_sampled(image: ThermalImage, rng: np.random.Generator) -> NDArray[np.bool_]:
-    """Return which people (P,) are visible enough, and draw some of the others."""
+    """Return which people (P,) to sample: those that are visible enough, and a random share of the others."""
     rows, columns = image.grey.shape
     whole = np.array([0.0, 0.0, columns, rows])
     is_inside = cover(intersection(image.box, whole), area(image.box)) > _INSIDE
@@ -94,7 +95,7 @@ def _is_sampled(image: ThermalImage, rng: np.random.Generator) -> NDArray[np.boo
 
 
 def _displace(people: Floats, rng: np.random.Generator) -> Floats:
-    """Displace boxes of people (P, 4) as those of rescoring are: some more, some less."""
+    """Displace boxes of people (P, 4) by typical errors of rescored boxes."""
     left, top, width, height = people.T
     far = np.where(rng.random(len(people)) < _FAR_OFF, _FARTHER, 1.0)
     aside, up, down, wider = (
@@ -106,7 +107,7 @@ def _displace(people: Floats, rng: np.random.Generator) -> Floats:
 
 
 def _iou(one: jax.Array, other: jax.Array) -> jax.Array:
-    """Return the IoU (N,) of boxes by their offsets (N, 4) from the same windows."""
+    """Return the IoU (N,) of two sets of boxes, given as offsets (N, 4) from the same windows."""
     (low, high), (begin, end) = _corners(one), _corners(other)
     common = jnp.prod(jnp.maximum(jnp.minimum(high, end) - jnp.maximum(low, begin), 0.0), axis=1)
     either = jnp.prod(high - low, axis=1) + jnp.prod(end - begin, axis=1) - common
@@ -114,6 +115,6 @@ def _iou(one: jax.Array, other: jax.Array) -> jax.Array:
 
 
 def _corners(offsets: jax.Array) -> tuple[jax.Array, jax.Array]:
-    """Return two corners (N, 2), in heights of the window."""
+    """Return two opposite corners (N, 2), in window heights."""
     middle, top, height, half = offsets[:, 0], offsets[:, 1], jnp.exp(offsets[:, 2]), offsets[:, 3] / 2.0
     return jnp.stack([middle - half, top], axis=1), jnp.stack([middle + half, top + height], axis=1)

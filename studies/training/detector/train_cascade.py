@@ -1,4 +1,4 @@
-"""Train the detector's trees: a soft cascade by hard-negative mining, and the regression of boxes."""
+"""Train the detector's trees: a soft cascade with hard-negative mining, and the box regression."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ Windows = NDArray[np.float16]
 Floats = NDArray[np.float32]
 
 VALIDATION: Final = 30
-"""Worlds to evaluate the trees: those of the first seeds."""
+"""Number of worlds for evaluating the trees: those of the first seeds."""
 
 ROUNDS: Final = {
     WindowKind.WHOLE: (
@@ -50,34 +50,34 @@ ROUNDS: Final = {
         Boosting(500, 0.1, features=300),
     ),
 }
-"""After each but the last, false positives are mined, which are negatives of the next."""
+"""Training rounds. After each but the last, false positives are mined as negatives of the next round."""
 REGRESSION: Final = Boosting(trees=160, rate=0.1, features=300)
 
 _SEED_OF_PEOPLE: Final = 0
 _SEED_OF_BOXES: Final = 1
 _SEED_OF_NEGATIVES: Final = 100
-_HELD_BACK: Final = 10  # of so many worlds one is not trained on
+_HELD_BACK: Final = 10  # one in so many worlds is held back
 _MINED: Final = 16000  # a round
-_NEGATIVES: Final = 80000  # that are in memory: 3.6 kB each
+_NEGATIVES: Final = 80000  # in memory, 3.6 kB each
 _FIRST_NEGATIVES: Final = 16000
 
-_WEAKEST: Final = 0.03  # share of people that no tree needs to keep
-_REJECTED: Final = 0.005  # share of all others that may be rejected
-# Thresholds are stricter than that, as most that they reject score low in the end; the first trees separate
-# people from negatives by less.
+_WEAKEST: Final = 0.03  # share of people, those with the lowest scores, that the thresholds may reject
+_REJECTED: Final = 0.005  # share of all other people that may be rejected
+# Thresholds are stricter than that, since most windows that they reject have low final scores. The first
+# trees separate people from negatives less well.
 _STRICTER: Final = np.float32(0.7)
-_AFTER: Final = np.float32(32.0)  # trees
-_SAMPLED: Final = 20000  # people by whom thresholds are set
+_AFTER: Final = np.float32(32.0)  # trees after which the full margin applies
+_SAMPLED: Final = 20000  # windows of people for setting thresholds
 _LAST: Final = -4.0
-"""Least score of a detection, before calibration."""
-_LINEAR_FROM: Final = 0.9  # quantile of errors from which on the loss of boxes is linear (Huber)
+"""Lowest score of a detection, before calibration."""
+_LINEAR_FROM: Final = 0.9  # quantile of errors from which on the loss of the box regression is linear (Huber)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CascadeTraining(Specification[Tasks]):
-    """Train on random worlds: as drawn, full of people, plain, both, or warm.
+    """Train on random worlds: ordinary, crowded, plain, crowded and plain, and warm ones.
 
-    A tenth is held back, to calibrate scores.
+    A tenth of the worlds is held back for calibrating scores.
     """
 
     sequences: Annotated[
@@ -86,13 +86,13 @@ class CascadeTraining(Specification[Tasks]):
     windows: Annotated[
         tuple[WindowKind, ...],
         Field(
-            description="Train trees for people who are mostly inside the image, or cut off by its border; "
-            "other trees stay as they are."
+            description="Trees to train: for people mostly inside the image, or truncated by its border; "
+            "the other trees stay unchanged."
         ),
     ] = tuple(WindowKind)
     only_boxes: Annotated[
         bool,
-        Field(description="Train box regression only; trees that score windows stay as they are."),
+        Field(description="Train the box regression only; the trees that score windows stay unchanged."),
     ] = False
 
     def default_folder(self, model: str) -> Path:  # noqa: ARG002
@@ -125,7 +125,7 @@ class CascadeTraining(Specification[Tasks]):
         return {FILE: PeopleModel({**before.trees, **trees}, {**before.about, **about})}
 
     def evaluate(self, model: PeopleModel, data: Tasks) -> Mapping[str, str]:
-        """Measure detections in worlds that were not trained on."""
+        """Evaluate detections in the validation worlds."""
         images = load_images(task.path for task in data.validation)
         return {
             f"on worlds 0 to {VALIDATION - 1}, {mount}": str(evaluate_trees(model, images, knows_mount=knows))
@@ -136,15 +136,15 @@ class CascadeTraining(Specification[Tasks]):
 def fit_trees(
     images: Sequence[ThermalImage], others: Sequence[ThermalImage], kind: WindowKind
 ) -> PeopleTrees:
-    """Train trees round by round, each time with the false positives of the round before.
+    """Train trees in rounds, each with the false positives of the previous round.
 
     Args:
-        images: to train on.
-        others: of other worlds, by which scores are calibrated.
-        kind: of windows.
+        images: training images.
+        others: images of held-back worlds, for calibrating scores.
+        kind: kind of windows.
 
     Raises:
-        BadInput: scikit-learn is missing, or too few people.
+        BadInput: scikit-learn is missing, or there are too few people.
     """
     people = windows_with_people(images, np.random.default_rng(_SEED_OF_PEOPLE), kind)
     rng, patches = np.random.default_rng(_SEED_OF_NEGATIVES), patch_pool()
@@ -164,10 +164,10 @@ def fit_trees(
 
 
 def with_boxes(images: Sequence[ThermalImage], cascade: Cascade, kind: WindowKind) -> PeopleTrees:
-    """Train where people are in the windows that a cascade detects.
+    """Train the box regression on the windows that a cascade detects.
 
-    Windows that people fill would not do: of those that are detected many are too small or too large, and
-    would be believed.
+    Windows that fit people exactly are not enough: many detected windows are too small or too large, and the
+    regression must correct them.
     """
     windows, offsets = detected_windows(images, cascade, np.random.default_rng(_SEED_OF_BOXES), kind)
     report(f"{len(windows)} windows detected as {kind} people")
@@ -175,13 +175,13 @@ def with_boxes(images: Sequence[ThermalImage], cascade: Cascade, kind: WindowKin
 
 
 def fit_cascade(people: Windows, negatives: Windows, patches: Patches, boosting: Boosting) -> Cascade:
-    """Train trees on windows (N, 1800) with people and without; both together weigh the same.
+    """Train trees on windows (N, 1800) with and without people; both classes have equal total weight.
 
     Raises:
         BadInput: there are too few windows.
     """
     if min(len(people), len(negatives)) < boosting.smallest:
-        raise BadInput(f"{len(people)} windows with people and {len(negatives)} without; take more sequences")
+        raise BadInput(f"{len(people)} windows with people and {len(negatives)} without; use more sequences")
     sums = integrate_windows(np.concatenate([people, negatives]))
     count = sums.shape[1]
     is_person = np.arange(count) < len(people)
@@ -201,7 +201,7 @@ def fit_cascade(people: Windows, negatives: Windows, patches: Patches, boosting:
 
 
 def _with_thresholds(cascade: Cascade, people: Sums) -> Cascade:
-    """Set the thresholds after each tree, which nearly all people pass whose final score is high."""
+    """Set the threshold after each tree so that almost all people with a high final score pass."""
     running = cascade.running(people)
     is_found = running[:, -1] > np.quantile(running[:, -1], _WEAKEST)
     least = np.quantile(running[is_found], _REJECTED, axis=0).astype(np.float32)
@@ -211,7 +211,7 @@ def _with_thresholds(cascade: Cascade, people: Sums) -> Cascade:
 
 
 def fit_boxes(windows: Windows, offsets: NDArray[np.float64], patches: Patches) -> BoxRegression:
-    """Train the regression of boxes on windows (N, 1800) with known offsets (N, 4)."""
+    """Train the box regression on windows (N, 1800) with known offsets (N, 4)."""
     rng = np.random.default_rng(0)
     binned, tables = Binned(patches, integrate_windows(windows), rng), []
     for target in offsets.T.astype(np.float32):

@@ -29,21 +29,21 @@ from peopleboy.tracker.detector.rescoring import RescoringNetwork
 from peopleboy.tracker.networks.inference import CropNetwork
 
 POSITIVE: Final = 0.35
-"""IoU from which on a detection is a person."""
+"""IoU from which on a detection is a positive."""
 NEGATIVE: Final = 0.2
-"""IoU up to which it is none; what is between is neither."""
+"""IoU up to which a detection is a negative; detections in between are ignored."""
 
-_JITTERED: Final = 0.5  # of detections are trained on a second time, elsewhere
-_ASIDE: Final = (0.04, 0.05)  # deviations of where, in heights to the right and down
-_GROWN: Final = 0.09  # of the logarithm of the size
-_SCORE: Final = 0.5  # of the score
-_OFFSETS: Final = 0.5  # weight of the loss of offsets
-_LINEAR_FROM: Final = 2.0  # units of an offset's error
+_JITTERED: Final = 0.5  # share of detections that are added a second time, displaced
+_ASIDE: Final = (0.04, 0.05)  # standard deviations of the displacement to the right and down, in heights
+_GROWN: Final = 0.09  # standard deviation of the logarithm of the size
+_SCORE: Final = 0.5  # standard deviation of the score
+_OFFSETS: Final = 0.5  # weight of the offsets in the loss
+_LINEAR_FROM: Final = 2.0  # error of an offset in units, from which on its loss is linear
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RescoringTraining(CropTraining):
-    """Train on what the shipped cascade detects in random worlds that it was not trained on."""
+    """Train on detections of the shipped cascade in random worlds that it was not trained on."""
 
     NETWORK: ClassVar[type[RescoringNetwork]] = RescoringNetwork
     EPOCHS: ClassVar[int] = 4
@@ -51,7 +51,7 @@ class RescoringTraining(CropTraining):
     VERSIONS: ClassVar[int] = 2
 
     def sample(self, version: Version, *, augments: bool) -> CropSamples:
-        """Collect what the cascade detects in an image; some of it again, a little elsewhere."""
+        """Collect the cascade's detections in an image, and displaced copies of some of them."""
         image, mount, rng = version
         trees = shipped_people_trees()
         found = detect_with_trees(trees, image.grey, image.change, mount, SMALLEST_PX, WEAKEST)
@@ -59,7 +59,7 @@ class RescoringTraining(CropTraining):
         return CropSamples.cut(version, found, *_match(found.box, image.box), self.NETWORK.ARCHITECTURE.crop)
 
     def check(self, others: CropSamples) -> None:
-        """Refuse samples by which no scores can be calibrated."""
+        """Check that the samples are sufficient for calibrating scores."""
         check_labels(_labelled(np.zeros(len(others.overlap)), others)[1])
 
     def loss(self, outputs: jax.Array, batch: CropSamples) -> tuple[jax.Array, dict[str, jax.Array]]:
@@ -84,7 +84,7 @@ class RescoringTraining(CropTraining):
         }
 
     def evaluate(self, model: RescoringNetwork, data: CropData) -> Mapping[str, str]:
-        """Measure by how much scores and boxes are better than the cascade's."""
+        """Measure how much better scores and boxes are than the cascade's."""
         others = data.samples.validation
         predicted = predictions(model, others)
         first, is_person = _labelled(SCORES * others.features[:, 0].astype(np.float64), others)
@@ -111,7 +111,7 @@ def _jitter(found: Detections, rng: np.random.Generator) -> Detections:
 
 
 def _match(box: Floats, people: Floats) -> tuple[Floats, Floats]:
-    """Return by how much boxes (N, 4) overlap one of people (P, 4), at most, and its offsets (N, 4)."""
+    """Return the largest IoU of each box (N, 4) with people (P, 4), and the offsets (N, 4) to that person."""
     overlap, offset = np.zeros(len(box)), np.zeros((len(box), OFFSETS))
     if len(people) and len(box):
         shared = iou(box[:, None], people[None])
@@ -122,7 +122,7 @@ def _match(box: Floats, people: Floats) -> tuple[Floats, Floats]:
 
 
 def with_log_odds(network: CropNetwork, others: CropSamples) -> RescoringNetwork:
-    """Calibrate a network so that its scores are log odds on samples that it was not trained on.
+    """Calibrate a network so that its scores are log odds on validation samples.
 
     Raises:
         BadInput: scikit-learn is missing, or all samples have the same label.
@@ -134,7 +134,7 @@ def with_log_odds(network: CropNetwork, others: CropSamples) -> RescoringNetwork
 
 
 def _labelled(score: Floats, samples: CropSamples) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return the scores (M,) of positives and negatives, and which they are."""
+    """Return the scores (M,) of positives and negatives, and their labels."""
     is_person = samples.overlap >= POSITIVE
     counts = is_person | (samples.overlap < NEGATIVE)
     return score[counts], is_person[counts]

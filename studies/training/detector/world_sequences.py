@@ -1,4 +1,4 @@
-"""Rendered sequences of the thermal camera: images some time apart, what moved in them, and the people."""
+"""Rendered sequences of the thermal camera: sampled images, grey changes, and the people in them."""
 
 import math
 from collections.abc import Iterable
@@ -25,25 +25,25 @@ Floats = NDArray[np.float64]
 Grey = NDArray[np.uint8]
 
 APART_S: Final = 0.5
-"""Between two images that are kept."""
+"""Time between two sampled images."""
 
 _LOW: Final = (Posture.SITTING, Posture.BENDING)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ThermalSequence(Arrays):
-    """Images of one run with the truth about them.
+    """Images of one run with ground truth.
 
     Attributes:
         grey: (N, H, W) images.
-        change: (N, H, W) by how much greys changed in 0.2 s beyond what the robot's turn does.
+        change: (N, H, W) change of grey in 0.2 s, compensated for the robot's rotation.
         mount: (3,) row of the horizon [px], focal length [px] and height [m] of the camera.
-        image: (P,) int64 in which image a person is, visible or not.
+        image: (P,) int64 index of the image of each person, visible or not.
         box: (P, 4) [px] from head to feet.
-        visible: (P,) share of the silhouette that is seen.
-        inside: (P,) share of it that lies inside the image.
-        shown_px: (P,) pixels that are seen.
-        is_upright: (P,) whether they stand or walk, not sit or bend.
+        visible: (P,) visible share of the silhouette.
+        inside: (P,) share of the silhouette inside the image.
+        shown_px: (P,) number of visible pixels.
+        is_upright: (P,) whether the person stands or walks, and does not sit or bend.
     """
 
     grey: Grey
@@ -63,7 +63,7 @@ class ThermalSequence(Arrays):
 
 
 def render_thermal(scenario: Scenario, seed: int) -> ThermalSequence:
-    """Render a scenario with the thermal camera; images between those that are kept are not rendered.
+    """Render a scenario with the thermal camera; only the sampled images are rendered.
 
     Raises:
         BadInput: the robot needs images to drive.
@@ -107,7 +107,7 @@ def render_thermal(scenario: Scenario, seed: int) -> ThermalSequence:
 
 
 def render_world(seed: int) -> ThermalSequence:
-    """Draw the world of a seed, and render it."""
+    """Draw the world of a seed and render it."""
     return render_thermal(parse_scenario(world_of(seed), source=f"world_{seed}", folder=Path()), seed)
 
 
@@ -118,10 +118,10 @@ def render_task(folder: Path, seed: int) -> SampleTask:
 
 _LEAST_VISIBLE: Final = 0.35
 _LEAST_INSIDE: Final = 0.5
-_LEAST_CLEAR: Final = 0.45  # visible share of what lies inside the image, of a person that is good
-_LITTLE_INSIDE: Final = 0.25  # a person that is clear has more of the silhouette inside the image
-_CLEAR: Final = 0.7  # and is visible by this share of that
-HIGHEST: Final = 0.25  # share of the height that may be above the image
+_LEAST_CLEAR: Final = 0.45  # least visible share of the part inside the image, for a good person
+_LITTLE_INSIDE: Final = 0.25  # least share of the silhouette inside the image, for a clear person
+_CLEAR: Final = 0.7  # least visible share of that part, for a clear person
+HIGHEST: Final = 0.25  # largest share of the height above the image
 _LEAST_SHOWN_PX: Final = 8.0  # people of fewer visible pixels are ignored
 
 
@@ -131,11 +131,11 @@ class ThermalImage:
 
     Attributes:
         grey: (H, W) image.
-        change: (H, W) by how much greys changed.
-        mount: of the camera.
-        box: (P, 4) [px] of all people that are visible in part, from head to feet, as wide as the torso.
-        is_good: (P,) whether to train on them: upright, and not mostly hidden.
-        is_clear: (P,) upright, and most of what lies inside the image is visible, however little that is.
+        change: (H, W) change of grey.
+        mount: mount of the camera.
+        box: (P, 4) [px] boxes of all people who are visible in part: head to feet, as wide as the torso.
+        is_good: (P,) whether to train on the person: upright, and not mostly occluded.
+        is_clear: (P,) whether the person is upright, and most of the part inside the image is visible.
     """
 
     grey: Grey
@@ -147,7 +147,7 @@ class ThermalImage:
 
 
 def load_images(paths: Iterable[Path]) -> list[ThermalImage]:
-    """Read all images of sequences."""
+    """Read the images of all sequences."""
     sequences = map(ThermalSequence.load, paths)
     return [_image(sequence, k) for sequence in sequences for k in range(len(sequence.grey))]
 

@@ -1,4 +1,4 @@
-"""Random worlds that the detector is trained on: as drawn, full of people, plain, warm."""
+"""Random training worlds of the detector: ordinary, crowded, plain, and warm ones."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -35,13 +35,13 @@ _CROWDS: Final = Distribution(
     shares={**SHARES, **_SHARES},
     odds={**ODDS, **{key: (odds, ODDS[key][1]) for key, odds in _ODDS.items()}},
 )
-_TOGETHER: Final = 0.5  # of all people have a companion
+_TOGETHER: Final = 0.5  # share of people with a companion
 _APART_M: Final = (0.45, 0.9)
 _TRIES: Final = 4
 
 
 def crowded_world(seed: int) -> dict[str, Any]:
-    """Draw a world of 5 to 10 people, as far as there is room, and of companions who walk beside them."""
+    """Draw a world with 5 to 10 people, as far as there is room, some with companions beside them."""
     world = random_world(seed, distribution=_CROWDS)
     rng = stream(seed, "crowded_world")
     for person in world.get("people", ()):
@@ -53,7 +53,7 @@ def crowded_world(seed: int) -> dict[str, Any]:
 def _with_companion(
     world: dict[str, Any], person: dict[str, Any], rng: np.random.Generator
 ) -> dict[str, Any]:
-    """Add a person that walks the same path a little aside, if that is free."""
+    """Add a person who walks a parallel path, if that path is free."""
     for _ in range(_TRIES):
         way, far = rng.uniform(-math.pi, math.pi), rng.uniform(*_APART_M)
         aside = np.array([far * math.cos(way), far * math.sin(way)])
@@ -75,14 +75,14 @@ _WARM_AIR_C: Final = (27.0, 31.0)
 
 
 def with_library_span(world: World) -> World:
-    """Return a world without details, in the robot's own span of 24..36 degC: most of it is black."""
+    """Return a plain world seen in the robot's own span of 24..36 degC, in which most pixels are black."""
     warmth = world["place"].get("temperatures", {})
     is_warm = max((warmth.get(surface, 0.0) for surface in _SURFACES), default=0.0) > _WARMEST_C
     return _plain(world, {} if is_warm else warmth)
 
 
 def with_warm_air(world: World, air_c: float) -> World:
-    """Return a world without details, in the same span, with all temperatures shifted by as much as air."""
+    """Return a plain world in the same span, with all temperatures shifted by the same offset as the air."""
     warmth = world["place"]["temperatures"]
     warmer = air_c - warmth["air_c"]
     walls = {name: rounded(value + warmer) for name, value in warmth["single_walls_c"].items()}
@@ -91,7 +91,7 @@ def with_warm_air(world: World, air_c: float) -> World:
 
 
 def _plain(world: World, temperatures: World) -> World:
-    """Return a world of these temperatures without details and sun, seen in the robot's own span."""
+    """Return a world with given temperatures, without details and sun, seen in the robot's own span."""
     place = {key: value for key, value in world["place"].items() if key not in ("sun", "temperatures")}
     place |= {"temperatures": temperatures} if temperatures else {}
     cameras = world["robot"]["cameras"]
@@ -102,13 +102,13 @@ def _plain(world: World, temperatures: World) -> World:
 
 @dataclass(frozen=True, slots=True)
 class WorldKind:
-    """A kind of worlds.
+    """A kind of training worlds.
 
     Attributes:
-        description: what they are.
-        first_seed: they have seeds from here on, at most 1000.
-        share: of all worlds that are trained on.
-        draw: returns the data of a scenario of a seed.
+        description: text for reports.
+        first_seed: first of at most 1000 seeds.
+        share: share of all training worlds.
+        draw: function that returns the scenario data for a seed.
     """
 
     description: str
@@ -117,7 +117,7 @@ class WorldKind:
     draw: Callable[[int], World]
 
     def seeds(self, worlds: int) -> range:
-        """Return the seeds of its share of so many worlds, one at least."""
+        """Return the seeds of this kind's share of a number of worlds, at least one."""
         return range(self.first_seed, self.first_seed + max(round(self.share * worlds), 1))
 
 
@@ -142,15 +142,15 @@ KINDS: Final = (
 )
 
 LATER: Final = 10_000
-"""Kinds come again after so many seeds."""
+"""Distance between the seed ranges of a kind."""
 
 
 def world_of(seed: int) -> World:
-    """Draw the world of a seed; those below the first kind's are of that kind, too."""
+    """Draw the world of a seed; seeds below the first kind's range belong to the first kind, too."""
     kind = next((kind for kind in reversed(KINDS) if seed % LATER >= kind.first_seed), KINDS[0])
     return kind.draw(seed)
 
 
 def seeds_of(worlds: int) -> list[int]:
-    """Return the seeds of so many worlds, one of each kind at least."""
+    """Return the seeds of a number of worlds, at least one of each kind."""
     return [seed for kind in KINDS for seed in kind.seeds(worlds)]

@@ -103,7 +103,7 @@ def test_what_is_trained_says_from_how_much_and_how_well(tmp_path, monkeypatch):
     trained = LearnedTable.load(path)
     assert len(trained.classifiers) > 1
     assert "100 pairs" in trained.about["trained on"]
-    assert float(trained.about["right on each scenario, trained on the others"].split()[0]) > 85
+    assert float(trained.about["accuracy on each scenario, trained on the others"].split()[0]) > 85
 
 
 def test_a_tracker_that_does_not_order_people_is_refused(tmp_path, capsys):

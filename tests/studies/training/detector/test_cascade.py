@@ -163,5 +163,5 @@ def test_trees_learn_where_in_their_windows_people_are() -> None:
 
 def test_too_few_windows_are_refused() -> None:
     few, many = np.zeros((3, CELLS), np.float16), np.zeros((50, CELLS), np.float16)
-    with refused("3 windows with people", "take more sequences"):
+    with refused("3 windows with people", "use more sequences"):
         fit_cascade(few, many, patch_pool(0), Boosting(2, 0.3))

@@ -53,7 +53,7 @@ def test_people_alone_or_none_at_all_tell_no_odds(
     is_person: NDArray[np.bool_], shots: list[ThermalImage], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     propose(monkeypatch, shots[0], is_person)
-    with refused(f"{2 * is_person.sum()} of {2 * len(SCORES)} validation detections", "take more sequences"):
+    with refused(f"{2 * is_person.sum()} of {2 * len(SCORES)} validation detections", "use more sequences"):
         calibrate(*WHOLE, shots[:1])
 
 
@@ -61,7 +61,7 @@ def test_scores_that_say_the_contrary_are_refused(
     shots: list[ThermalImage], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     propose(monkeypatch, shots[0], SCORES + np.random.default_rng(1).normal(size=len(SCORES)) < 1.0)
-    with refused("people score no more than negatives", "take more sequences"):
+    with refused("people do not score higher than negatives", "use more sequences"):
         calibrate(*WHOLE, shots[:1])
 
 

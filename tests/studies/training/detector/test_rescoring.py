@@ -99,7 +99,7 @@ def test_who_is_neither_somebody_nor_nobody_does_not_count() -> None:
 )
 def test_people_alone_or_none_are_refused(overlap: list[float], told: str) -> None:
     none = CropSamples.empty(RescoringNetwork.ARCHITECTURE.crop)
-    with refused(f"{told} validation detections are people", "take more sequences"):
+    with refused(f"{told} validation detections are people", "use more sequences"):
         RescoringTraining().check(replace(none, overlap=np.array(overlap, np.float32)))
 
 
