@@ -188,8 +188,8 @@ def fit_distances(
         rng: draws the initial weights and the order of the samples.
         settings: settings of the training.
 
-        Raises:
-            BadInput: too few samples, or all at one distance.
+    Raises:
+        BadInput: too few samples, or all at one distance.
 
     Source: OMNIVIS 2003, section 4.4.
     """
@@ -322,7 +322,7 @@ class DistanceTraining(Specification[list[DistanceSamples]]):
         return {file_name(scenario.name): model}
 
     def evaluate(self, model: DistanceModel, data: list[DistanceSamples]) -> Mapping[str, str]:
-        """Measure the training error, and the validation error after training on 30 % of each run, by blocks."""
+        """Measure the training error, and the validation error of a split by blocks (30 % for training)."""
         settings, seen, unseen = Backpropagation(epochs=self.epochs), [], []
         for run in data:
             seen.append(model.network.predict(run.cues) - run.distance_m)

@@ -313,8 +313,8 @@ def boost(
         rounds: number of weak classifiers.
         uses: names of the features to use.
 
-        Raises:
-            BadInput: all these features are 0 in all samples.
+    Raises:
+        BadInput: all these features are 0 in all samples.
 
     Source: thesis, algorithm 5.
     """

@@ -40,7 +40,7 @@ from peopleboy.tracker.panoramic.people_foreground import Foreground
 Floats = NDArray[np.float64]
 
 LIBRARY: Final = {"room_long": 12, "panoramic_crossing": 10, "panoramic_moving": 14}
-"""Scenarios of the library that are used for training, too, with their seeds."""
+"""Scenarios of the library that are used for training, too, with the number of seeds of each."""
 VALIDATION: Final = 20
 """Number of scenes of the validation split, which have the first seeds."""
 
