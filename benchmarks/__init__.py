@@ -1,4 +1,4 @@
-"""How fast things are: medians, and ratios against a named peer in the same run."""
+"""Benchmarks of speed and quality, with ratios to a named peer in the same run."""
 
 import click
 
@@ -7,7 +7,7 @@ from peopleboy.scenarios.running.engine.task import TasksFailed
 
 
 def call(command: click.Command, name: str) -> None:
-    """Call `python -m NAME`; what the user got wrong is one line, and exit code 2; what failed, and 1."""
+    """Run the command of `python -m NAME`; errors print one line, with exit code 2 for bad input, else 1."""
     try:
         command.main(standalone_mode=False)
     except (BadInput, click.ClickException) as error:

@@ -1,4 +1,4 @@
-"""`make bench`: how fast everything is, from one run; leaves runs/bench.json."""
+"""`make bench`: measure the speed of all parts in one run, and write runs/bench.json."""
 
 import json
 from collections.abc import Iterator
@@ -47,16 +47,14 @@ SCENARIOS = ("single_follow", "crossing_pair")
 MEMORY_FRAMES = 10_000
 RESETS = 100
 OUT = Path("runs/bench.json")
-_MANY_PIXELS = "two thirds are kernels that draw; the one world became a third faster since the goal was set"
+_MANY_PIXELS = "two thirds are rendering; the single world became a third faster since the goal was set"
 FLAT = Goal(most=1000)  # bytes each: less than one image of the smallest camera
 
 
 @click.command()
-@click.option(
-    "--compare", type=click.Path(path_type=Path), help="Figures of an earlier run, put beside these."
-)
+@click.option("--compare", type=click.Path(path_type=Path), help="Results of an earlier run to compare with.")
 def main(compare: Path | None) -> None:
-    """Measure, print what misses its goal and then the rest, and keep the figures."""
+    """Measure, print missed goals first and then the rest, and write the results."""
     before = None if compare is None else read_figures(compare)
     found = list(measure())
     console = Console(width=150 if before is not None else 120)
@@ -68,7 +66,7 @@ def main(compare: Path | None) -> None:
 
 
 def measure() -> Iterator[BenchFigure]:
-    """Measure one after the other."""
+    """Run all measurements one after another."""
     yield from _rendering()
     for count in COUNTS:
         goal = Goal(most=0.5, unit=" ms") if count == 1000 else None
@@ -111,7 +109,7 @@ def _tracker() -> Iterator[BenchFigure]:
     yield BenchFigure((of, by, "ratio"), hog.ratio(HOG, CONTOUR_TRACKER), "{:.1f}", Goal(least=30), reason)
     other, where = (
         "default tracker, 4 people",
-        "two fifths are trees that search every third to sixth image, a third networks that look at people",
+        "two fifths are trees that search every third to sixth image, a third are networks on detections",
     )
     yield BenchFigure((other, "ms"), hog.median(DEFAULT_TRACKER), "{:.1f} ms, mean of some frames")
     yield BenchFigure((other, by, "ratio"), hog.ratio(HOG, DEFAULT_TRACKER), "{:.1f}", Goal(least=9.8), where)
@@ -121,11 +119,11 @@ def _tracker() -> Iterator[BenchFigure]:
 
 
 def _where_time_goes(found: ContourTimes) -> str:
-    """Describe what a further person's time goes into, the most first."""
+    """Return how the time of an additional person is divided, in descending order."""
     parts = sorted(found.parts_ms.items(), key=lambda part: -part[1])
     rest = found.person_ms - sum(found.parts_ms.values())
-    shares = [f"{name} {time_ms:.2f}" for name, time_ms in [*parts, ("all that is between", rest)]]
-    return f"a further person takes {found.person_ms:.2f} ms: {', '.join(shares)}"
+    shares = [f"{name} {time_ms:.2f}" for name, time_ms in [*parts, ("remaining code", rest)]]
+    return f"each additional person takes {found.person_ms:.2f} ms: {', '.join(shares)}"
 
 
 def _environments() -> Iterator[BenchFigure]:

@@ -1,6 +1,6 @@
-"""How well people are tracked all round: `python -m benchmarks.all_round`.
+"""Tracking quality of the panoramic trackers on the floor: `python -m benchmarks.all_round`.
 
-Values were chosen, and networks trained, on seeds from 100 on; these figures are of seeds from 0 on.
+Tuning and training used seeds from 100 on; these results use seeds from 0 on.
 """
 
 import math
@@ -39,7 +39,7 @@ from peopleboy.tracker.trackers import Tracker, explanation_of, make_tracker
 NEAREST_M: Final = 1.2
 FARTHEST_M: Final = 6.0
 ONE_IMAGE: Final = "one image"
-"""The tracker `panoramic` whose people may jump, so that no image but the newest counts for a place."""
+"""The tracker `panoramic` without motion constraints: only the newest image determines positions."""
 
 ROUND: Final = "panoramic_round"
 FOLLOWED: Final = "anna"
@@ -49,7 +49,7 @@ TIMED: Final = (
     ("panoramic_crossing", "panoramic"),
     ("panoramic_moving", "panoramic"),
 )
-"""What is timed beside HOG: the paper's tracker, and ours on a robot that stands and one that drives."""
+"""Cases timed against HOG: the paper's tracker, and `panoramic` on a standing and on a driving robot."""
 _TIMED_FRAMES: Final = 600
 COLUMNS: Final = (
     *("scenario", "tracker", "distance [m]", "position [m]"),
@@ -57,12 +57,12 @@ COLUMNS: Final = (
 )
 _HOG_EVERY: Final = 15
 _HOG_MS: Final = 80.0
-"""What HOG takes where times are scaled to: one machine's milliseconds say little of another's."""
+"""Time of HOG to which times are scaled, for comparisons between machines [ms]."""
 
 
 @dataclass(slots=True)
 class _Rows:
-    """What was true and what was tracked, over the frames of a run that have a new panorama."""
+    """Ground truth and tracks over the frames of a run that have a new panorama."""
 
     truth: list[tuple[float, ...]] = field(default_factory=list)
     tracks: list[tuple[float, ...]] = field(default_factory=list)
@@ -94,16 +94,16 @@ class _Rows:
 
 @dataclass(frozen=True, slots=True)
 class Played:
-    """One run.
+    """Results of one run.
 
     Attributes:
-        scores: on the floor.
-        distance_m: mean absolute error of the distances of matched people, and how many those are.
+        scores: metrics on the floor.
+        distance_m: mean absolute distance error of matched people [m], and their number.
         update_ms: median time of the tracker's updates with a new panorama [ms].
-        handed_over: of each time that the person of `ROUND` came into the thermal image: seconds until its
-            track has a box there, NaN if it went before.
-        taken_over: likewise, until the thermal tracker has a contour of its own round it.
-        numbers: the ids that it had.
+        handed_over: per entry of the person of `ROUND` into the thermal image, seconds until the track has a
+            box there; NaN if the person leaves before.
+        taken_over: the same until the thermal tracker has a contour of the person.
+        numbers: ids of the person's tracks.
     """
 
     scores: Scores
@@ -125,11 +125,11 @@ class Play:
 
     @property
     def name(self) -> str:
-        """Which run."""
+        """Name of the run."""
         return f"{self.scenario} {self.tracker} {self.seed}"
 
     def __call__(self, tell: Tell) -> Played:  # noqa: ARG002
-        """Play it."""
+        """Execute the run."""
         tracker = _Timed(_make(self.tracker, self.seed))
         scenario = load_scenario(self.scenario).mounting(tracker.cameras)
         config = scenario.world(self.seed)
@@ -159,7 +159,7 @@ def _make(name: str, seed: int) -> Tracker:
 
 
 class _Timed:
-    """A tracker whose updates with a new panorama are timed."""
+    """Wrapper that times a tracker's updates with a new panorama."""
 
     def __init__(self, tracker: Tracker) -> None:
         self._tracker = tracker
@@ -173,7 +173,7 @@ class _Timed:
     def update(self, frame: Frame) -> tuple[Track, ...]:
         if PANORAMA not in frame.images:
             return self._tracker.update(frame)
-        frame.rgb(PANORAMA)  # drawn now, if it is drawn when it is asked for
+        frame.rgb(PANORAMA)  # render lazy images before timing
         update_ms, tracks = timed_ms(partial(self._tracker.update, frame))
         self.spent_ms.append(update_ms)
         return tracks
@@ -181,7 +181,7 @@ class _Timed:
 
 @dataclass(slots=True)
 class _Watch:
-    """When one person is in the thermal image, and under which numbers it is known."""
+    """When a person is in the thermal image, and the ids of the person's tracks."""
 
     seen: list[tuple[float, bool]] = field(default_factory=list)
     has_box: list[bool] = field(default_factory=list)
@@ -204,7 +204,7 @@ class _Watch:
         self.has_contour.append(track is not None and track.id in contours)
 
     def times_s(self, has: Sequence[bool]) -> Iterator[float]:
-        """Return how long it takes each time that the person comes into the image until it has something."""
+        """Yield, per entry of the person into the image, the time until `has` is true [s]; NaN if never."""
         came_s = None
         for k, (time_s, is_in) in enumerate(self.seen):
             if is_in and came_s is None and k > 0 and not self.seen[k - 1][1]:
@@ -218,7 +218,7 @@ class _Watch:
 
 
 def _track_of(tick: Tick, person: PersonTruth, before: int) -> Track | None:
-    """Find the track of a person: the one it had before, or the nearest, if it stands within half a metre."""
+    """Return the track of a person: the previous one, or the nearest, if within half a metre."""
     place = tick.truth.robot.to_local(person.position_m)
     near = {
         (track.id != before, math.dist(track.place.position_m, place)): track
@@ -229,7 +229,7 @@ def _track_of(tick: Tick, person: PersonTruth, before: int) -> Track | None:
 
 
 def _distance_error(rows: _Rows) -> tuple[float, int]:
-    """Return the mean error of distances of people who have a track within half a metre."""
+    """Return the mean distance error of people with a track within half a metre, and their number."""
     tracks: dict[float, list[tuple[float, float]]] = {}
     for frame, _, x, y, *_ in rows.tracks:
         tracks.setdefault(frame, []).append((x, y))
@@ -250,9 +250,9 @@ def _distance_error(rows: _Rows) -> tuple[float, int]:
 )
 @click.option("--workers", type=click.IntRange(min=1), help="Processes.")
 def main(scenarios: tuple[str, ...], seeds: int, laps: int, first: int, workers: int | None) -> None:
-    """Print how well people are tracked on the floor, and how they are handed over.
+    """Print metrics on the floor, and the times of handover to the thermal image.
 
-    SCENARIOS are those to be played; without any, all.
+    SCENARIOS are the scenarios to run; the default is all.
     """
     plan = [
         (scenario, tracker, range(first, first + count))
@@ -294,7 +294,7 @@ def _figures(runs: Sequence[Played]) -> Iterable[str]:
 
 
 def time_beside_hog(scenario: str, tracker: str, seed: int) -> tuple[float, float]:
-    """Return the median times of a tracker's updates with a new panorama and of HOG, in turns [ms]."""
+    """Return the median times [ms] of a tracker's updates with a new panorama, and of HOG, interleaved."""
     timed, hog = _Timed(_make(tracker, seed)), Hog(uses_colour=True)
     loaded = load_scenario(scenario).mounting((*timed.cameras, COLOUR, THERMAL))
     calibrations = calibrations_of(loaded.world(seed).robot.cameras)
@@ -312,14 +312,14 @@ def time_beside_hog(scenario: str, tracker: str, seed: int) -> tuple[float, floa
 def _print_time(scenario: str, tracker: str, seed: int) -> None:
     spent_ms, hog_ms = time_beside_hog(scenario, tracker, seed)
     click.echo(
-        f"{scenario} {tracker}: {spent_ms:.2f} ms an image beside HOG's {hog_ms:.1f}, "
-        f"{_HOG_MS / hog_ms * spent_ms:.1f} where that takes {_HOG_MS:.0f}"
+        f"{scenario} {tracker}: {spent_ms:.2f} ms per image, HOG {hog_ms:.1f} ms; "
+        f"scaled to HOG at {_HOG_MS:.0f} ms: {_HOG_MS / hog_ms * spent_ms:.1f} ms"
     )
 
 
 def _print_laps(runs: Sequence[Played]) -> None:
     kept = sum(len(run.numbers) == 1 for run in runs)
-    click.echo(f"{ROUND}: one number in {kept} of {len(runs)} runs")
+    click.echo(f"{ROUND}: one identity in {kept} of {len(runs)} runs")
     for what, found in (
         ("has a box in the thermal image", [run.handed_over for run in runs]),
         ("has a contour of the thermal tracker", [run.taken_over for run in runs]),
@@ -327,8 +327,8 @@ def _print_laps(runs: Sequence[Played]) -> None:
         times = np.array([seconds for one in found for seconds in one])
         known = times[~np.isnan(times)]
         click.echo(
-            f"who comes into the thermal image {what} after {np.mean(known):.2f} s on average, "
-            f"{np.percentile(known, 95):.2f} s in 95 of 100 cases, never in {len(times) - len(known)} of "
+            f"a person who enters the thermal image {what} after {np.mean(known):.2f} s on average, "
+            f"{np.percentile(known, 95):.2f} s at the 95th percentile, never in {len(times) - len(known)} of "
             f"{len(times)}"
         )
 

@@ -1,7 +1,7 @@
-"""`python -m benchmarks.bytes OTHER_CHECKOUT`: whether two checkouts make the same bytes of the same runs.
+"""`python -m benchmarks.bytes OTHER_CHECKOUT`: check that two checkouts produce the same bytes.
 
-Images, truth and tracks of ten scenarios are made anew from both, on this machine, and compared file by file:
-what a change of structure must leave as it was.
+Images, truth and tracks of ten scenarios are generated with both on this machine, and compared file by file.
+A refactoring must not change them.
 """
 
 import subprocess
@@ -27,12 +27,12 @@ TEXTS = ("truth/gt.txt", "tracks.txt")
 
 @dataclass(frozen=True, slots=True)
 class ByteComparison:
-    """What came of one scenario.
+    """Result for one scenario.
 
     Attributes:
         scenario: its name.
-        files: how many were compared.
-        differing: names of those that differ, or that only one checkout has made.
+        files: number of compared files.
+        differing: names of files that differ, or that only one checkout generated.
     """
 
     scenario: str
@@ -49,7 +49,7 @@ def compare_folders(scenario: str, ours: Path, theirs: Path) -> ByteComparison:
 def compare_checkouts(
     scenarios: Sequence[str], other: Path, folder: Path, seed: int = 0, workers: int = 2
 ) -> list[ByteComparison]:
-    """Play each scenario from this checkout and from another one, and compare what they leave.
+    """Run each scenario with this checkout and with another one, and compare the files.
 
     Raises:
         click.ClickException: a checkout has no environment, or a run failed.
@@ -68,7 +68,7 @@ def compare_checkouts(
 def _program(checkout: Path) -> Path:
     program = checkout.resolve() / ".venv" / "bin" / "peopleboy"
     if not program.is_file():
-        raise click.ClickException(f"{checkout}: no .venv/bin/peopleboy there; run `make .venv/.ready` in it")
+        raise click.ClickException(f"{checkout}: no .venv/bin/peopleboy; run `make .venv/.ready` in it")
     return program
 
 
@@ -95,12 +95,12 @@ def _is_same(one: Path, other: Path) -> bool:
     "other", type=click.Path(exists=True, file_okay=False, path_type=Path), metavar="OTHER_CHECKOUT"
 )
 @click.option(
-    "--scenarios", default=",".join((*STANDING, *DRIVING)), show_default=True, help="Which, by name."
+    "--scenarios", default=",".join((*STANDING, *DRIVING)), show_default=True, help="Scenarios, by name."
 )
-@click.option("--seed", default=0, show_default=True, help="Of all runs.")
-@click.option("--workers", default=2, show_default=True, help="Scenarios at the same time.")
+@click.option("--seed", default=0, show_default=True, help="Seed of all runs.")
+@click.option("--workers", default=2, show_default=True, help="Number of parallel scenarios.")
 def main(other: Path, scenarios: str, seed: int, workers: int) -> None:
-    """Tell whether OTHER_CHECKOUT makes the same images, truth and tracks as this one; exit with 1 if not."""
+    """Compare images, truth and tracks of OTHER_CHECKOUT with this one; exit with 1 if they differ."""
     table = Table("scenario", "files", "differ", box=None)
     with TemporaryDirectory() as folder:
         found = compare_checkouts(scenarios.split(","), other, Path(folder), seed, workers)

@@ -1,8 +1,8 @@
-"""How the tracker does with other cameras than the robot's own: `python -m benchmarks.cameras`.
+"""Tracking quality with other cameras than the robot's own: `python -m benchmarks.cameras`.
 
-Scenes of the library are played with both cameras on another mast, tilted, or of another field of view, or
-with a thermal image that reads too warm or drifts. Each tracker sees the same images, with the cameras'
-calibration or without.
+Scenes of the library are run with both cameras at another height, tilted, or with another field of view, or
+with a thermal image that is offset or drifts. The tracker runs on the same images with and without the
+cameras' calibration.
 """
 
 import math
@@ -27,7 +27,7 @@ from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
 SCENES: Final = ("crossing_2", "single_stationary")
-_HEIGHT_M: Final = 1.2  # of the cameras, as they are
+_HEIGHT_M: Final = 1.2  # default height of the cameras
 
 Offset = Callable[[float], float]
 
@@ -38,13 +38,13 @@ def _none(share: float) -> float:  # noqa: ARG001
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Camera:
-    """What is changed of the robot's cameras.
+    """Changes to the robot's cameras.
 
     Attributes:
-        pitch_deg: tilt, positive looks down.
-        height_m: above the floor.
-        fov_deg: vertical, of the thermal camera; None as it is.
-        offset_k: by which the thermal image reads too warm, from the share of the run that is over.
+        pitch_deg: tilt, positive downwards.
+        height_m: height above the floor.
+        fov_deg: vertical field of view of the thermal camera; None for the default.
+        offset_k: temperature offset of the thermal image, as a function of the elapsed share of the run.
     """
 
     pitch_deg: float = 0.0
@@ -72,7 +72,7 @@ CAMERAS: Final[Mapping[str, Camera]] = {
 
 
 def mounted(config: WorldConfig, camera: Camera) -> WorldConfig:
-    """Put the robot's cameras elsewhere, all in the same way."""
+    """Apply the changes to all cameras of the robot."""
     cameras = {name: _moved(one, camera) for name, one in config.robot.cameras.items()}
     return replace(config, robot=replace(config.robot, cameras=cameras))
 
@@ -95,7 +95,7 @@ def _moved(config: CameraConfig, camera: Camera) -> CameraConfig:
 
 
 def play(scene: str, camera: Camera, seed: int) -> Recording:
-    """Play a scene whose robot stands, with another camera."""
+    """Run a scene with a standing robot and other cameras."""
     scenario = load_scenario(scene)
     config = mounted(scenario.world(seed), camera)
     count = round(scenario.duration_s * config.control_hz)
@@ -132,12 +132,12 @@ def rows(names: tuple[str, ...], seeds: int, tracker: str) -> Iterator[tuple[str
 
 
 @click.command()
-@click.option("--seeds", default=5, show_default=True, help="Runs of each scene.")
+@click.option("--seeds", default=5, show_default=True, help="Runs per scene.")
 @click.option("--tracker", default=DEFAULT_TRACKER, show_default=True)
 @click.argument("cameras", nargs=-1, type=click.Choice(tuple(CAMERAS)))
 def main(seeds: int, tracker: str, cameras: tuple[str, ...]) -> None:
-    """Print how a tracker does with these cameras, or with all, as a Markdown table [%]."""
-    make_tracker(tracker)  # refused now rather than after scenes are played
+    """Print metrics [%] of a tracker with these cameras, by default with all, as a Markdown table."""
+    make_tracker(tracker)  # fails now rather than after scenes have run
     figures = ("CP", "CR", "IDF1", "HOTA")
     print_head("camera", [f"{one}, {kind}" for kind in ("calibrated", "not") for one in figures])
     for name, cells in rows(cameras or tuple(CAMERAS), seeds, tracker):

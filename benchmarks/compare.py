@@ -1,4 +1,4 @@
-"""What all comparisons share: contestants on sequences, the metrics of each, and tables of them."""
+"""Common parts of all comparisons: trackers on sequences, their metrics, and tables."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from operator import attrgetter
@@ -23,11 +23,11 @@ METRICS: Final[Mapping[str, Callable[[Scores], float]]] = {
     "MOTA": attrgetter("mot.clear.mota"),
     "one id": attrgetter("mot.identity.idr"),
 }
-"""Metrics [%] by the name that tables have for them."""
+"""Metrics [%] by their column title in tables."""
 
 
 def percents(scores: Scores, *names: str) -> list[str]:
-    """Return some of `METRICS` as tables write them."""
+    """Return some of `METRICS`, formatted for a table."""
     return [f"{METRICS[name](scores):.1f}" for name in names]
 
 
@@ -39,16 +39,16 @@ def false_per_1000(scores: Scores) -> float:
 def compare(
     tasks: Mapping[Key, Sequence[Task[Result]]], workers: Workers, title: str, unit: str | None = None
 ) -> dict[Key, list[Result]]:
-    """Do the tasks of all contestants, and return each one's results in the order of its tasks.
+    """Run the tasks of all trackers, and return the results of each in the order of its tasks.
 
     Args:
-        tasks: by contestant; their names differ.
-        workers: who does them.
-        title: stands before the progress bar.
-        unit: in which the tasks' sizes are counted, if the bar shows how many a second.
+        tasks: tasks by tracker, with unique names.
+        workers: pool that runs the tasks.
+        title: label of the progress bar.
+        unit: unit of the tasks' sizes, if the progress bar shows a rate.
 
     Raises:
-        BadInput: every task was refused as bad input.
+        BadInput: all tasks failed with bad input.
         TasksFailed: some failed, after all others were done.
     """
     found: dict[str, Result] = {}
@@ -58,7 +58,7 @@ def compare(
 
 
 def print_table(columns: Sequence[str], rows: Iterable[Sequence[str]], width: int | None = None) -> None:
-    """Print rows under the names of their columns."""
+    """Print rows under column titles."""
     table = Table(*columns, box=None)
     for row in rows:
         table.add_row(*row)

@@ -1,6 +1,6 @@
-"""What each part of the tracker by detection gives: `python -m benchmarks.detection_ablation`.
+"""Ablation of the detection tracker: `python -m benchmarks.detection_ablation`.
 
-Scenes and random worlds are recorded once; every variant then sees the same.
+Scenes and random worlds are recorded once; all variants run on the same images.
 """
 
 import math
@@ -50,7 +50,7 @@ COLUMNS: Final = (
     "IDF1",
     "switches",
     "worlds: HOTA",
-    "of those seen",
+    "of visible people",
     "false per 1000 frames",
 )
 COLUMNS_OF_CLIPS: Final = ("clips: HOTA", "false per 1000 frames")
@@ -61,7 +61,7 @@ _SURE: Final = 3.0  # log odds of a warm blob
 
 
 class DetectorStage(Enum):
-    """By what people are found: a threshold, or the detector as far as it looks."""
+    """How people are detected: by a threshold, or by the detector up to a stage."""
 
     THRESHOLD = auto()
     TREES = auto()
@@ -70,19 +70,19 @@ class DetectorStage(Enum):
 
 
 class DetectorOfStage(PeopleDetector):
-    """A detector that looks no further than to a stage."""
+    """A people detector that stops after a stage."""
 
     def __init__(self, stage: DetectorStage) -> None:
-        """Take the shipped trees and networks."""
+        """Load the shipped trees and networks."""
         super().__init__(least_score=LEAST)
         self._stage = stage
 
     def detect(
         self, grey: Grey, change: Grey, mount: Mount | None, expected: Detections, *, everywhere: bool
     ) -> Detections:
-        """Look for people in an image of which it is known by how much (H, W) greys changed.
+        """Detect people in an image and its change of grey (H, W).
 
-        Trees by themselves look everywhere, whoever is expected.
+        Without rescoring, the trees search the whole image and ignore expected detections.
         """
         if self._stage is DetectorStage.BOX_REFINEMENT:
             return super().detect(grey, change, mount, expected, everywhere=everywhere)
@@ -93,16 +93,16 @@ class DetectorOfStage(PeopleDetector):
 
 
 class WarmFinder:
-    """Takes whatever is upright and warmer than a grey for a person: evidence that is not relative."""
+    """Finder that reports each upright region above a grey threshold as a person."""
 
     def __call__(self, frame: Frame, expected: Detections, *, everywhere: bool) -> Detections:  # noqa: ARG002
-        """Find people in a frame, whoever is expected."""
+        """Detect people in a frame; expected detections are ignored."""
         boxes = Blobs().detect(frame).box
         return Detections.from_trees(boxes, np.full(len(boxes), _SURE))
 
 
 def thermal_finder(stage: DetectorStage) -> Finder:
-    """Make one that looks no further than to a stage."""
+    """Make a finder that stops after a stage."""
     return WarmFinder() if stage is DetectorStage.THRESHOLD else ThermalFinder(DetectorOfStage(stage))
 
 
@@ -111,12 +111,12 @@ _ALL: Final = DetectionTrackerConfig()
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """A tracker, and what it knows.
+    """A variant of the tracker.
 
     Attributes:
-        config: its settings.
-        stage: the last stage of its detector, on the thermal image; None for all, and the colour image.
-        is_calibrated: whether it is known how cameras sit.
+        config: settings of the tracker.
+        stage: last stage of the detector, on the thermal image only; None for all stages and both images.
+        is_calibrated: whether the tracker gets the cameras' calibration.
     """
 
     config: DetectionTrackerConfig = _ALL
@@ -124,7 +124,7 @@ class Variant:
     is_calibrated: bool = True
 
     def tracked(self, recording: Recording) -> list[tuple[Track, ...]]:
-        """Follow people in all frames."""
+        """Return the tracks of all frames."""
         find = None if self.stage is None else thermal_finder(self.stage)
         tracker = DetectionTracker(self.config, find)
         seen = recording if self.is_calibrated else recording.uncalibrated()
@@ -179,7 +179,7 @@ def clip_recording(clip: RealClip) -> Recording:
     """Read a real clip.
 
     Raises:
-        BadInput: a picture cannot be used.
+        BadInput: an image cannot be used.
     """
     options = TrackOptions(footage=clip.folder, out=Path(), tracker=DEFAULT_TRACKER, rate_hz=CLIPS_HZ)
     frames = tuple(islice(open_views(options), clip.frames))
@@ -187,7 +187,7 @@ def clip_recording(clip: RealClip) -> Recording:
 
 
 def score_recordings(scenes: Sequence[Recording], worlds: Sequence[Recording], variant: Variant) -> list[str]:
-    """Return a row's figures, as `COLUMNS` names them."""
+    """Return the metrics of a row, in the order of `COLUMNS`."""
     library = combine([recording.score(variant.tracked(recording)) for recording in scenes])
     tracked = [(recording, variant.tracked(recording)) for recording in worlds]
     everybody = combine([recording.score(tracks) for recording, tracks in tracked])
@@ -198,13 +198,13 @@ def score_recordings(scenes: Sequence[Recording], worlds: Sequence[Recording], v
 
 
 def score_clips(clips: Sequence[Recording], variant: Variant) -> list[str]:
-    """Return a row's figures, as `COLUMNS_OF_CLIPS` names them."""
+    """Return the metrics of a row, in the order of `COLUMNS_OF_CLIPS`."""
     scores = combine([recording.score(variant.tracked(recording)) for recording in clips])
     return [*percents(scores, "HOTA"), f"{false_per_1000(scores):.2f}"]
 
 
 @click.command()
-@click.option("--seed", default=1, show_default=True, help="Of the scenes.")
+@click.option("--seed", default=1, show_default=True, help="Seed of the scenes.")
 @click.option(
     "--seeds",
     "worlds",
@@ -216,10 +216,10 @@ def score_clips(clips: Sequence[Recording], variant: Variant) -> list[str]:
 @click.option(
     "--clips",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="Folder of clips, of which those are taken by which values may be chosen.",
+    help="Folder of clips; only those that may be used for tuning are evaluated.",
 )
 def main(seed: int, worlds: int, clips: Path | None) -> None:
-    """Print how the tracker does as it is, and without each of its parts, as a Markdown table."""
+    """Print metrics of the complete tracker, and without each of its parts, as a Markdown table."""
     real = [] if clips is None else [clip_recording(clip) for clip in open_clips(clips, CHOSEN_BY)]
     scenes = [record(name, seed) for name in SCENES]
     drawn = [record(random_scenario(number), number) for number in range(worlds)]

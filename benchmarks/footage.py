@@ -1,8 +1,8 @@
-"""How well people are kept in footage of unknown temperatures: `python -m benchmarks.footage`.
+"""Tracking quality in footage of unknown temperatures: `python -m benchmarks.footage`.
 
-Scenes of the library are played, and their 16-bit pictures tracked as another person's would be: without a
-scale, without the robot's motion, anywhere in the image. In a hot room clothes are colder than the walls.
-`--clips DIR` measures on real clips instead, beside OpenCV's HOG with ByteTrack.
+Scenes of the library are rendered, and their 16-bit images are tracked like foreign footage: without a
+temperature scale and without the robot's motion. In a hot room clothes are colder than the walls.
+`--clips DIR` evaluates on real clips instead, compared with OpenCV's HOG with ByteTrack.
 """
 
 import json
@@ -67,11 +67,11 @@ COLUMNS: Final[Mapping[str, str]] = {
     "false tracks per 1000": "{:.1f}",
     "frames per s": "{:.0f}",
 }
-"""How each metric is written, in the table's order."""
+"""Format of each metric, in the order of the table."""
 
 
 def clip_metrics(clip: RealClip, results: Sequence[ClipResult]) -> dict[str, float]:
-    """Name the metrics of a tracker on a clip; NaN for those that would need everybody annotated."""
+    """Return the metrics of a tracker on a clip; NaN for those that need all people annotated."""
     scores = combine([one.scores for one in results])
     found = {name: METRICS[name](scores) for name in ("HOTA", "IDF1", "MOTA", "CP")}
     found["false tracks per 1000"] = false_per_1000(scores)
@@ -92,25 +92,25 @@ def bench_clips(
     seeds: int,
     jobs: int,
 ) -> None:
-    """Measure our trackers and peers on clips, print a table and leave its metrics as JSON.
+    """Evaluate trackers and peers on clips, print a table, and write its metrics as JSON.
 
     Args:
         home: folder of clips.
-        trackers: names of ours.
-        peers: names of peers, which draw nothing and see each clip once.
-        only: names of clips; none for all.
-        frames: how many of each clip; None for all.
-        rate_hz: pictures a second; None for what a folder is taken to have.
-        seeds: how many of each of our trackers, from 0 on.
-        jobs: processes at the same time.
+        trackers: names of PeopleBoy's trackers.
+        peers: names of peers, which are deterministic and run once per clip.
+        only: names of clips; empty for all.
+        frames: number of frames per clip; None for all.
+        rate_hz: frame rate; None for the default of `peopleboy track`.
+        seeds: number of seeds per tracker, from 0 on.
+        jobs: number of processes.
 
     Raises:
         BadInput: clips or trackers cannot be used.
-        TasksFailed: some could not be measured.
+        TasksFailed: some evaluations failed.
     """
     clips = {clip.name: clip for clip in open_clips(home, only, frames)}
     for name in (*trackers, *peers):
-        make_clip_tracker(name, 0)  # refused now rather than after other trackers have run
+        make_clip_tracker(name, 0)  # fails now rather than after other trackers have run
     tasks = {}
     for name, clip in clips.items():
         ours = {
@@ -134,21 +134,21 @@ def bench_clips(
 
 
 def _split(clips: Mapping[str, RealClip]) -> str:
-    """Name the clips by which values were chosen, and the others."""
+    """List the clips that were used for tuning, and the others."""
 
     def listed(keep: Callable[[str], bool]) -> str:
         return ", ".join(filter(keep, clips)) or "none"
 
     return (
-        f"- values chosen by: {listed(lambda name: name in CHOSEN_BY)}\n"
-        f"- only reported: {listed(lambda name: name not in CHOSEN_BY)}\n"
-        f"- one person annotated of several: {listed(lambda name: clips[name].given.is_single)}"
+        f"- used for tuning: {listed(lambda name: name in CHOSEN_BY)}\n"
+        f"- not used for tuning: {listed(lambda name: name not in CHOSEN_BY)}\n"
+        f"- only one of several people annotated: {listed(lambda name: clips[name].given.is_single)}"
     )
 
 
 @click.command()
 @click.option(
-    "--clips", type=_FOLDER, help="Folder of clips, NAME/thermal and NAME/gt.txt, or pictures with truth."
+    "--clips", type=_FOLDER, help="Folder of clips, NAME/thermal and NAME/gt.txt, or images with truth."
 )
 @click.option(
     "--tracker",
@@ -156,7 +156,7 @@ def _split(clips: Mapping[str, RealClip]) -> str:
     multiple=True,
     default=(DEFAULT_TRACKER,),
     show_default=True,
-    help="With --clips; may be given several times.",
+    help="Tracker to evaluate on --clips; may be repeated.",
 )
 @click.option(
     "--peer",
@@ -164,23 +164,19 @@ def _split(clips: Mapping[str, RealClip]) -> str:
     multiple=True,
     type=click.Choice(tuple(PEERS)),
     default=tuple(PEERS),
-    help="With --clips; may be given several times.  [default: all]",
+    help="Peer to evaluate on --clips; may be repeated.  [default: all]",
 )
-@click.option("--only", multiple=True, help="Of --clips, those of these names.")
-@click.option("--frames", type=click.IntRange(min=1), help="Of each of --clips, the first so many.")
+@click.option("--only", multiple=True, help="Name of a clip to use; may be repeated.")
+@click.option("--frames", type=click.IntRange(min=1), help="Number of frames to use of each clip.")
 @click.option(
-    "--rate-hz", type=click.FloatRange(min=0.1), help="Of --clips.  [default: as `peopleboy track`]"
+    "--rate-hz", type=click.FloatRange(min=0.1), help="Frame rate.  [default: as `peopleboy track`]"
 )
-@click.option(
-    "--seeds", type=click.IntRange(min=1), default=1, show_default=True, help="Of trackers, with --clips."
-)
-@click.option(
-    "--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Processes, with --clips."
-)
+@click.option("--seeds", type=click.IntRange(min=1), default=1, show_default=True, help="Seeds per tracker.")
+@click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Number of processes.")
 def main(clips: Path | None, **how: Any) -> None:
-    """Print how people are kept in scenes of the library, or how trackers do on clips.
+    """Print metrics of the default tracker in library scenes, or of trackers and peers on clips.
 
-    Figures are percent. Those of --clips are left in runs/clips.json, too.
+    Metrics are in percent. Those of --clips are also written to runs/clips.json.
     """
     if clips is not None:
         bench_clips(clips, **how)
@@ -209,7 +205,7 @@ def _scores_of(temperatures: Mapping[str, float], folder: Path) -> Iterator[Scor
 
 
 def _play(scene: str, temperatures: Mapping[str, float], home: Path) -> None:
-    """Play a scene of the library in a room of these temperatures, and keep its pictures and truth."""
+    """Run a scene of the library at these room temperatures, and keep its images and ground truth."""
     changed: dict[str, Any] = {
         "name": scene,
         "description": f"{scene}, shortened",
@@ -229,7 +225,7 @@ def _play(scene: str, temperatures: Mapping[str, float], home: Path) -> None:
 def _tracked(options: TrackOptions) -> Scores:
     scores = track_footage(options, lambda *_: None).scores
     if scores is None:
-        raise click.BadParameter(f"{options.footage}: there is no truth beside the pictures")
+        raise click.BadParameter(f"{options.footage}: no ground truth next to the images")
     return scores
 
 

@@ -1,4 +1,4 @@
-"""Figures of `make bench`: what each should be, what it was before, and how all of them are printed."""
+"""Results of `make bench`: goals, comparison with an earlier run, and the printed table."""
 
 import json
 import math
@@ -14,25 +14,25 @@ from peopleboy.bad_input import BadInput
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Goal:
-    """Between what a figure should be, both ends included."""
+    """Range in which a result should be, including both ends."""
 
     least: float = -math.inf
     most: float = math.inf
     unit: str = ""
 
     def is_met(self, value: float) -> bool:
-        """Return whether a figure is good enough."""
+        """Return whether a result is in the range."""
         return self.least <= value <= self.most
 
     def __str__(self) -> str:
-        """Say it in words."""
+        """Return the range as text."""
         ends = ((self.least, "at least"), (self.most, "at most"))
         return ", ".join(f"{word} {end:g}{self.unit}" for end, word in ends if math.isfinite(end))
 
 
 @dataclass(frozen=True, slots=True)
 class BenchFigure:
-    """One figure: what it is of, as a path, how it is written, what it should be, and where its time goes."""
+    """One result: its path, value, format, goal, and reason for a missed goal."""
 
     path: tuple[str, ...]
     value: float
@@ -42,17 +42,17 @@ class BenchFigure:
 
     @property
     def name(self) -> str:
-        """What it is of, in words."""
+        """Readable name."""
         return ", ".join(self.path).removesuffix(", ms")
 
     @property
     def is_missed(self) -> bool:
-        """Whether it is not what it should be."""
+        """Whether it misses its goal."""
         return self.goal is not None and not self.goal.is_met(self.value)
 
 
 def nested(figures: Sequence[BenchFigure]) -> dict[str, Any]:
-    """Put the figures into mappings within mappings, as their paths say."""
+    """Return the results as nested mappings, by their paths."""
     whole: dict[str, Any] = {}
     for figure in figures:
         inner = whole
@@ -63,22 +63,22 @@ def nested(figures: Sequence[BenchFigure]) -> dict[str, Any]:
 
 
 def read_figures(path: Path) -> dict[str, Any]:
-    """Read the figures of an earlier run.
+    """Read the results of an earlier run.
 
     Raises:
-        BadInput: no file that `make bench` left.
+        BadInput: it is not an output file of `make bench`.
     """
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise BadInput(f"{path}: must be figures as in runs/bench.json, got {error}") from error
+        raise BadInput(f"{path}: must be results as in runs/bench.json, got {error}") from error
     if not isinstance(found, dict):
-        raise BadInput(f"{path}: must be figures as in runs/bench.json, got {type(found).__name__}")
+        raise BadInput(f"{path}: must be results as in runs/bench.json, got {type(found).__name__}")
     return found
 
 
 def earlier(figure: BenchFigure, before: Mapping[str, Any]) -> float | None:
-    """Find what a figure was in an earlier run; None if it was not measured then."""
+    """Return the value of a result in an earlier run; None if it was not measured then."""
     found: Any = before
     for step in figure.path:
         found = found.get(step) if isinstance(found, Mapping) else None
@@ -86,7 +86,7 @@ def earlier(figure: BenchFigure, before: Mapping[str, Any]) -> float | None:
 
 
 def table_of(figures: Sequence[BenchFigure], before: Mapping[str, Any] | None = None) -> Table:
-    """Lay out figures, those that miss their goal first, beside those of an earlier run."""
+    """Return a table of results next to those of an earlier run, with missed goals first."""
     table = Table("what", "figure", "goal", title="CPU time, medians of one run", box=None)
     if before is not None:
         table.add_column("before")
@@ -102,6 +102,6 @@ def table_of(figures: Sequence[BenchFigure], before: Mapping[str, Any] | None = 
 
 
 def reasons(figures: Sequence[BenchFigure]) -> list[str]:
-    """Say why figures miss their goals, as far as their parts were timed."""
+    """Yield why results miss their goals, if known."""
     missed = (each for each in figures if each.is_missed and each.reason)
     return [f"{each.name} misses its goal: {each.reason}" for each in missed]

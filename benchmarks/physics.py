@@ -1,10 +1,9 @@
-"""`python -m benchmarks.physics`: how far kinematic physics are from PyBullet's, over the library.
+"""`python -m benchmarks.physics`: measure how far kinematic physics deviates from PyBullet over the library.
 
-In every scenario whose robot drives without images, and is not to stand, the scenario's own behaviour drives
-by the truth, or by the tracker with `--observation tracks`, for 20 s or until it touches something: with
-PyBullet; again
-by the same actions, without it, which tells how far the way is off; and once more without it by itself, which
-tells how far the figures are.
+In every scenario whose robot drives and needs no images, the scenario's behaviour drives for 20 s or until it
+touches something. It uses the ground truth, or the tracker with `--observation tracks`. There are three
+drives: one with PyBullet; one with kinematic physics and the same actions, which gives the deviation of the
+path; and one with kinematic physics and its own actions, which gives the deviation of the metrics.
 """
 
 import json
@@ -38,10 +37,10 @@ class Drive:
     """One episode.
 
     Attributes:
-        way_m: (N, 2) [m] where the robot was after each step.
+        way_m: (N, 2) [m] position of the robot after each step.
         actions: (N, 2).
-        touched: what it ended at, empty for nothing.
-        following: the figures of how a person was followed.
+        touched: object that ended the episode; empty for none.
+        following: metrics of person following.
     """
 
     way_m: NDArray[np.float64]
@@ -52,18 +51,18 @@ class Drive:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PhysicsCase:
-    """What came of one scenario.
+    """Result for one scenario.
 
     Attributes:
         scenario: its name.
-        seed: of the episodes.
-        way_m: [m] how long PyBullet's way was.
-        off_mm: [mm] how far the other way was from it at most, by the same actions.
-        touched: what PyBullet's robot touched.
-        also_touched: what the other one touched by the same actions.
-        later_s: [s] by how much later it did; NaN if one of them touched nothing.
-        following: by name, PyBullet's share and the other's, each driving by itself; empty where nobody is
-            followed.
+        seed: seed of the episodes.
+        way_m: [m] length of PyBullet's path.
+        off_mm: [mm] largest deviation of the kinematic path with the same actions.
+        touched: object that was touched with PyBullet.
+        also_touched: object that was touched with kinematic physics and the same actions.
+        later_s: [s] delay of that contact; NaN if one drive had no contact.
+        following: by metric, the values with PyBullet and with kinematic physics, each with its own actions;
+            empty if no person is followed.
     """
 
     scenario: str
@@ -77,7 +76,7 @@ class PhysicsCase:
 
 
 def drivers() -> Iterator[Scenario]:
-    """Yield all scenarios of the library whose robots drive without looking at images themselves."""
+    """Yield all scenarios of the library whose robots drive and need no images."""
     for name in library():
         scenario = load_scenario(name)
         if scenario.robot.behaviour != "stand" and scenario.robot.walls_by != "image":
@@ -85,7 +84,7 @@ def drivers() -> Iterator[Scenario]:
 
 
 def measure(scenario: Scenario, seed: int, observation: str) -> PhysicsCase:
-    """Drive three times."""
+    """Run the three drives of a scenario."""
     theirs = drive(scenario, seed, observation, "bullet")
     again = drive(scenario, seed, observation, "kinematic", theirs.actions)
     steps = min(len(theirs.way_m), len(again.way_m))
@@ -114,7 +113,7 @@ def drive(
     physics: str,
     actions: NDArray[np.float32] | None = None,
 ) -> Drive:
-    """Play an episode by a scenario's own behaviour, or by given actions."""
+    """Run an episode with the scenario's behaviour, or with given actions."""
     eyes = ORACLE if observation == "truth" else None
     env = PeopleBoyEnv(scenario.name, observation=observation, tracker=eyes, physics=physics)
     controller = WrittenController(scenario.make_behaviour())
@@ -134,7 +133,7 @@ def drive(
 
 
 def summary(cases: Sequence[PhysicsCase]) -> dict[str, float]:
-    """Return what all came to."""
+    """Summarise all results."""
     off = [case.off_mm for case in cases]
     changes = [
         abs(ours - theirs)
@@ -161,9 +160,9 @@ def summary(cases: Sequence[PhysicsCase]) -> dict[str, float]:
 @click.option("--observation", type=click.Choice(["truth", "tracks"]), default="truth", show_default=True)
 @click.option("--seeds", type=click.IntRange(min=1), default=1, show_default=True)
 def main(scenarios: Sequence[str], observation: str, seeds: int) -> None:
-    """Measure, print a line each, and keep the figures in runs/physics.json.
+    """Measure, print one line per scenario, and write the results to runs/physics.json.
 
-    Without a scenario, those of the library are taken whose robots drive without images.
+    The default are all scenarios of the library whose robots drive and need no images.
     """
     chosen = [load_scenario(name) for name in scenarios] or list(drivers())
     episodes = [(scenario, seed) for scenario in chosen for seed in range(seeds)]
@@ -174,7 +173,7 @@ def main(scenarios: Sequence[str], observation: str, seeds: int) -> None:
         shares = ", ".join(f"{name} {a:.3f} {b:.3f}" for name, (a, b) in case.following.items())
         touched = "/".join(",".join(names) or "nothing" for names in (case.touched, case.also_touched))
         click.echo(
-            f"{case.scenario:22s} seed {case.seed}: {case.off_mm:6.1f} mm off in {case.way_m:5.1f} m; "
+            f"{case.scenario:22s} seed {case.seed}: {case.off_mm:6.1f} mm deviation in {case.way_m:5.1f} m; "
             f"touched {touched}; {shares}"
         )
         sys.stdout.flush()

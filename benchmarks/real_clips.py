@@ -1,4 +1,4 @@
-"""Real thermal clips with truth, and what trackers, ours or peers, find in them."""
+"""Real thermal clips with ground truth, and the evaluation of trackers and peers on them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -24,10 +24,10 @@ from peopleboy.tracker.footage.image_sequences import open_footage
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, is_own
 
 CHOSEN_BY: Final = ("camel_08", "camel_21")
-"""The clips by which values may be chosen; all others are only reported."""
+"""The clips that may be used for tuning; all others are only for evaluation."""
 TRUTH: Final = "gt.txt"
 PEERS: Final = {"HOG x 2 + ByteTrack": 2.0, "HOG x 3 + ByteTrack": 3.0}
-"""How many times each enlarges the pictures: HOG sees people from 96 px of the enlarged ones on."""
+"""Enlargement of images per peer; HOG detects people from 96 px of the enlarged image on."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,9 +35,9 @@ class RealClip:
     """The first frames of a clip.
 
     Attributes:
-        folder: of the clip; its pictures lie there or in an inner folder such as `thermal`.
-        given: the truth of these frames.
-        frames: how many there are.
+        folder: folder of the clip; its images are there or in a subfolder such as `thermal`.
+        given: ground truth of these frames.
+        frames: number of frames.
     """
 
     folder: Path
@@ -46,26 +46,26 @@ class RealClip:
 
     @property
     def name(self) -> str:
-        """The folder's name."""
+        """Name of the folder."""
         return self.folder.name
 
 
 def open_clips(home: Path, only: Sequence[str] = (), frames: int | None = None) -> list[RealClip]:
-    """Open the clips of a folder: those by which values are chosen, then the others, by name.
+    """Open the clips of a folder: those used for tuning, then the others, by name.
 
     Args:
-        home: a folder of clips, each a folder of its own.
-        only: names of clips; none for all.
-        frames: how many of each to take, from the first on; None for all.
+        home: folder with one subfolder per clip.
+        only: names of clips; empty for all.
+        frames: number of frames per clip, from the first on; None for all.
 
     Raises:
-        BadInput: there are no clips, or one that is named is missing or cannot be used.
+        BadInput: there are no clips, or a named clip is missing or cannot be used.
     """
     there = {one.name: one for one in home.iterdir() if find_truth(one) is not None}
     missing = [name for name in only if name not in there]
     if missing or not there:
         found = ", ".join(sorted(there)) or "none"
-        raise BadInput(f"{home}: no clip {' '.join(missing)} with pictures and {TRUTH}; there are: {found}")
+        raise BadInput(f"{home}: no clip {' '.join(missing)} with images and {TRUTH}; there are: {found}")
     names = sorted(only or there, key=lambda name: (name not in CHOSEN_BY, name))
     return [_open(there[name], frames) for name in names]
 
@@ -79,7 +79,7 @@ def _open(folder: Path, frames: int | None) -> RealClip:
 
 
 def _load(path: Path, frames: int) -> GivenTruth:
-    """Read truth; what is no person, such as a bicycle, is neither to be found nor wrong to find."""
+    """Read the ground truth; objects that are not people, such as bicycles, are ignored in scoring."""
     if path.name == TRUTH:
         return GivenTruth(read_truth(path, keeps_things=True), is_single=False, path=path)
     return load_truth(path, frames)
@@ -91,11 +91,11 @@ def _first(truth: TrueBoxes, frames: int) -> TrueBoxes:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClipResult:
-    """What came of one tracker, one clip and one seed.
+    """Result of one tracker, clip and seed.
 
     Attributes:
-        scores: against the truth.
-        frame_s: CPU time of a frame, median; reading of pictures left out.
+        scores: metrics.
+        frame_s: median CPU time per frame, without reading of images [s].
     """
 
     scores: Scores
@@ -104,13 +104,13 @@ class ClipResult:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClipTask:
-    """Let a tracker watch a clip.
+    """Run a tracker on a clip.
 
     Attributes:
-        clip: which.
-        tracker: name of one of ours, or of `PEERS`.
-        seed: of ours; peers draw nothing.
-        rate_hz: pictures a second; None for what a folder is taken to have.
+        clip: the clip.
+        tracker: name of a tracker, or of one of `PEERS`.
+        seed: seed of the tracker; peers are deterministic.
+        rate_hz: frame rate; None for the default of folders.
     """
 
     clip: RealClip
@@ -120,19 +120,19 @@ class ClipTask:
 
     @property
     def name(self) -> str:
-        """Clip, tracker and seed."""
+        """Name of clip, tracker and seed."""
         return f"{self.clip.name}, {self.tracker}, seed {self.seed}"
 
     @property
     def size(self) -> int:
-        """Frames to watch."""
+        """Number of frames."""
         return self.clip.frames
 
     def __call__(self, tell: Tell) -> ClipResult:
-        """Watch it from the first frame on.
+        """Run the tracker from the first frame on.
 
         Raises:
-            BadInput: the tracker is unknown or wants other cameras, or a picture cannot be used.
+            BadInput: the tracker is unknown or needs other cameras, or an image cannot be used.
         """
         contestant = make_clip_tracker(self.tracker, self.seed)
         name = DEFAULT_TRACKER if self.tracker in PEERS else self.tracker
@@ -150,17 +150,17 @@ class ClipTask:
 
 
 def make_clip_tracker(name: str, seed: int) -> Contestant:
-    """Make one of ours, or a peer.
+    """Make a tracker or a peer by name.
 
     Raises:
-        BadInput: it is unknown, wants other cameras, or lacks a package.
+        BadInput: it is unknown, needs other cameras, or a package is missing.
     """
     if name in PEERS:
         return _peer(name)
     ours = Ours(name, seed, boxes_whole=not is_own(name))
     for camera in ours.cameras:
         if camera not in ThermalViews.cameras:
-            raise BadInput(f"--tracker {name}: wants camera {camera!r}, which clips have not")
+            raise BadInput(f"--tracker {name}: needs camera {camera!r}, which clips do not have")
     return ours
 
 
@@ -173,6 +173,6 @@ def _peer(name: str) -> Contestant:
 
 
 def score_clip(clip: RealClip, rows: list[tuple[int, int, Floats]]) -> Scores:
-    """Score rows of frame, id and box against a clip's truth."""
+    """Score rows of frame, id and box against the ground truth of a clip."""
     tracks = TrackBoxes.from_rows((frame, identity, box, 1.0) for frame, identity, box in rows)
     return evaluate(clip.given.truth, tracks, frames=clip.frames, is_single=clip.given.is_single)

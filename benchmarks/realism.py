@@ -1,7 +1,7 @@
-"""What each step towards real thermal pictures does to how well they are told from real ones.
+"""How well a classifier separates rendered from real thermal images, for each step towards realism.
 
-`python -m benchmarks.realism --chosen CLIP --chosen CLIP --others CLIP --others CLIP` leaves the pictures of
-each step, and pages that set them beside the clips, in runs/realism.
+`python -m benchmarks.realism --chosen CLIP --chosen CLIP --others CLIP --others CLIP` writes the images of
+each step, and pages that compare them with the clips, to runs/realism.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -50,7 +50,7 @@ STRUCTURED = (
     "workshop",
     "crowded_foyer",
 )
-"""The library's scenes that are to look like real ones."""
+"""Scenes of the library that imitate real ones."""
 WORLDS = 24
 SEED = 100
 SCENE_S, WORLD_S = 6.0, 3.0
@@ -86,14 +86,14 @@ STEPS: dict[str, tuple[Change, ...]] = {
     "and camera effects": (_with_camera(preset="uncooled_film"),),
     "and full detail": (_with_camera(preset="uncooled_film"), _in_full),
 }
-"""How the library's older scenes are changed, step by step."""
+"""Changes to the library's older scenes, step by step."""
 
 
 @click.command()
-@click.option("--chosen", multiple=True, required=True, type=CLIP, help="A clip that values were chosen by.")
-@click.option("--others", multiple=True, required=True, type=CLIP, help="A clip for reporting alone.")
+@click.option("--chosen", multiple=True, required=True, type=CLIP, help="Clip that was used for tuning.")
+@click.option("--others", multiple=True, required=True, type=CLIP, help="Clip that was not used for tuning.")
 def main(chosen: Sequence[Path], others: Sequence[Path]) -> None:
-    """Render every step, compare it, and print the AUC of patches, and of people."""
+    """Render every step, compare it with the clips, and print the AUC of patches and of people."""
     table = Table("step", "chosen: all", "people", "others: all", "people", box=None)
     for name, scenarios in steps():
         folder = OUT / name.replace(",", "").replace(" ", "_")
@@ -108,7 +108,7 @@ def main(chosen: Sequence[Path], others: Sequence[Path]) -> None:
 
 
 def steps() -> Iterator[tuple[str, list[tuple[Scenario, int]]]]:
-    """Name each step, and what is played in it, with which seed."""
+    """Yield each step with its scenarios and seeds."""
     for name, changes in STEPS.items():
         yield name, [(_changed(scene, changes), SEED) for scene in PLAIN]
     yield "scenes with structure", [(_changed(scene, ()), SEED) for scene in STRUCTURED]
@@ -116,7 +116,7 @@ def steps() -> Iterator[tuple[str, list[tuple[Scenario, int]]]]:
 
 
 def film(scenarios: Sequence[tuple[Scenario, int]], folder: Path) -> None:
-    """Leave thermal pictures and boxes of what has not been filmed yet."""
+    """Write thermal images and boxes of scenarios that have not been rendered yet."""
     for scenario, seed in scenarios:
         clip = folder / f"{scenario.name}-{seed}"
         if not clip.exists():
@@ -136,7 +136,7 @@ def _film(scenario: Scenario, seed: int, clip: Path) -> None:
 
 
 def _changed(name: str, changes: Sequence[Change]) -> Scenario:
-    """A scene of the library, its first seconds, changed."""
+    """Return the first seconds of a scene of the library, with changes."""
     data = to_data(load_scenario(name).spec)
     early = [person for person in data["people"] if person.get("enter_s", 0.0) < SCENE_S]
     data |= {"duration_s": SCENE_S, "people": early}

@@ -1,6 +1,6 @@
-"""`python -m benchmarks.results TABLE...`: the measured results of the documentation, docs/results.yaml.
+"""`python -m benchmarks.results TABLE...`: update the measured results in docs/results.yaml.
 
-Tables say how, when and on what they were measured; the command takes in what measuring commands left.
+Each table records how, when and on what it was measured; the command reads the output of the measurements.
 """
 
 import json
@@ -32,37 +32,37 @@ class _Part(BaseModel):
 
 
 class ResultColumn(_Part):
-    """One figure of every row."""
+    """One column of a table of results."""
 
-    name: str = Field(description="as the table's head says it")
-    form: str = Field(default="{:.1f}", description="how a figure is written, with its unit")
-    key: str = Field(default="", description="where the figure stands in what was measured, /thesis/CP")
-    factor: float = Field(default=1.0, description="on what was measured")
+    name: str = Field(description="title of the column")
+    form: str = Field(default="{:.1f}", description="format of a value, with its unit")
+    key: str = Field(default="", description="path of the value in the measured output, such as /thesis/CP")
+    factor: float = Field(default=1.0, description="data on which it was measured")
 
 
 class ResultRow(_Part):
-    """What one scenario, contestant or part came to."""
+    """Results of one scenario, tracker or part."""
 
     name: str
     measured: str = Field(
         default="",
-        description="what a command leaves: a JSON file, FILE#/KEY for a part of it, or folders of runs, "
-        "runs/NAME-*; empty if it only prints its figures",
+        description="output of a command: a JSON file, FILE#/KEY for a part of it, or folders of runs, "
+        "runs/NAME-*; empty if the command only prints its results",
     )
-    runs: int | None = Field(default=None, ge=1, description="how many runs these figures are of")
-    figures: tuple[float | None, ...] = Field(description="one a column; none where nothing was measured")
+    runs: int | None = Field(default=None, ge=1, description="number of runs")
+    figures: tuple[float | None, ...] = Field(description="one value per column; null if not measured")
 
 
 class ResultTable(_Part):
-    """One table of the page of results."""
+    """One table on the page of results."""
 
     command: str
-    recorded: str = Field(description="the day on which these figures were put down")
-    seeds: str = Field(description="which, in words")
+    recorded: str = Field(description="date on which the values were recorded")
+    seeds: str = Field(description="description of the seeds")
     chosen_on: str = Field(
-        default="", description="the scenes on which values of the tracker or behaviour were chosen"
+        default="", description="scenes on which settings of the tracker or behaviour were tuned"
     )
-    rows_are: str = Field(default="", description="head of the first column")
+    rows_are: str = Field(default="", description="title of the first column")
     columns: tuple[ResultColumn, ...]
     rows: tuple[ResultRow, ...]
 
@@ -70,7 +70,7 @@ class ResultTable(_Part):
     def _has_a_figure_for_every_column(self) -> "ResultTable":
         for row in self.rows:
             if len(row.figures) != len(self.columns):
-                raise ValueError(f"{row.name}: {len(row.figures)} figures for {len(self.columns)} columns")
+                raise ValueError(f"{row.name}: {len(row.figures)} values for {len(self.columns)} columns")
         return self
 
 
@@ -84,7 +84,7 @@ def read_tables(path: Path = PATH) -> ResultTables:
     """Read the file.
 
     Raises:
-        BadInput: it cannot be read, or says something else than tables of figures.
+        BadInput: it cannot be read, or does not contain tables of results.
     """
     data = read_yaml(path)
     with found_in(file=str(path)):
@@ -92,22 +92,22 @@ def read_tables(path: Path = PATH) -> ResultTables:
 
 
 def as_yaml(tables: ResultTables) -> str:
-    """Write the file's text; what is left to its default is left out, as it was."""
+    """Return the text of the file, without keys that have their default."""
     data = tables.model_dump(mode="json", exclude_defaults=True)
     text: str = yaml.safe_dump(data, sort_keys=False, allow_unicode=True, width=110, default_flow_style=None)
     return text
 
 
 def take_in(table: ResultTable) -> ResultTable:
-    """Return a table the figures that now lie where its rows say, and today's date.
+    """Return a table with the current values from the outputs that its rows name, and today's date.
 
-    Cells without a figure stay without one.
+    Empty cells stay empty.
 
     Raises:
-        BadInput: no row says where its figures lie, or one of them is not there.
+        BadInput: no row names an output, or a value is missing.
     """
     if not any(row.measured for row in table.rows):
-        raise BadInput(f"`{table.command}` only prints its figures; put them into docs/results.yaml by hand")
+        raise BadInput(f"`{table.command}` only prints its results; put them into docs/results.yaml by hand")
     rows = tuple(_take_row(row, table) for row in table.rows)
     return table.model_copy(update={"rows": rows, "recorded": date.today().isoformat()})
 
@@ -124,19 +124,19 @@ def _take_row(row: ResultRow, table: ResultTable) -> ResultRow:
 
 
 def read_measured(row: ResultRow) -> Any:
-    """Read what a row's figures are looked up in.
+    """Read the measured output of a row.
 
-    Of folders, that is `scores`, of all their frames together; `mean` and `worst`, how the robot drove; and
-    `runs`, how many there are. A JSON file may have `runs`, too, as their number or a list.
+    Folders of runs are summarised: `scores` over all their frames, `mean` and `worst` of the robot's driving
+    metrics, and `runs`, their number. A JSON file may have `runs`, too, as a number or a list.
 
     Raises:
-        BadInput: it is not there, or of another number of runs than the row says.
+        BadInput: it is missing, or its number of runs differs from that of the row.
     """
     found = _of_folders(row.measured) if row.measured.endswith("*") else _of_file(row)
     runs = found.get("runs") if isinstance(found, dict) else None
     count = len(runs) if isinstance(runs, list) else runs
     if count != row.runs:
-        raise BadInput(f"{row.measured}: it is of {count} runs, not of {row.runs}; measure them first")
+        raise BadInput(f"{row.measured}: has {count} runs, expected {row.runs}; run the measurement first")
     return found
 
 
@@ -145,15 +145,15 @@ def _of_file(row: ResultRow) -> Any:
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise BadInput(f"{path}: there are no figures; measure them first") from error
+        raise BadInput(f"{path}: no results found; run the measurement first") from error
     return _at(content, inside, row)
 
 
 def _of_folders(pattern: str) -> dict[str, Any]:
-    """Score the folders whose names end in a seed: `crossing_2-0`, not `crossing_2-0-thesis`."""
+    """Score the folders whose names end in a seed: `crossing_2-0`, but not `crossing_2-0-thesis`."""
     folders = [path for path in sorted(Path().glob(pattern)) if path.name.rpartition("-")[2].isdigit()]
     if not folders:
-        raise BadInput(f"{pattern}: there are no runs; measure them first")
+        raise BadInput(f"{pattern}: no runs found; run the measurement first")
     return _of_runs(folders)
 
 
@@ -172,12 +172,12 @@ def _of_runs(folders: Sequence[Path]) -> dict[str, Any]:
 def _look_up(found: Any, column: ResultColumn, row: ResultRow) -> float | None:
     value = _at(found, column.key, row)
     if value is not None and not isinstance(value, int | float):
-        raise BadInput(f"{row.measured}: {column.key} is no figure, got {value!r}")
+        raise BadInput(f"{row.measured}: {column.key} must be a number, got {value!r}")
     return None if value is None else column.factor * value
 
 
 def _at(content: Any, key: str, row: ResultRow) -> Any:
-    """Go along a key such as /thesis/CP; numbers count entries of lists."""
+    """Look up a path such as /thesis/CP; numbers are indices of lists."""
     for step in key.split("/")[1:]:
         try:
             content = content[int(step)] if isinstance(content, list) else content[step]
@@ -189,9 +189,9 @@ def _at(content: Any, key: str, row: ResultRow) -> Any:
 @click.command()
 @click.argument("names", metavar="[TABLE]...", nargs=-1)
 def main(names: Sequence[str]) -> None:
-    """Take the figures of these tables in from where their commands left them; without a name, list all.
+    """Update these tables from the output of their commands; without a name, list all tables.
 
-    `make pages` shows them on the page of results.
+    Run `make pages` to show them on the page of results.
     """
     known = read_tables().tables
     for name in names:

@@ -1,4 +1,4 @@
-"""Recorded sequences: what trackers see and what is true, and tracks as they are scored."""
+"""Recorded sequences: frames, ground truth, and tracks in the form for scoring."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -25,9 +25,9 @@ class Recording:
     """A recorded sequence.
 
     Attributes:
-        frames: what a tracker sees.
-        truth: the boxes of everybody.
-        boxes_whole: whether those are of whole people.
+        frames: frames for a tracker.
+        truth: boxes of all people.
+        boxes_whole: whether boxes enclose whole people.
     """
 
     frames: tuple[Frame, ...]
@@ -35,11 +35,11 @@ class Recording:
     boxes_whole: bool = False
 
     def uncalibrated(self) -> "Recording":
-        """Return the same, with nothing known of the cameras."""
+        """Return the recording without camera calibrations."""
         return replace(self, frames=tuple(replace(frame, calibrations={}) for frame in self.frames))
 
     def score(self, tracks: Iterable[Sequence[Track]], min_visible: float = 0.0) -> Scores:
-        """Score the tracks of each frame, by those of whom more than a share is visible."""
+        """Score the tracks of each frame; only people with more than a visible share count."""
         if self.boxes_whole:
             tracks = (boxed_whole(each, frame) for each, frame in zip(tracks, self.frames, strict=True))
         found = confirmed_boxes(tracks)
@@ -47,7 +47,7 @@ class Recording:
 
 
 def record(scenario: str | Scenario, seed: int) -> Recording:
-    """Run a scenario in the closed loop, driven by the contour tracker, and keep what that saw."""
+    """Run a scenario in the closed loop with the contour tracker, and record its frames."""
     loaded = load_scenario(scenario) if isinstance(scenario, str) else scenario
     config = loaded.world(seed)
     frames, rows, before = [], [], None
@@ -62,7 +62,7 @@ def record(scenario: str | Scenario, seed: int) -> Recording:
 
 
 def truth_rows(frame: int, truth: Truth) -> list[TruthRow]:
-    """Return frame, id, box, whether it counts, and visible share of everybody who has a box."""
+    """Return frame, id, box, whether it counts, and visible share of all people with a box."""
     return [
         (frame, person.id, person.box, person.is_counted, person.visible_fraction)
         for person in truth.people
@@ -71,7 +71,7 @@ def truth_rows(frame: int, truth: Truth) -> list[TruthRow]:
 
 
 def confirmed_boxes(frames: Iterable[Iterable[Track]]) -> TrackBoxes:
-    """Take the boxes of confirmed tracks in the thermal image, frame by frame, the first one being 1."""
+    """Yield the boxes of confirmed tracks in the thermal image by frame number, from 1 on."""
     return TrackBoxes.from_rows(
         (number, track.id, box, track.confidence)
         for number, tracks in enumerate(frames, start=1)
@@ -80,11 +80,11 @@ def confirmed_boxes(frames: Iterable[Iterable[Track]]) -> TrackBoxes:
 
 
 def print_row(name: str, cells: Sequence[str]) -> None:
-    """Print one line of a Markdown table, so that each is there as soon as it is known."""
+    """Print one row of a Markdown table as soon as it is known."""
     click.echo(f"| {' | '.join((name, *cells))} |")
 
 
 def print_head(name: str, columns: Sequence[str], ruler: Sequence[str] | None = None) -> None:
-    """Print the head of a Markdown table, whose columns of numbers are on the right."""
+    """Print the header of a Markdown table with right-aligned numbers."""
     print_row(name, columns)
     print_row("---", ruler or ["---:"] * len(columns))

@@ -1,6 +1,6 @@
-"""What each step from the thesis to the best contour tracker gives: `python -m benchmarks.tracker_ablation`.
+"""Ablation from the thesis to the best contour tracker: `python -m benchmarks.tracker_ablation`.
 
-Runs are recorded once, driven by that tracker; every variant then sees the same images.
+Runs are recorded once, driven by the best tracker; all variants run on the same images.
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,10 +23,10 @@ ONE = ("single_stationary", "single_follow")
 SEVERAL = ("crossing_3", "hidden_1s", "hidden_2s", "pass_behind_pillar", "three_depths", "turn_while_hidden")
 EMPTY = "empty_room"
 
-# Every setting in which the two differ belongs to one step; a name stands for all that begin with it. The
-# order is that of `variants`: a step may need those before it.
+# Every setting in which the two differ belongs to one step; a name stands for all settings with that prefix.
+# The order is that of `variants`: a step may need earlier ones.
 STEPS: dict[str, tuple[str, ...]] = {
-    "differences bend at 18 grey, and are not cut off at 40": (
+    "differences saturate softly at 18 grey instead of being clipped at 40": (
         "contour.saturation_grey",
         "contour.is_cut_off",
         "likelihood.slope",
@@ -48,40 +48,40 @@ STEPS: dict[str, tuple[str, ...]] = {
         "person.limits",
     ),
     "people stand on the floor": ("detector.limits.y_below_horizon",),
-    "a wider margin around what is too hot": ("contour.hot_margin_px",),
-    "too hot only where the room is black": ("contour.dark_share",),
-    "differences stand out from clutter": ("contour.clutter_share",),
-    "heads that the camera cuts off": ("contour.cut_share",),
-    # First, as sharp weights with the thesis's penalties find the same person again and again.
-    "filters keep farther off each other": ("interaction",),
-    "sharper weights; the best near the best make the estimate": (
+    "a wider margin around hot regions": ("contour.hot_margin_px",),
+    "hot regions only where the room is black": ("contour.dark_share",),
+    "differences relative to clutter": ("contour.clutter_share",),
+    "heads truncated by the image border": ("contour.cut_share",),
+    # First, since sharp weights with the thesis's penalties detect the same person repeatedly.
+    "stronger repulsion between filters": ("interaction",),
+    "sharper weights; the estimate is the mean of samples near the best one": (
         "detector.sharpness",
         "detector.estimate",
         "person.sharpness",
         "person.estimate",
         "person.resamples_core",
     ),
-    "half of the detector's samples anew, none of the person's": (
+    "half of the detector's samples drawn anew, none of the person's": (
         "detector.fresh_share",
         "person.fresh_share",
         "person.log_uniform_h",
     ),
-    "birth and death take several frames": ("life",),
+    "track initiation and deletion take several frames": ("life",),
     "motion scaled by size; odometry": ("motion",),
-    "the weakest section counts more": ("likelihood.weakest_share",),
-    "garments may be colder than what is behind": ("contour.cold_response",),
+    "more weight on the weakest section": ("likelihood.weakest_share",),
+    "clothes may be colder than the background": ("contour.cold_response",),
     "the line under the feet": ("contour.feet", "contour.unseen_response"),
     "box proportions": ("box",),
-    "some samples tried at another size": ("person.resized_share",),
+    "some samples resized": ("person.resized_share",),
     "smoothing": ("smoothing",),
-    "colours and thermal pattern, by part, without the light": ("colour", "appearance"),
-    "who is in front is no evidence for who is behind": ("depth",),
-    "who is overlapped keeps the height": ("height",),
-    "the hidden walk on, and are looked for": ("occlusion", "person.floor"),
-    "the hidden are shown only where that is sure": ("occlusion.shows_only_sure",),
-    "whoever was lost is remembered": ("occlusion.remembers_lost",),
-    "the detector looks twice at each image": ("search.scans",),
-    "whoever is large and alone is told of sooner, the small later": ("search",),
+    "colours and thermal pattern per body part, independent of lighting": ("colour", "appearance"),
+    "the person in front is no evidence for the person behind": ("depth",),
+    "overlapped people keep their height": ("height",),
+    "occluded tracks coast, and are searched for": ("occlusion", "person.floor"),
+    "occluded tracks are reported only if certain": ("occlusion.shows_only_sure",),
+    "lost people are remembered": ("occlusion.remembers_lost",),
+    "the detector scans each image twice": ("search.scans",),
+    "large isolated people are confirmed sooner, small ones later": ("search",),
 }
 COLUMNS = (
     "one: CP",
@@ -93,14 +93,14 @@ COLUMNS = (
     "IDF1",
     "HOTA",
     "switches",
-    "nobody: false per 100 frames",
+    "empty: false per 100 frames",
 )
 
 
 def differing(one: Any, other: Any, path: str = "") -> Iterator[str]:
-    """Name the settings, such as "contour.points", in which two configurations differ.
+    """Yield the settings, such as "contour.points", in which two configurations differ.
 
-    A record of another kind is named itself, and then what it changes of its kind's defaults.
+    A record of a different class is yielded itself, followed by its differences from that class's defaults.
     """
     for item in fields(other):
         name = f"{path}{item.name}"
@@ -114,19 +114,19 @@ def differing(one: Any, other: Any, path: str = "") -> Iterator[str]:
 
 
 def _of_kind(record: Any, model: Any) -> Any:
-    """Return a record as it is if it is of the model's kind, and the defaults of that kind if it is not."""
+    """Return a record if it has the model's class, else the defaults of that class."""
     return record if type(record) is type(model) else type(model)()
 
 
 def step_of(setting: str) -> str:
-    """Name the step that a setting belongs to: the one with the longest matching beginning."""
+    """Return the step of a setting: the one with the longest matching prefix."""
     return max(
         (len(start), step) for step, starts in STEPS.items() for start in starts if setting.startswith(start)
     )[1]
 
 
 def adopt(base: Any, source: Any, names: Sequence[str]) -> Any:
-    """Take the named settings of `source` into `base`."""
+    """Copy the named settings of `source` to `base`."""
     changes: dict[str, Any] = {}
     for head in dict.fromkeys(name.split(".")[0] for name in names):
         rest = [name.split(".", 1)[1] for name in names if name.startswith(f"{head}.")]
@@ -139,7 +139,7 @@ def adopt(base: Any, source: Any, names: Sequence[str]) -> Any:
 
 
 def variants() -> Iterator[tuple[str, TrackerConfig]]:
-    """Return the sources' trackers, then one step after the other, then the best without each step."""
+    """Return the sources' trackers, then the steps added one by one, then the best without each step."""
     yield "paper, literal", PAPER
     yield "thesis, literal, with colour and occlusions", THESIS_OCCLUSION
     yield "thesis, literal, thermal alone", THESIS
@@ -154,7 +154,7 @@ def variants() -> Iterator[tuple[str, TrackerConfig]]:
 
 
 def score(runs: dict[str, list[Recording]], config: TrackerConfig) -> list[str]:
-    """Return one row of figures, as `COLUMNS` names them; false alarms are per 100 frames."""
+    """Return the metrics of a row, in the order of `COLUMNS`; false alarms are per 100 frames."""
     one, several, nobody = (scores_of(runs, names, config) for names in (ONE, SEVERAL, (EMPTY,)))
     cells = percents(one, "CP", "CR", "AA") + percents(several, "CP", "CR", "AA", "IDF1", "HOTA")
     cells = ["-" if cell == "nan" else cell for cell in cells]
@@ -163,7 +163,7 @@ def score(runs: dict[str, list[Recording]], config: TrackerConfig) -> list[str]:
 
 
 def scores_of(runs: dict[str, list[Recording]], names: Sequence[str], config: TrackerConfig) -> Scores:
-    """Score a tracker on all runs of some scenarios together."""
+    """Score a tracker on all runs of several scenarios together."""
     numbered = [(seed, run) for name in names for seed, run in enumerate(runs[name])]
     return combine([run.score(_tracked(run, config, seed)) for seed, run in numbered])
 
@@ -174,9 +174,9 @@ def _tracked(run: Recording, config: TrackerConfig, seed: int) -> Iterator[tuple
 
 
 @click.command()
-@click.option("--seeds", default=2, show_default=True, help="Runs of each scenario.")
+@click.option("--seeds", default=2, show_default=True, help="Runs per scenario.")
 def main(seeds: int) -> None:
-    """Print what each step from the literal tracker to the best by contours gives, in Markdown [%]."""
+    """Print metrics [%] for each step from the literal to the best contour tracker, as a Markdown table."""
     runs = {name: [record(name, seed) for seed in range(seeds)] for name in (*ONE, *SEVERAL, EMPTY)}
     print_head("", COLUMNS)
     for name, config in variants():

@@ -1,1 +1,1 @@
-"""Other people's trackers on the same frames as ours: detectors of OpenCV with ByteTrack and SORT."""
+"""Comparison with other trackers on the same frames: OpenCV's detectors with ByteTrack and SORT."""

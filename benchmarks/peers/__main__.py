@@ -1,4 +1,4 @@
-"""`python -m benchmarks.peers`: peers and our trackers on the same frames of the occlusion library."""
+"""`python -m benchmarks.peers`: compare peers and PeopleBoy's trackers on the occlusion scenarios."""
 
 from pathlib import Path
 
@@ -31,19 +31,19 @@ _USUAL = (
 @click.command()
 @click.option("--scenarios", default=_QUICK, show_default=True, help="Names, or 'all' of suite occlusion.")
 @click.option(
-    "--seeds", type=click.IntRange(min=1), default=1, show_default=True, help="How many, from 0 on."
+    "--seeds", type=click.IntRange(min=1), default=1, show_default=True, help="Number of seeds, from 0 on."
 )
-@click.option("--trackers", default=_USUAL, show_default=True, help="Names of contestants.")
+@click.option("--trackers", default=_USUAL, show_default=True, help="Names of trackers.")
 @workers_options
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
     default=Path("runs/peers"),
     show_default=True,
-    help="What is kept.",
+    help="Output folder and cache.",
 )
 def main(scenarios: str, seeds: int, trackers: str, workers: Workers, out: Path) -> None:
-    """Let peers and our trackers see the same frames, and print how they do."""
+    """Run peers and PeopleBoy's trackers on the same frames, and print their metrics."""
     names = trackers.split(",")
     for name in names:
         if name not in contestants():
@@ -65,7 +65,7 @@ def main(scenarios: str, seeds: int, trackers: str, workers: Workers, out: Path)
 def _compete_all(
     names: list[str], played: list[str], seeds: int, workers: Workers, out: Path
 ) -> dict[str, list[Result]]:
-    """Film by film, so that each is rendered by one process only."""
+    """Run sequence by sequence, so that each is rendered by one process only."""
     tasks = {
         (shot, seed): [SequenceTask(tuple(names), shot, seed, out.resolve())]
         for shot in played

@@ -1,7 +1,8 @@
-"""JPDA and MHT, which the thesis names, from the library Stone Soup, on boxes that a detector found.
+"""JPDA and MHT, which the thesis mentions, from the library Stone Soup, on the boxes of a detector.
 
 JPDA: Bar-Shalom and Fortmann 1988. MHT: Reid 1979, here track-oriented, solved over a window of a few frames
-by multi-frame assignment (Xia et al. 2019). Both have the same motion, noise, births and ends of tracks.
+by multi-frame assignment (Xia et al. 2019). Both have the same motion model, noise, and track initiation and
+deletion.
 """
 
 import warnings
@@ -15,20 +16,20 @@ from numpy.typing import NDArray
 from benchmarks.peers.detectors import Boxes, PeerDetections
 from peopleboy.tracker.frame import Frame
 
-# Chosen in their favour, like those of the other peers, on crossing_2 and crossing_3.
-_ACCELERATION: Final = 400.0  # [px^2/s^3] power of a walk's changes of speed
-_GROWTH: Final = 40.0  # [px^2/s] of changes of width and height
-_NOISE_PX: Final = (4.0, 6.0, 4.0, 8.0)  # of middle and size of a box
-_SPEED_PX_S: Final = 60.0  # of who turns up
-_FOUND: Final = 0.9  # of those who are there
+# Tuned in their favour, like those of the other peers, on crossing_2 and crossing_3.
+_ACCELERATION: Final = 400.0  # [px^2/s^3] process noise of the velocity
+_GROWTH: Final = 40.0  # [px^2/s] process noise of width and height
+_NOISE_PX: Final = (4.0, 6.0, 4.0, 8.0)  # measurement noise of a box's centre and size
+_SPEED_PX_S: Final = 60.0  # initial speed of a new track
+_FOUND: Final = 0.9  # detection probability
 _GATE: Final = 0.999
-_CLUTTER: Final = 1e-9  # false boxes [1/px^4] for each place and size
+_CLUTTER: Final = 1e-9  # [1/px^4] density of false boxes over positions and sizes
 _BIRTH_FRAMES: Final = 3
-_LOST_FRAMES: Final = 75  # after which a track that nothing is found of ends: 5 s
-_WINDOW: Final = 3  # frames over which the MHT puts off a decision
+_LOST_FRAMES: Final = 75  # frames without detection after which a track is deleted: 5 s
+_WINDOW: Final = 3  # frames over which the MHT defers decisions
 _EPOCH: Final = datetime(2007, 1, 1)
 
-_PLACES: Final = (0, 2, 4, 5)  # of x, y, width and height in the state x, vx, y, vy, w, h
+_PLACES: Final = (0, 2, 4, 5)  # indices of x, y, width and height in the state x, vx, y, vy, w, h
 
 
 class _Detector(Protocol):
@@ -36,14 +37,14 @@ class _Detector(Protocol):
 
 
 class DetectAndFilter:
-    """A detector, and a filter with joint or multiple hypotheses that sees only its boxes."""
+    """A detector, and a JPDA or MHT filter that uses only its boxes."""
 
     def __init__(self, detector: _Detector, *, is_joint: bool) -> None:
         """Build the filter.
 
         Args:
-            detector: finds boxes.
-            is_joint: JPDA, else MHT.
+            detector: detector of people.
+            is_joint: whether to use JPDA; else MHT.
 
         Raises:
             SystemExit: Stone Soup is missing.
@@ -58,7 +59,7 @@ class DetectAndFilter:
         self._numbers: dict[str, int] = {}
 
     def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
-        """Detect, associate, and give the tracks of which something was found."""
+        """Detect, associate, and return the tracks that have a detection."""
         time = _EPOCH + timedelta(seconds=frame.time_s)
         found = set(self._parts.detections(self._detector.detect(frame).box, time))
         claimed = self._carry_on(found, time)
@@ -70,10 +71,10 @@ class DetectAndFilter:
         return boxes, [self._numbers.setdefault(track.id, len(self._numbers) + 1) for track in shown]
 
     def _carry_on(self, found: set[Any], time: datetime) -> set[Any]:
-        """Carry all tracks on, and give the detections that some of them took."""
+        """Update all tracks, and return the associated detections."""
         claimed = set()
         with warnings.catch_warnings():
-            # Where its relaxed problem has no answer, it solves the whole one, and says so.
+            # If the relaxed problem is infeasible, it solves the integer problem and prints a message.
             warnings.filterwarnings("ignore", "Infeasible primal problem")
             associated = self._associate.associate(self._tracks, found, time)
         for track, hypotheses in associated.items():
@@ -88,7 +89,7 @@ class DetectAndFilter:
 
 
 class _Parts:
-    """Models and associators of Stone Soup, which is imported only here."""
+    """Models and associators of Stone Soup, which are imported only here."""
 
     def __init__(self) -> None:
         try:
@@ -109,7 +110,7 @@ class _Parts:
         self._update = KalmanUpdater(self._measure)
 
     def detections(self, boxes: Boxes, time: datetime) -> Iterable[Any]:
-        """Turn boxes (N, 4) into measurements of middle and size."""
+        """Convert boxes (N, 4) to measurements of centre and size."""
         from stonesoup.types.detection import Detection
 
         for left, top, width, height in boxes.tolist():
@@ -117,7 +118,7 @@ class _Parts:
             yield Detection(place, timestamp=time, measurement_model=self._measure)
 
     def jpda(self) -> Any:
-        """Return the joint probabilistic data association, with an efficient tree of hypotheses."""
+        """Return the joint probabilistic data association, with an efficient hypothesis tree."""
         from stonesoup.dataassociator.probability import JPDAwithEHM
 
         return JPDAwithEHM(self._chances())
@@ -130,7 +131,7 @@ class _Parts:
         return MFADataAssociator(MFAHypothesiser(self._chances()), slide_window=_WINDOW)
 
     def initiator(self) -> Any:
-        """Return what begins tracks: as many detections as it takes, each the nearest to the one before."""
+        """Return the track initiator: a number of detections, each the nearest to the previous one."""
         from stonesoup.dataassociator.neighbour import GNNWith2DAssignment
         from stonesoup.deleter.time import UpdateTimeStepsDeleter
         from stonesoup.hypothesiser.distance import DistanceHypothesiser
@@ -150,7 +151,7 @@ class _Parts:
         )
 
     def as_mixture(self, track: Any) -> Any:
-        """Let a new track be a mixture of one component, as multiple hypotheses need."""
+        """Convert a new track to a mixture with one component, as MHT requires."""
         from stonesoup.types.mixture import GaussianMixture
         from stonesoup.types.numeric import Probability
         from stonesoup.types.state import TaggedWeightedGaussianState
@@ -163,7 +164,7 @@ class _Parts:
         return Track([GaussianMixture([one])])
 
     def posterior(self, hypotheses: Any, time: datetime, *, is_joint: bool) -> Any:
-        """Return a track's state: one Gaussian of all hypotheses, or the mixture of those that are left."""
+        """Return a track's state: one Gaussian for all hypotheses, or the mixture of the remaining ones."""
         from stonesoup.functions import gm_reduce_single
         from stonesoup.types.array import StateVectors
         from stonesoup.types.update import GaussianMixtureUpdate, GaussianStateUpdate
@@ -186,7 +187,7 @@ class _Parts:
 
 
 def _mean(state: Any) -> NDArray[np.float64]:
-    """Return the mean (6,) of a Gaussian, or of the likeliest of several."""
+    """Return the mean (6,) of a Gaussian, or of the most likely component of a mixture."""
     components = getattr(state, "components", None)
     best = state if components is None else max(components, key=lambda one: one.weight)
     return np.asarray(best.state_vector, np.float64).reshape(-1)

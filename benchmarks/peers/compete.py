@@ -1,4 +1,4 @@
-"""Let contestants see kept frames, keep what they say, and score it."""
+"""Run trackers on recorded frames, cache their tracks, and score them."""
 
 import hashlib
 import json
@@ -24,15 +24,15 @@ from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Result:
-    """One contestant on one film.
+    """Result of one tracker on one sequence.
 
     Attributes:
-        name: of the contestant.
-        scenario: whose film.
-        scores: all figures.
-        occlusions: what became of identities.
-        ms: CPU time of a frame [ms], median over the seconds of their means: some frames take longer than
-            others, and the first ones compile.
+        name: name of the tracker.
+        scenario: name of the scenario.
+        scores: all metrics.
+        occlusions: identities before and after total occlusions.
+        ms: CPU time per frame [ms]: median over seconds of the mean in each, since some frames take longer
+            than others, and the first ones compile.
     """
 
     name: str
@@ -44,7 +44,7 @@ class Result:
 
 @dataclass(frozen=True, slots=True)
 class SequenceTask:
-    """Score several contestants on one film."""
+    """Score several trackers on one sequence."""
 
     names: tuple[str, ...]
     scenario: str
@@ -58,14 +58,14 @@ class SequenceTask:
         return f"{self.scenario}-{self.seed}"
 
     def __call__(self, tell: Tell) -> list[Result]:  # noqa: ARG002
-        """Score them one after the other."""
+        """Score the trackers one after another."""
         return [compete(name, self.scenario, self.seed, self.folder) for name in self.names]
 
 
 def compete(name: str, scenario: str, seed: int, folder: Path) -> Result:
-    """Score one contestant on one film; both the film and what it said are kept in the folder, and reused.
+    """Score one tracker on one sequence; the sequence and the tracks are cached in the folder.
 
-    What it said is kept for as long as the source of the trackers stays the same.
+    Cached tracks are reused as long as the source code of the trackers does not change.
     """
     shot = film(load_scenario(scenario), seed, folder / "films")
     said = folder / "tracks" / f"{name}-{_digest(name)}" / shot.folder.name
@@ -83,7 +83,7 @@ def compete(name: str, scenario: str, seed: int, folder: Path) -> Result:
 
 
 def occlusions_of(shot: Film, truth: TrueBoxes, tracks: TrackBoxes) -> list[Occlusion]:
-    """Score the identities at the total occlusions of a film."""
+    """Score the identities at the total occlusions of a sequence."""
     people = shot.people().select(["frame", "id", "occluded_fraction"])
     columns = (people[name].to_pylist() for name in people.column_names)
     hidden = {(frame, person): share for frame, person, share in zip(*columns, strict=True)}
@@ -105,7 +105,7 @@ def _run(name: str, shot: Film, said: Path) -> None:
 
 
 def _usual(times_ms: list[float]) -> float:
-    """Take the mean of each second, and the median of all of them."""
+    """Return the median of the means per second."""
     each = round(RATE_HZ)
     return float(
         np.median([np.mean(times_ms[begin : begin + each]) for begin in range(0, len(times_ms), each)])
@@ -114,7 +114,7 @@ def _usual(times_ms: list[float]) -> float:
 
 @cache
 def _digest(name: str) -> str:
-    """Of the source on which a contestant's boxes depend."""
+    """Return a digest of the source code on which a tracker's boxes depend."""
     digest = hashlib.sha256()
     if name in PEERS:
         digest.update(version("trackers").encode())

@@ -1,4 +1,4 @@
-"""All who compete, by name: peers, and the trackers of `peopleboy.tracker.trackers`."""
+"""All compared trackers by name: peers, and those of `peopleboy.tracker.trackers`."""
 
 from collections.abc import Callable
 from typing import Any, Final, Protocol
@@ -19,17 +19,17 @@ from peopleboy.tracker.frame import THERMAL, Frame
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 RATE_HZ = 15.0
-# The package counts in frames at 30 Hz: five seconds. Of 1, 2, 5 and 10 s it is best for the oracle's IDF1,
-# and within a point of the best for that of the blobs.
+# In frames at 30 Hz, as the package counts: five seconds. Among 1, 2, 5 and 10 s, it gives the best IDF1 for
+# the oracle, and is within a point of the best for the blobs.
 _LOST_BUFFER = 150
-_STRONG = 0.4  # confidence; HOG's are lower than those of the detectors that the defaults are made for
+_STRONG = 0.4  # confidence; HOG's are lower than those of the detectors for which the defaults were chosen
 
 
-# Chosen in the peers' favour, by the mean HOTA of camel_08 and camel_21: of confidences .4 to .94, of 1 and
-# 5 s to remember who is lost, and of two widths over height. HOG's weak windows only make false tracks.
+# Tuned in the peers' favour, by the mean HOTA of camel_08 and camel_21: confidences .4 to .94, lost tracks
+# kept for 1 or 5 s, and two ratios of width to height. HOG's weak windows only add false tracks.
 _CLIP_STRONG: Final = 0.91
-_WIDE: Final = 0.43  # of .43 and the .45 of ours
-_WEAKEST: Final = 0.0  # distance from the classifier's boundary
+_WIDE: Final = 0.43  # chosen from .43 and PeopleBoy's .45
+_WEAKEST: Final = 0.0  # distance from the decision boundary
 
 
 class _BoxDetector(Protocol):
@@ -37,7 +37,7 @@ class _BoxDetector(Protocol):
 
 
 class DetectAndAssociate:
-    """A detector, and a tracker that sees only its boxes."""
+    """A detector, and a tracker that uses only its boxes."""
 
     def __init__(self, detector: _BoxDetector, tracker: Any) -> None:
         self._detector, self._tracker = detector, tracker
@@ -79,19 +79,19 @@ PEERS: dict[str, Callable[[TrueBoxes], Contestant]] = {
     "oracle+jpda": lambda truth: DetectAndFilter(Oracle(truth), is_joint=True),
     "oracle+mht": lambda truth: DetectAndFilter(Oracle(truth), is_joint=False),
 }
-"""Each peer's maker by name; only the oracle sees the truth."""
+"""Factory of each peer by name; only the oracle uses the ground truth."""
 
 JOINT = "thermal+mcmc"
-"""The literal tracker's contour in one filter for everybody."""
+"""Name of the literal tracker's contour in one joint filter for all people."""
 
 
 def contestants() -> list[str]:
-    """Name all who can compete."""
+    """Return the names of all trackers that can be compared."""
     return [*VARIANTS, DEFAULT_TRACKER, *PEERS, JOINT]
 
 
 def make_contestant(name: str, seed: int, truth: TrueBoxes) -> Contestant:
-    """Make a contestant for one run.
+    """Make a tracker for one run.
 
     Raises:
         BadInput: an unknown name.
@@ -102,17 +102,17 @@ def make_contestant(name: str, seed: int, truth: TrueBoxes) -> Contestant:
 
 
 class PeerOfClips(DetectAndAssociate):
-    """A peer whose boxes end at the image's borders, as ours and those of annotators do."""
+    """A peer whose boxes are clipped to the image, like PeopleBoy's and those of annotators."""
 
     def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
-        """Detect, associate, and cut off."""
+        """Detect, associate, and clip."""
         boxes, ids = super().step(frame)
         height_px, width_px = frame.images[THERMAL].shape[:2]
         return within_image(boxes, width_px, height_px), ids
 
 
 def make_clip_peer(enlarged: float) -> PeerOfClips:
-    """Make it for one clip, whose pictures it enlarges so many times."""
+    """Make a peer for one clip, whose images are enlarged by a factor."""
     tracker = ByteTrackTracker(
         lost_track_buffer=_LOST_BUFFER,
         track_activation_threshold=_CLIP_STRONG,

@@ -1,8 +1,8 @@
-"""Detectors that see one frame at a time: OpenCV's HOG, warm blobs, and an oracle.
+"""Detectors on single frames: OpenCV's HOG, warm blobs, and an oracle.
 
-Their boxes are shaped to the truth's: as high as the person, and as wide as the torso, or as whole people
-where those are annotated. The constants that do so were chosen in the peers' favour, by the area accuracy on
-crossing_2 and crossing_3.
+Their boxes are adapted to those of the ground truth: as tall as the person, and as wide as the torso, or as
+the whole person where that is annotated. The constants were tuned in the peers' favour, by the area accuracy
+on crossing_2 and crossing_3.
 """
 
 from dataclasses import dataclass
@@ -17,12 +17,12 @@ from peopleboy.tracker.evaluation.sequence import TrueBoxes
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 
 Boxes = NDArray[np.float64]
-TRUTH_PER_HEIGHT = 0.27  # width of a box of the truth over its height, mean of the library
+TRUTH_PER_HEIGHT = 0.27  # ratio of width to height of ground-truth boxes, mean of the library
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PeerDetections:
-    """What a detector finds in a frame.
+    """Detections in one frame.
 
     Attributes:
         box: (N, 4) [px] left, top, width, height in the thermal image.
@@ -34,18 +34,18 @@ class PeerDetections:
 
 
 class Hog:
-    """OpenCV's people detector on the colour or the thermal image, enlarged to see people 10 m away.
+    """OpenCV's people detector on the colour or the thermal image, enlarged to detect people 10 m away.
 
     Args:
-        uses_colour: whether to look at the colour image.
-        width_per_height: of the truth's boxes.
-        enlarged: how many times the image is enlarged.
-        weakest: least distance from the classifier's boundary.
+        uses_colour: whether to use the colour image.
+        width_per_height: ratio of width to height of the ground-truth boxes.
+        enlarged: factor by which the image is enlarged.
+        weakest: least distance from the decision boundary.
 
     Source: Dalal and Triggs 2005, with OpenCV's default detector of windows of 64 x 128 pixels.
     """
 
-    _MAN_PER_WINDOW = 0.76  # the person is so high in the detector's window
+    _MAN_PER_WINDOW = 0.76  # height of the person relative to the detection window
 
     def __init__(
         self,
@@ -77,11 +77,11 @@ class Hog:
 
 
 class Blobs:
-    """Connected regions that are as warm and as upright as a person."""
+    """Detector of connected regions that are as warm and upright as a person."""
 
     _WARMER_THAN = 40  # [grey], 25.9 degC
     _SMALLEST_PX = 24  # height
-    _UPRIGHT = (1.1, 7.0)  # height over width
+    _UPRIGHT = (1.1, 7.0)  # ratio of height to width
 
     def detect(self, frame: Frame) -> PeerDetections:
         """Find people in a frame."""
@@ -97,7 +97,7 @@ class Blobs:
 
 
 class Oracle:
-    """Finds everybody of whom enough is visible, exactly: no detector of single frames can do better."""
+    """Detector that returns the true boxes of sufficiently visible people: an upper bound."""
 
     def __init__(self, truth: TrueBoxes) -> None:
         self._truth = truth.take(truth.visible > SEEN)
@@ -111,7 +111,7 @@ class Oracle:
 
 
 def _shaped(boxes: Boxes, height_share: float, width_per_height: float) -> Boxes:
-    """Boxes with the same middles, so much lower, and so wide of that, unless they are narrower."""
+    """Scale the height of boxes about their centres, and limit their width relative to that."""
     height = height_share * boxes[:, 3]
     width = np.minimum(boxes[:, 2], width_per_height * height)
     middle = boxes[:, :2] + boxes[:, 2:] / 2.0
@@ -120,7 +120,7 @@ def _shaped(boxes: Boxes, height_share: float, width_per_height: float) -> Boxes
 
 
 def _from_colour(boxes: Boxes, colour_shape: tuple[int, ...], frame: Frame) -> Boxes:
-    """Move boxes from the colour image to the thermal one (thesis, equation 6.1, the other way round)."""
+    """Map boxes from the colour image to the thermal one (inverse of equation 6.1 of the thesis)."""
     p1, p2, _, p4, _, p6 = ROBOT_AFFINE
     height, width = colour_shape[:2]
     share = boxes / (width, height, width, height)

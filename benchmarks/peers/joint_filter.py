@@ -1,9 +1,9 @@
-"""One particle filter for everybody together, with an interaction between people, sampled by MCMC.
+"""One joint particle filter for all people, with an interaction term, sampled by MCMC.
 
 Khan, Balch and Dellaert, An MCMC-based particle filter for tracking multiple interacting targets, ECCV 2004:
-the joint state has a Markov random field that keeps people apart, and is sampled by Metropolis and Hastings,
-moving one person at a time. The contour, its likelihood, the motion, the detector and the ends of tracks are
-those of the literal tracker, so that the two differ in nothing but how several people are held.
+the joint state has a Markov random field that keeps people apart, and is sampled by Metropolis-Hastings,
+moving one person at a time. Contour, likelihood, motion model, detector and track deletion are those of the
+literal tracker, so that the two differ only in how they represent several people.
 """
 
 from dataclasses import replace
@@ -30,26 +30,26 @@ from peopleboy.tracker.contour.tracked_person import is_born, is_kept
 from peopleboy.tracker.contour.variants import THESIS
 from peopleboy.tracker.frame import THERMAL, Frame
 
-# Of the chain for each person. It rejects most proposals: with 1000, as many as the literal tracker has
+# Steps of the chain per person. It rejects most proposals: with 1000 steps, the literal tracker's number of
 # samples, it finds half as many people.
 _STEPS: Final = 4000
-_BURN_IN: Final = 0.2  # share of them that is thrown away
+_BURN_IN: Final = 0.2  # share of the steps that is discarded
 _FIRST_STEP_S: Final = 1 / 15
 
 
 class JointFilter:
-    """Finds people one after the other, and follows all of them by one chain."""
+    """Tracker that detects people one at a time, and tracks all of them with one chain."""
 
     def __init__(self, rng: np.random.Generator) -> None:
         self._rng = rng
-        self._people: dict[int, Floats] = {}  # samples (N, 9) of each
+        self._people: dict[int, Floats] = {}  # samples (N, 9) of each person
         self._detector: Belief | None = None
         self._born = 0
         self._last_s: float | None = None
         self._model: ContourModel | None = None
 
     def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
-        """Carry everybody on, look for the next, and give the boxes."""
+        """Update all tracks, search for a new person, and return the boxes."""
         dt_s = _FIRST_STEP_S if self._last_s is None else frame.time_s - self._last_s
         self._last_s = frame.time_s
         if self._model is None:
@@ -63,7 +63,7 @@ class JointFilter:
         return np.array(boxes).reshape(-1, 4), list(beliefs)
 
     def _follow(self, view: FrameView) -> dict[int, Belief]:
-        """Sample the joint posterior, and drop who is not seen any more."""
+        """Sample the joint posterior, and delete lost tracks."""
         particles = [self._proposed(state, view) for state in self._people.values()]
         chances = [_likelihood(state, view) for state in particles]
         rectangles = [regions_of(list(state), THESIS).astype(np.float64) for state in particles]
@@ -75,10 +75,10 @@ class JointFilter:
         return {number: one for number, one in beliefs.items() if is_kept(one, view, THESIS.life)}
 
     def _proposed(self, state: Floats, view: FrameView) -> Floats:
-        """Draw as many places (N, 9) as the chain has steps for a person, from the motion of its samples."""
+        """Draw proposals (N, 9), one per step of the chain, from the motion model of a person's samples."""
         person = replace(THESIS.person, count=_STEPS)
         drawn = advance(equally_weighted(state), view, person, THESIS, self._rng)
-        # Those of the prior come last, and the chain has to meet both kinds alike.
+        # Samples of the prior come last; shuffle, so that the chain meets both kinds equally often.
         return self._rng.permutation(drawn)
 
     def _search(self, view: FrameView, beliefs: dict[int, Belief]) -> None:
@@ -103,19 +103,19 @@ def run_chain(
     penalty: float,
     rng: np.random.Generator,
 ) -> list[NDArray[np.int64]]:
-    """Walk through the joint states of M people by Metropolis and Hastings.
+    """Sample the joint states of M people by Metropolis-Hastings.
 
-    A person's proposals are drawn from the motion of its samples, whatever state the chain is in, so that
-    they can be measured at once beforehand; what is accepted depends on the chain.
+    Proposals are drawn from the motion model independently of the chain's state, so that their likelihoods
+    can be computed in advance; only acceptance depends on the chain.
 
     Args:
-        chances: of each person's proposals (N,), by the image.
-        rectangles: of these (N, 4) left, top, width, height [px].
-        penalty: of the share of a rectangle that lies in another person's (the field's potential).
-        rng: source of chance.
+        chances: likelihoods (N,) of each person's proposals.
+        rectangles: boxes (N, 4) of the proposals: left, top, width, height [px].
+        penalty: potential of the field, by the share of a rectangle inside other people's rectangles.
+        rng: random generator.
 
     Returns:
-        For each person the proposals (K,) that the chain was at, after its burn-in.
+        Per person the proposals (K,) that the chain visited after its burn-in.
 
     Source: Khan et al., algorithm 2.
     """
@@ -144,7 +144,7 @@ def run_chain(
 
 
 def _overlap(box: list[float], others: list[list[float]]) -> float:
-    """Add up the shares of a box that lie in others."""
+    """Return the sum of the shares of a box that lie in others."""
     left, top, width, height = box
     total = 0.0
     for x, y, w, h in others:
@@ -156,7 +156,7 @@ def _overlap(box: list[float], others: list[list[float]]) -> float:
 
 
 def _likelihood(state: Floats, view: FrameView) -> NDArray[np.float64]:
-    """Give p(Z | X) of samples (N, 9): equation 4.4 of the thesis, and next to nothing outside its limits."""
+    """Return p(Z | X) of samples (N, 9): equation 4.4 of the thesis, and almost 0 outside its limits."""
     differences = view.model.differences(view.image, state, view.covered)
     chance = probability(fitness(differences, view.model.weights, THESIS.likelihood), THESIS.likelihood)
     inside = is_within(state, view.image.shape[0], THESIS.person.limits)
@@ -164,6 +164,6 @@ def _likelihood(state: Floats, view: FrameView) -> NDArray[np.float64]:
 
 
 def _belief(state: Floats, chance: NDArray[np.float64]) -> Belief:
-    """Take samples (K, 9) of the posterior, which all count alike, for a person's filter."""
+    """Return a person's particles from equally weighted samples (K, 9) of the posterior."""
     alike = equally_weighted(state)
     return Belief(alike, alike, mean_state(alike), float(chance.mean()), uncertainty_px2(alike))

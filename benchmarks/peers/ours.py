@@ -1,4 +1,4 @@
-"""Our own trackers among contestants, for which no package of others is needed."""
+"""PeopleBoy's trackers for comparisons; they need no other packages."""
 
 from typing import Protocol
 
@@ -12,10 +12,10 @@ from peopleboy.tracker.trackers import make_tracker
 
 
 class Contestant(Protocol):
-    """Whatever turns frames into boxes with ids."""
+    """Interface of compared trackers: frames in, boxes with ids out."""
 
     def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
-        """Return the boxes (N, 4) of the next frame, left, top, width, height [px], and their ids."""
+        """Return boxes (N, 4) of the next frame, left, top, width, height [px], and their ids."""
         ...
 
 
@@ -28,11 +28,11 @@ class Ours:
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """Names of the cameras that it wants."""
+        """Names of the required cameras."""
         return self._tracker.cameras
 
     def step(self, frame: Frame) -> tuple[Boxes, list[int]]:
-        """Update, and take the confirmed tracks."""
+        """Update the tracker, and return the confirmed tracks."""
         tracks = self._tracker.update(frame)
         found = list(confirmed(boxed_whole(tracks, frame) if self._boxes_whole else tracks, THERMAL))
         return np.array([box for _, box in found]).reshape(-1, 4), [track.id for track, _ in found]

@@ -1,4 +1,4 @@
-"""Tables and a picture of a competition."""
+"""Tables and a plot of a comparison."""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,15 +14,15 @@ from peopleboy.tracker.evaluation.evaluate import combine
 from peopleboy.tracker.evaluation.occlusion_scores import LengthRow, by_length
 from peopleboy.tracker.evaluation.table import to_json
 
-Results = Mapping[str, Sequence[Result]]  # by contestant
+Results = Mapping[str, Sequence[Result]]  # by tracker
 KEPT_UP_TO = {"up to 1.5 s": 1.5, "all": np.inf}
 _SPOT = 4.0
 SHOWN = ("CP", "CR", "AA", "HOTA", "IDF1")
-WIDTH = 130  # characters of the tables
+WIDTH = 130  # of the tables, in characters
 
 
 def print_results(results: Results) -> None:
-    """Print every contestant's figures over all films."""
+    """Print the metrics of every tracker over all sequences."""
     columns = [f"{name} %" for name in SHOWN] + ["IDSW", "false tracks", "kept %", "ms/frame"]
     print_table(["", *columns], ([name, *_figures(runs)] for name, runs in results.items()), WIDTH)
 
@@ -38,7 +38,7 @@ def _figures(runs: Sequence[Result]) -> Iterator[str]:
 
 
 def print_occlusions(results: Results) -> None:
-    """Print identities kept, and the time until people are found again, by length of the occlusion."""
+    """Print the share of kept identities, and the time until recovery, by duration of the occlusion."""
     rows = {name: by_length(_occlusions(runs)) for name, runs in results.items()}
     columns = [f"{row.from_s:g}..{row.to_s:g} s" for row in next(iter(rows.values()))]
     cells = ([name, *map(_cell, lengths)] for name, lengths in rows.items())
@@ -46,7 +46,7 @@ def print_occlusions(results: Results) -> None:
 
 
 def write_results(results: Results, path: Path) -> None:
-    """Keep every contestant's figures over all films, and the identities kept, as JSON."""
+    """Write the metrics of every tracker over all sequences, and the kept identities, as JSON."""
     content = {
         name: {
             "runs": len(runs),
@@ -59,14 +59,14 @@ def write_results(results: Results, path: Path) -> None:
 
 
 def _kept(runs: Sequence[Result], to_s: float) -> dict[str, float | None]:
-    """Of the occlusions that are shorter than that, the share after which the identity is the same."""
+    """Return the share of kept identities among occlusions shorter than a duration."""
     rows = [row for row in by_length(_occlusions(runs)) if row.to_s <= to_s]
     tracked = sum(row.occlusions for row in rows)
     return {"share": sum(row.kept for row in rows) / tracked if tracked else None, "occlusions": tracked}
 
 
 def draw_occlusions(results: Results, path: Path) -> None:
-    """Draw both as curves over the length of the occlusion, and save the picture."""
+    """Plot kept identities and recovery time over the duration of the occlusion, and save the plot."""
     figure = Figure(figsize=(9.0, 3.6), layout="constrained")
     FigureCanvasAgg(figure)
     kept, found = figure.subplots(1, 2)
@@ -78,7 +78,7 @@ def draw_occlusions(results: Results, path: Path) -> None:
         found.plot(at, [row.found_after_s for row in rows], style, marker="o", ms=_SPOT)
     for axes, title in ((kept, "identity kept [%]"), (found, "found again after, median [s]")):
         axes.set_title(title, fontsize=10)
-        axes.set_xlabel("wholly hidden for [s]")
+        axes.set_xlabel("duration of total occlusion [s]")
         axes.set_xscale("log")
         axes.set_xticks([0.2, 0.5, 1, 2, 5, 8], ["0.2", "0.5", "1", "2", "5", "8"])
         axes.minorticks_off()
@@ -99,5 +99,5 @@ def _cell(row: LengthRow) -> str:
 
 
 def _middle(row: LengthRow) -> float:
-    """A length to draw a range at."""
+    """Return the duration at which to plot a range."""
     return row.from_s * 1.3 if np.isinf(row.to_s) else max((row.from_s + row.to_s) / 2.0, 0.1)

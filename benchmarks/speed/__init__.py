@@ -1,1 +1,1 @@
-"""What `make bench` times: the parts of a frame and the whole loop, each beside a peer in the same run."""
+"""Measurements of `make bench`: parts of a frame and the whole loop, compared with a peer in the same run."""

@@ -1,8 +1,8 @@
-"""`python -m benchmarks.speed.against OTHER_CHECKOUT`: how much faster runs are here than in another one.
+"""`python -m benchmarks.speed.against OTHER_CHECKOUT`: compare the speed of runs with another checkout.
 
-Both track by contours, under the name that each has for it, and take turns on this machine, each in a
-process and with caches of its own, so that other work slows both.
-The other one may be older than the package's present layout; its first turn compiles, and is not counted.
+Both use the contour tracker, under the name in each checkout, and take turns on this machine, in separate
+processes with separate caches, so that other load affects both. The other checkout may be older than the
+present layout of the package. The first turn of each compiles, and is not counted.
 """
 
 import json
@@ -35,11 +35,11 @@ print(json.dumps([loop_speed("{SCENARIO}", **options), run_speed("{SCENARIO}", *
 
 @dataclass(frozen=True, slots=True)
 class SpeedRatio:
-    """How many times as fast two people are run here as there, in CPU time.
+    """Ratios of CPU time of the other checkout to this one, with two people.
 
     Attributes:
-        loop: the closed loop: world, images, truth, tracker and behaviour.
-        run: the same with tables, contact sheet and recording written.
+        loop: ratio for the closed loop: world, images, truth, tracker and behaviour.
+        run: ratio for a whole run, which also writes tables, contact sheet and recording.
     """
 
     loop: float
@@ -47,7 +47,7 @@ class SpeedRatio:
 
 
 def gain_over(other: Path, rounds: int) -> SpeedRatio:
-    """Measure both in turn, and give the medians of the turns."""
+    """Measure both in turn, and return the median ratios."""
     _speeds(other)
     turns = [(_speeds(HERE), _speeds(other)) for _ in range(rounds)]
     loop, run = (median(here[which] / there[which] for here, there in turns) for which in (0, 1))
@@ -55,7 +55,7 @@ def gain_over(other: Path, rounds: int) -> SpeedRatio:
 
 
 def _speeds(checkout: Path) -> list[float]:
-    """Run a checkout's own measurement of loop and run, in multiples of real time."""
+    """Run a checkout's measurement of loop and run, in multiples of real time."""
     where = os.pathsep.join((str(checkout / "src"), str(checkout)))
     done = subprocess.run(
         [sys.executable, "-c", _CODE],
@@ -75,9 +75,9 @@ def _speeds(checkout: Path) -> list[float]:
     type=click.Path(exists=True, file_okay=False, path_type=Path, resolve_path=True),
     metavar="OTHER_CHECKOUT",
 )
-@click.option("--rounds", default=3, show_default=True, help="How often both are timed.")
+@click.option("--rounds", default=3, show_default=True, help="Number of turns.")
 def main(other: Path, rounds: int) -> None:
-    """Return how many times as fast as in OTHER_CHECKOUT two people are run here."""
+    """Print the speed of runs with two people relative to OTHER_CHECKOUT."""
     gain = gain_over(other, rounds)
     print(f"closed loop, two people: {gain.loop:.2f} times as fast")
     print(f"with tables, contact sheet and recording: {gain.run:.2f} times as fast")

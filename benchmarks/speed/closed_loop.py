@@ -1,4 +1,4 @@
-"""The whole closed loop in multiples of real time, and the memory it takes."""
+"""Speed of the closed loop in multiples of real time, and its memory."""
 
 import resource
 import tempfile
@@ -17,7 +17,7 @@ RATE_HZ = 15
 
 
 def loop_speed(scenario: str, frames: int = 300, *, tracker: str = DEFAULT_TRACKER) -> float:
-    """Return how many times faster than real time the loop runs: world, images, truth, tracker, behaviour."""
+    """Return the speed of the loop in multiples of real time: world, images, truth, tracker, behaviour."""
     loaded = load_scenario(scenario)
     times = []
     with World(loaded.world(0)) as world:
@@ -29,12 +29,12 @@ def loop_speed(scenario: str, frames: int = 300, *, tracker: str = DEFAULT_TRACK
                 now = time.process_time()
                 times.append(now - last)
                 last = now
-    # Of whole seconds, since some images are looked at more closely than others.
+    # Over whole seconds, since the detector takes longer on some images.
     return 1.0 / median(times)
 
 
 def run_speed(scenario: str, *, tracker: str = DEFAULT_TRACKER) -> float:
-    """Return the same for a whole `peopleboy run`, with its tables, contact sheet and recording."""
+    """Return the speed of a whole `peopleboy run`, including tables, contact sheet and recording."""
     times = []
     last = time.process_time()
 
@@ -46,10 +46,10 @@ def run_speed(scenario: str, *, tracker: str = DEFAULT_TRACKER) -> float:
 
     with tempfile.TemporaryDirectory() as folder:
         run(load_scenario(scenario), RunOptions(seed=0, out=Path(folder) / "run", tracker=tracker), report)
-    # The mean, not the median: the recording writes every 15 frames, and that counts.
+    # The mean, not the median, since the recording writes only every 15 frames.
     return (len(times) - 1) / RATE_HZ / sum(times[1:])
 
 
 def peak_memory_mb() -> float:
-    """Return the most memory [MB] that this process has held so far."""
+    """Return the peak memory [MB] of this process."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0

@@ -1,4 +1,4 @@
-"""The contour tracker by its parts and by people, and the trackers beside OpenCV's HOG detector, by turns."""
+"""CPU time of the contour tracker by parts and people, and of trackers compared with OpenCV's HOG."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -25,26 +25,26 @@ from peopleboy.tracker.frame import COLOUR, THERMAL, Frame, Odometry
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.trackers import CONTOUR_TRACKER, DEFAULT_TRACKER, make_tracker
 
-SCENARIO = "crossing_4"  # they hide each other, partly and wholly
+SCENARIO = "crossing_4"  # with partial and total occlusions
 MOST = 4
 STEP_S = 1 / 15
 SHAPE = (240, 320)
 SAMPLES = 1000
 HOG, FILTER_STEP = "HOG", "filter step"
-_TURN_FRAMES = 10  # of a tracker's turn: one after the other, as in a run
-_TURN_STEPS = 100  # likewise of the filter; then HOG, once
+_TURN_FRAMES = 10  # consecutive frames per turn of a tracker
+_TURN_STEPS = 100  # steps per turn of the filter; HOG runs once per turn
 _WARM_UP_STEPS = 10
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CrowdTime:
-    """A frame with so many people before the camera.
+    """Time of a frame by number of people.
 
     Attributes:
-        people: how many there are.
-        frame_ms: [ms] CPU time of the tracker, median over those frames in which each has a filter.
-        frames: how many those are.
-        tracked: people with a track in these, mean.
+        people: number of people.
+        frame_ms: [ms] CPU time of the tracker, median over the frames in which each person has a filter.
+        frames: number of those frames.
+        tracked: mean number of tracked people in them.
     """
 
     people: int
@@ -55,12 +55,12 @@ class CrowdTime:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContourTimes:
-    """What the contour tracker costs.
+    """Times of the contour tracker.
 
     Attributes:
-        crowds: by the number of people, from 0.
-        prepare_ms: [ms] of a frame before the first filter, for all.
-        parts_ms: [ms] of the parts, for one person of 1000 samples in the largest crowd.
+        crowds: times by number of people, from 0.
+        prepare_ms: [ms] preparation of a frame, common to all filters.
+        parts_ms: [ms] times of the parts, for one person with 1000 samples in the largest crowd.
     """
 
     crowds: tuple[CrowdTime, ...]
@@ -69,14 +69,14 @@ class ContourTimes:
 
     @property
     def person_ms(self) -> float:
-        """What each further person costs: the slope over the crowds."""
+        """Time per additional person: the slope over the crowds."""
         return float(np.polyfit([c.people for c in self.crowds], [c.frame_ms for c in self.crowds], 1)[0])
 
 
 class FilterStep:
-    """Follows a drawn person at 320x240 by so many samples; each call predicts, weighs, estimates, resamples.
+    """Particle filter on a drawn person at 320x240; each call predicts, weights, estimates and resamples.
 
-    What is prepared once a frame for all filters is not in it.
+    The preparation of the frame, which all filters share, is not included.
     """
 
     def __init__(self, count: int) -> None:
@@ -89,23 +89,23 @@ class FilterStep:
         self()  # which may compile
 
     def __call__(self) -> None:
-        """Follow the person for one more frame."""
+        """Run the filter on the next frame."""
         self._belief = step(self._belief.core, self._view, self._config.person, self._config, self._rng)
 
 
 def step_time_ms(count: int, steps: int = 300) -> float:
-    """Return the median CPU time [ms] of one step with this many samples."""
+    """Return the median CPU time [ms] of one step with a number of samples."""
     follow = FilterStep(count)
     return median([spent_ms(follow) for _ in range(steps)][_WARM_UP_STEPS:])
 
 
 def films() -> tuple[Sequence[Frame], ...]:
-    """Record crowds of nobody to four people."""
+    """Record crowds of 0 to 4 people."""
     return tuple(list(shoot(SCENARIO, people)) for people in range(MOST + 1))
 
 
 def shoot(scenario: str, people: int | None = None, seed: int = 0) -> Iterator[Frame]:
-    """Render the frames of a scenario with its first people only, or all of them; the robot stands still."""
+    """Render the frames of a scenario with its first people, or all of them, and a standing robot."""
     loaded = load_scenario(scenario)
     config = loaded.world(seed)
     before = None
@@ -119,7 +119,7 @@ def shoot(scenario: str, people: int | None = None, seed: int = 0) -> Iterator[F
 
 
 def contour_times(crowds: Sequence[Sequence[Frame]]) -> ContourTimes:
-    """Track crowds of nobody to four people, and time it."""
+    """Time the tracker on crowds of 0 to 4 people."""
     film = crowds[-1]
     return ContourTimes(
         crowds=tuple(_crowd_time(film, people) for people, film in enumerate(crowds)),
@@ -140,19 +140,19 @@ def _crowd_time(film: Sequence[Frame], people: int) -> CrowdTime:
 
 
 def people_in(tracker: ContourTracker) -> list[int]:
-    """Return the ids of the people who have a filter."""
+    """Return the ids of the people with a filter."""
     return [key for key in tracker.explanation.particles if key != DETECTOR_KEY]
 
 
 def _parts_ms(film: Sequence[Frame]) -> dict[str, float]:
-    """Time the parts with the samples of people in the middle of a film, each in turn before all others."""
+    """Time the parts with the samples of people in the middle of a sequence, each person first in turn."""
     tracker = make_tracker(CONTOUR_TRACKER)
     for frame in film[: len(film) // 2]:
         tracker.update(frame)
     view = _view_of(film[len(film) // 2])
     each = [_person_works(tracker, number, view) for number in people_in(tracker)]
     parts = {name: median_ms([works[name] for works in each] * 50) for name in each[0]}
-    # Weighing measures first.
+    # Weighting needs the measurements.
     parts["weights, estimate"] -= parts["measure contour"]
     return parts
 
@@ -190,16 +190,16 @@ def _person_works(tracker: ContourTracker, number: int, view: FrameView) -> dict
         "motion": lambda: predict(state, rows, STEP_S, view.turn, view.size, config.motion, rng),
         "measure contour": lambda: view.model.differences(view.image, state),
         "weights, estimate": lambda: weigh(state, view, config.person, config),
-        "colour and looks": lambda: likelihood(appearance.describe(state), known, colour),
+        "colour and appearance": lambda: likelihood(appearance.describe(state), known, colour),
         "occlusion": occlusion,
     }
 
 
 def beside_hog(film: Sequence[Frame]) -> Turns:
-    """Let the trackers follow four people in turns with a filter and HOG, which has one thread [ms].
+    """Time the trackers on four people, in turn with a filter and single-threaded HOG [ms].
 
-    Contour tracker and filter are medians of a turn's frames; the default tracker is their mean, as some of
-    its frames take longer than others.
+    Times of contour tracker and filter are medians over a turn's frames. That of the default tracker is the
+    mean, since some of its frames take longer than others.
     """
     threads = cv2.getNumThreads()
     cv2.setNumThreads(1)

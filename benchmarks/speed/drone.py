@@ -1,11 +1,10 @@
-"""One camera of a robot among people beside a drone with vision in PyBullet, steps a second.
+"""Steps per second with one camera of a robot among people, compared with a drone with vision in PyBullet.
 
-The drone's world is that of gym-pybullet-drones, which no package index has, rebuilt: `HoverAviary` that
-observes images, with 48 commands a second. A drone of 27 g hovers by four propellers over a plane among a
-block, a cube, a duck and a teddy bear; physics takes 240 steps a second, and TinyRenderer draws 64 x 48
-pixels of colour, depth and segmentation with shadows, there for every second command. TinyRenderer takes
-longest for the drone's own mesh, so that ours has as many triangles; nothing is worked out but forces, pose
-and images.
+The drone's world is rebuilt after gym-pybullet-drones, which is not in a package index: `HoverAviary` with
+image observations and 48 commands per second. A drone of 27 g hovers with four propellers over a plane with a
+block, a cube, a duck and a teddy bear. Physics runs at 240 Hz, and TinyRenderer renders 64 x 48 pixels of
+colour, depth and segmentation with shadows for every second command. TinyRenderer takes longest for the
+drone's mesh, so the mesh here has as many triangles. Only forces, pose and images are computed.
 
 Source: Panerati et al., Learning to Fly, a Gym Environment with PyBullet Physics, 2021, and its code, 2.0.
 """
@@ -29,7 +28,7 @@ Triangles = NDArray[np.int64]  # (T, 3) numbers of corners
 
 SIZE: Final = (64, 48)
 CONTROL_HZ: Final = 48
-COMMANDS_AN_IMAGE: Final = 2  # 24 images a second
+COMMANDS_AN_IMAGE: Final = 2  # 24 images per second
 _MASS_KG, _ARM_M, _RADIUS_M, _HEIGHT_M = 0.027, 0.0397, 0.06, 0.025
 _START_M = (0.0, 0.0, 0.1125)
 _NEAR_M, _FAR_M, _FOV_DEG = _ARM_M, 1000.0, 60.0
@@ -54,7 +53,7 @@ _CYLINDER, _MESH = 4, 5
 
 @dataclass(frozen=True, slots=True)
 class Prism:
-    """An upright prism, of 4 triangles a side but for 4.
+    """An upright prism, with 4 triangles per side except for 4.
 
     Attributes:
         sides: at least 3.
@@ -69,7 +68,7 @@ class Prism:
 
 
 _ARMS_M: Final = tuple(product((0.0326, -0.0326), repeat=2))
-# The parts of cf2.dae, as it is drawn: 9434 triangles, of which prisms have 9424.
+# The parts of cf2.dae, which has 9434 triangles; these prisms have 9424.
 PARTS: Final = (
     *(Prism(199, 0.023, 0.001, (x, y, 0.012)) for x, y in _ARMS_M),  # propellers
     *(Prism(38, 0.0035, 0.015, (x, y, 0.0)) for x, y in _ARMS_M),  # motors
@@ -84,7 +83,7 @@ PARTS: Final = (
 
 
 def drone_mesh() -> tuple[Corners, Triangles]:
-    """Put all parts together."""
+    """Return the mesh of all parts."""
     corners, triangles, start = [], [], 0
     for prism in PARTS:
         ends, faces = _mesh_of(prism)
@@ -108,7 +107,7 @@ def _mesh_of(prism: Prism) -> tuple[Corners, Triangles]:
 
 
 class DroneWorld:
-    """A drone that hovers among landmarks and sees what is before it; a context manager."""
+    """A hovering drone with a front camera among landmarks; a context manager."""
 
     def __init__(self) -> None:
         self._physics = Bullet(physics_hz=RUN_HZ)
@@ -128,7 +127,7 @@ class DroneWorld:
         self._physics.close()
 
     def step(self) -> None:
-        """Fly for one command."""
+        """Simulate one command."""
         for _ in range(RUN_HZ // CONTROL_HZ):
             for place in _PROPELLERS_M:
                 self._client.applyExternalForce(self._drone, _BASE, self._lift_n, place, _LINK_FRAME)
@@ -137,7 +136,7 @@ class DroneWorld:
         self._client.getBaseVelocity(self._drone)
 
     def see(self) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
-        """Draw colours (48, 64, 4), depth (48, 64) and segmentation (48, 64)."""
+        """Render colours (48, 64, 4), depth (48, 64) and segmentation (48, 64)."""
         client = self._client
         place, orientation = map(np.array, client.getBasePositionAndOrientation(self._drone))
         x, y, z, w = orientation
@@ -153,14 +152,14 @@ class DroneWorld:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DroneRates:
-    """Environment steps a second of CPU time.
+    """Environment steps per second of CPU time.
 
     Attributes:
-        drone_s: of the drone's world, with an image for every second step, as its environment has them.
-        drone_images_s: of the drone's world, with an image for every step.
-        ours_s: ours, with an image of one camera for every step, by physics, its rate [Hz], and the number of
-            worlds in the process, whose steps are added up.
-        ratios: ours against `drone_s`, likewise.
+        drone_s: rate of the drone's world with an image for every second step, as in its environment.
+        drone_images_s: rate of the drone's world with an image for every step.
+        ours_s: rates of PeopleBoy with an image of one camera for every step, by physics, physics rate [Hz]
+            and number of worlds in the process, summed over worlds.
+        ratios: ratios of `ours_s` to `drone_s`.
     """
 
     drone_s: float
@@ -170,7 +169,7 @@ class DroneRates:
 
 
 def drone_rates() -> DroneRates:
-    """Measure all in turn, some times, and give the medians."""
+    """Measure all rates in turn, several times, and return the medians."""
     turns = Turns()
     for _ in range(_ROUNDS):
         turn = {_DRONE: drone_rate(COMMANDS_AN_IMAGE), _WATCHER: drone_rate(1)}
@@ -184,7 +183,7 @@ def drone_rates() -> DroneRates:
 
 
 def drone_rate(commands_an_image: int, steps: int = 120) -> float:
-    """Return steps per second of CPU time of the drone's world."""
+    """Return the steps per second of CPU time of the drone's world."""
     with DroneWorld() as world:
 
         def step(number: int) -> None:
@@ -196,7 +195,7 @@ def drone_rate(commands_an_image: int, steps: int = 120) -> float:
 
 
 def pixels_rate(physics: str, physics_hz: int, worlds: int, rounds: int = 200) -> float:
-    """Return the same of environments that give images of one camera, as small."""
+    """Return the same for environments with images of one camera of the same size."""
     options: dict[str, Any] = {
         "scenario": SCENARIO,
         "observation": "pixels",
@@ -213,10 +212,10 @@ def pixels_rate(physics: str, physics_hz: int, worlds: int, rounds: int = 200) -
 
 
 def main() -> None:
-    """Measure, and print a line each."""
+    """Measure, and print one line per case."""
     found = drone_rates()
-    print(f"a drone with vision: {found.drone_s:.0f} steps/s, an image for every second")
-    print(f"a drone with vision: {found.drone_images_s:.0f} steps/s, an image for each")
+    print(f"a drone with vision: {found.drone_s:.0f} steps/s, an image for every second step")
+    print(f"a drone with vision: {found.drone_images_s:.0f} steps/s, an image for every step")
     for case, rate in found.ours_s.items():
         physics, physics_hz, worlds = case
         print(

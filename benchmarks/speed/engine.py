@@ -1,4 +1,4 @@
-"""What the engine costs: a sweep with one worker, beside a plain loop over the same runs."""
+"""Overhead of the engine: a sweep with one worker, compared with a plain loop over the same runs."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -33,7 +33,7 @@ WAYS: dict[str, Callable[[Sequence[RunTask]], None]] = {"loop": _loop, "engine":
 
 
 def engine_cost(seeds: int = 8, rounds: int = 5) -> tuple[Turns, Turns]:
-    """Time both in turn, after one round that compiles; give clock and processor times [ms]."""
+    """Time both in turn, after one round of warm-up; return clock and processor times [ms]."""
     scenario = load_scenario(SCENARIO).lasting(DURATION_S)
     clock, processor = Turns(), Turns()
     for number in range(rounds + 1):
@@ -55,10 +55,10 @@ def engine_cost(seeds: int = 8, rounds: int = 5) -> tuple[Turns, Turns]:
 
 
 @click.command()
-@click.option("--seeds", default=8, show_default=True, help="Runs of a sweep.")
-@click.option("--rounds", default=5, show_default=True, help="How often both are timed.")
+@click.option("--seeds", default=8, show_default=True, help="Runs per sweep.")
+@click.option("--rounds", default=5, show_default=True, help="Number of turns.")
 def main(seeds: int, rounds: int) -> None:
-    """Print what the engine adds to a sweep of short runs: least times, and its share of the loop's."""
+    """Print the engine's overhead for a sweep of short runs: shortest times, and share of the loop's."""
     clock, processor = engine_cost(seeds, rounds)
     loop, engine = (
         f"{clock.least(name) / 1000.0:.2f} s, processor {processor.least(name) / 1000.0:.2f} s"

@@ -1,7 +1,7 @@
-"""Environment steps a second, of one world and of many, beside PyBullet's own images and one PyBullet world.
+"""Environment steps per second of one and of many worlds, compared with PyBullet.
 
-`python -m benchmarks.speed.environments` times environments by observation; `--many` how many steps come of
-many worlds in one process, as worlds and people become more.
+`python -m benchmarks.speed.environments` times environments by observation; `--many` times many worlds in one
+process, by number of worlds and people.
 """
 
 import time
@@ -45,7 +45,7 @@ Clock = Callable[[], float]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """One way to observe, how many steps a second it should reach, and how many to time."""
+    """A kind of observation, its goal [steps/s], and the number of steps to time."""
 
     observation: str
     image_size: tuple[int, int]
@@ -54,7 +54,7 @@ class Case:
 
     @property
     def name(self) -> str:
-        """What it is called in the table."""
+        """Name in the table."""
         width, height = self.image_size
         return f"{self.observation}, {width} x {height}" if self.observation == "pixels" else self.observation
 
@@ -73,7 +73,7 @@ CASES: Final = (
 def steps_per_s(
     step: Callable[[int], object], steps: int, *, warm_up: int, clock: Clock = time.process_time
 ) -> float:
-    """Return steps per second of CPU time, or by another clock, after some steps to warm up."""
+    """Return steps per second of CPU time, or of another clock, after warm-up."""
     for number in range(warm_up):
         step(number)
     start = clock()
@@ -101,7 +101,7 @@ def step_rate(case: Case, physics_hz: int = RUN_HZ, clock: Clock = time.process_
 def vector_rate(
     case: Case, physics: str, worlds: int = MANY, physics_hz: int = QUICK_HZ, *, threads: int = 1
 ) -> float:
-    """Return steps per second of CPU time, of many worlds in one process; of time, with several threads."""
+    """Return steps per second of many worlds in one process: CPU time, or real time with threads."""
     many = PeopleBoyVectorEnv(
         worlds,
         threads=threads,
@@ -126,13 +126,13 @@ def _clock(threads: int) -> Clock:
 
 
 def step_rates(case: Case, processes: int, physics_hz: int = RUN_HZ) -> float:
-    """Return the same of several processes at once, added up."""
+    """Return the total rate of several processes at the same time."""
     with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
         return sum(pool.map(step_rate, [case] * processes, [physics_hz] * processes))
 
 
 def way_off_mm(seeds: int = 4, steps: int = 450) -> float:
-    """Return how far [mm] the robot gets off its path at most, in random drives, if physics is quick."""
+    """Return the largest deviation of the path [mm] in random drives at the lower physics rate."""
     paths = [[_drive(seed, steps, hz) for hz in (RUN_HZ, QUICK_HZ)] for seed in range(seeds)]
     shortest = [min(map(len, pair)) for pair in paths]
     return 1e3 * max(
@@ -142,7 +142,7 @@ def way_off_mm(seeds: int = 4, steps: int = 450) -> float:
 
 
 def _drive(seed: int, steps: int, physics_hz: int) -> NDArray[np.float64]:
-    """Return where the robot was after each step, (N, 2) [m], until it touched something."""
+    """Return the robot's position after each step, (N, 2) [m], until it touches something."""
     rng, path = np.random.default_rng(seed), []
     with closing(PeopleBoyEnv(SCENARIO, observation="truth", physics_hz=physics_hz)) as env:
         env.reset(seed=seed)
@@ -157,7 +157,7 @@ def _drive(seed: int, steps: int, physics_hz: int) -> NDArray[np.float64]:
 
 
 def bullet_rate(image_size: tuple[int, int], steps: int = 20) -> float:
-    """Return steps per second of the same world with two plain calls of getCameraImage a step."""
+    """Return steps per second of the same world with two plain calls of getCameraImage per step."""
     config = load_scenario(SCENARIO).world(0)
     cameras = [
         replace(camera, width=image_size[0], height=image_size[1])
@@ -177,9 +177,9 @@ def bullet_rate(image_size: tuple[int, int], steps: int = 20) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ManyRate:
-    """Environment steps a second of CPU time, of all worlds together, and that against one PyBullet world.
+    """Environment steps per second of CPU time, total of all worlds, and ratio to one PyBullet world.
 
-    With several threads, seconds are those of the clock, for both.
+    With several threads, both are per second of real time.
     """
 
     steps_s: float
@@ -187,7 +187,7 @@ class ManyRate:
 
 
 def many_rates(case: Case, worlds: Sequence[int] = WORLDS, threads: int = 1) -> dict[int, ManyRate]:
-    """Measure kinematic worlds and one PyBullet world in turn, some times, and give the medians by worlds."""
+    """Measure kinematic worlds and one PyBullet world in turn, several times; return medians by worlds."""
     few, found = replace(case, steps=case.steps // _ROUNDS), {}
     for count in worlds:
         turns = Turns()
@@ -199,7 +199,7 @@ def many_rates(case: Case, worlds: Sequence[int] = WORLDS, threads: int = 1) -> 
 
 
 def whole_episodes_rate(worlds: int = MANY) -> float:
-    """Return steps per second of CPU time of `truth`, over whole episodes with all that begins them."""
+    """Return steps per second of CPU time of `truth`, over whole episodes including resets."""
     many = _kinematic_truth(worlds, SCENARIO)
     actions = np.tile(np.array(ACTION, np.float32), (worlds, 1))
     with closing(many):
@@ -213,7 +213,7 @@ def whole_episodes_rate(worlds: int = MANY) -> float:
 
 
 def people_step_ms(people: int, *, yields: bool, worlds: int = 4, rounds: int = 40) -> float:
-    """Return CPU time [ms] of a step of one world of `truth` with so many people, scripted or making way."""
+    """Return the CPU time [ms] of a step of a `truth` world by number of people, scripted or giving way."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "hall.yaml"
         path.write_text(yaml.safe_dump(_hall(people, yields=yields)))
@@ -228,11 +228,11 @@ def _kinematic_truth(worlds: int, scenario: str | Path) -> PeopleBoyVectorEnv:
 
 
 def _hall(people: int, *, yields: bool) -> dict[str, Any]:
-    """Describe a hall in which people walk to and fro before the robot, in rows of ten."""
+    """Return a scenario of a hall in which people walk to and fro in front of the robot, in rows of ten."""
     rows = [divmod(number, 10) for number in range(people)]
     return {
         "name": "hall",
-        "description": "People walk to and fro before the robot.",
+        "description": "People walk to and fro in front of the robot.",
         "duration_s": 30.0,
         "place": {"kind": "room", "length_m": 20.0, "width_m": 14.0},
         "people": [
@@ -257,10 +257,10 @@ def _one_world_lines(resets: int) -> Iterator[str]:
         for physics in PHYSICS:
             rate = vector_rate(case, physics)
             yield f"{case.name}, {MANY} worlds, {physics}, {QUICK_HZ} Hz: {rate:.0f} steps/s"
-    yield f"the robot's way at {QUICK_HZ} Hz is off by at most {way_off_mm():.1f} mm in 30 s"
+    yield f"the robot's path at {QUICK_HZ} Hz deviates by at most {way_off_mm():.1f} mm in 30 s"
     for size in ((320, 240), (80, 60)):
         yield f"getCameraImage twice, {size[0]} x {size[1]}: {bullet_rate(size):.0f} steps/s"
-    yield f"growth over {resets} resets: {reset_growth(resets):.0f} bytes a reset"
+    yield f"growth over {resets} resets: {reset_growth(resets):.0f} bytes per reset"
 
 
 def _many_worlds_lines() -> Iterator[str]:
@@ -270,18 +270,18 @@ def _many_worlds_lines() -> Iterator[str]:
             yield f"{case.name}, {worlds} worlds: {rate.steps_s:.0f} steps/s, {rate.ratio:.1f} {beside}"
     for worlds, rate in many_rates(PIXELS, (MANY, WORLDS[-1]), THREADS).items():
         name = f"{PIXELS.name}, {worlds} worlds, {THREADS} threads"
-        yield f"{name}: {rate.steps_s:.0f} steps/s by the clock, {rate.ratio:.1f} {beside}"
+        yield f"{name}: {rate.steps_s:.0f} steps/s of real time, {rate.ratio:.1f} {beside}"
     yield f"truth, {MANY} worlds, whole episodes: {whole_episodes_rate():.0f} steps/s"
     for people in PEOPLE:
         scripted, yielding = (people_step_ms(people, yields=yields) for yields in (False, True))
-        yield f"truth, {people} people: {scripted:.2f} ms a step; {yielding:.2f} if they make way"
+        yield f"truth, {people} people: {scripted:.2f} ms per step; {yielding:.2f} ms if they give way"
 
 
 @click.command()
 @click.option("--many", is_flag=True, help="Time many worlds in one process instead.")
-@click.option("--resets", default=1000, show_default=True, help="Over which growth of memory is measured.")
+@click.option("--resets", default=1000, show_default=True, help="Resets for measuring memory growth.")
 def main(resets: int, *, many: bool) -> None:
-    """Measure, and print a line each."""
+    """Measure, and print one line per case."""
     for line in _many_worlds_lines() if many else _one_world_lines(resets):
         click.echo(line)
 

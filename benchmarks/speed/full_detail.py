@@ -1,8 +1,8 @@
-"""What full detail costs: both camera images with full truth of a scenario, beside the same in plain detail.
+"""CPU time of full detail: both camera images with full ground truth, compared with plain detail.
 
-`python -m benchmarks.speed.full_detail` prints a row for each scenario of the library in full detail, the one
-that it costs most first; names of scenarios behind it choose others. `--renderers` compares the ray caster,
-plain and in full detail, with TinyRenderer in a corridor of four people instead.
+`python -m benchmarks.speed.full_detail [SCENARIO...]` prints a row for each scenario, by descending cost; the
+default are all scenarios of the library in full detail. `--renderers` instead compares the ray caster, in
+plain and in full detail, with TinyRenderer in a corridor with four people.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -33,32 +33,32 @@ from peopleboy.sim.world import World
 from peopleboy.sim.world_config import WorldConfig
 
 GOAL = 1.5
-"""How many times as long full detail may take."""
+"""Largest allowed ratio of full to plain detail."""
 
 PLAIN, FULL = "plain", "full"
 RAYCAST, BULLET = "raycast", "bullet"
-TRUTH = ", truth"  # one view and its truth alone, of a renderer
-PRESET = "uncooled"  # electronics of the thermal camera where detail is full, unless the file has others
+TRUTH = ", truth"  # suffix: only one view and its truth
+PRESET = "uncooled"  # electronics of the thermal camera in full detail, unless the scenario has its own
 SEED = 0
 COMPILED = 2  # instants after which all kernels are compiled
 
-# (x, y) [m] of the people in front of the robot, who walk on at the same pace.
+# (x, y) [m] of the people in front of the robot, who walk at its speed.
 STARTS_M = ((3.0, 0.4), (4.2, -0.5), (5.5, 0.5), (7.5, -0.2))
-_SHINE = 0.5  # of the floor, where detail is full
+_SHINE = 0.5  # reflectance of the floor in full detail
 
 
 def detail_times(name: str, instants: int | None = None) -> Turns:
-    """Play a scenario of the library in both details, instant by instant in turn, and time each [ms].
+    """Run a scenario of the library in both details, in turn at each instant, and time them [ms].
 
-    Timed are thermal image, colour image and full truth, `plain` with a fixed gain, and `full` with an
-    uncooled camera's electronics.
+    Timed are thermal image, colour image and full truth: `plain` with a fixed gain, and `full` with the
+    electronics of an uncooled camera.
 
     Args:
-        name: of the scenario.
-        instants: how many; None for all of them.
+        name: name of the scenario.
+        instants: number of instants; None for all.
 
     Raises:
-        BadInput: there is no such scenario.
+        BadInput: unknown scenario.
     """
     plain, full = in_detail(name, PLAIN), in_detail(name, FULL)
     commands = _commands(full, instants)
@@ -67,9 +67,9 @@ def detail_times(name: str, instants: int | None = None) -> Turns:
 
 
 def render_times(instants: int = 40) -> Turns:
-    """Draw the same instants of a corridor by TinyRenderer and the ray caster, plain and full, in turn [ms].
+    """Time TinyRenderer and the ray caster in plain and full detail, in turn, on a corridor [ms].
 
-    Names with `TRUTH` behind them are of one camera's view and its truth, the others of both images, too.
+    Names with the suffix `TRUTH` include one camera's view and its truth; the others include both images.
     """
     with (
         World(_corridor(RAYCAST)) as cast,
@@ -88,7 +88,7 @@ def _timed(worlds: Mapping[str, World], commands: Sequence[Command]) -> Turns:
         turn = {}
         for name, world in worlds.items():
             turn[f"{name}{TRUTH}"] = spent_ms(world.truth)
-            # Images are made only when asked for.
+            # Images are rendered lazily.
             turn[name] = turn[f"{name}{TRUTH}"] + spent_ms(partial(_all_images, world))
             world.step(command.linear_m_s, command.angular_rad_s)
         if number >= COMPILED:
@@ -101,7 +101,7 @@ def _all_images(world: World) -> dict[str, Any]:
 
 
 def in_detail(name: str, detail: str) -> Scenario:
-    """Load a scenario of the library in a detail, the thermal camera's electronics with it."""
+    """Load a scenario of the library in a detail, with matching electronics of the thermal camera."""
     data: dict[str, Any] = to_data(load_scenario(name).spec)
     robot = data.get("robot", {})
     cameras = robot.get("cameras", {})
@@ -111,7 +111,7 @@ def in_detail(name: str, detail: str) -> Scenario:
 
 
 def _commands(scenario: Scenario, instants: int | None) -> list[Command]:
-    """Return the robot's commands in a scenario, so that both worlds are seen from the same places."""
+    """Return the robot's commands in a scenario, so that both worlds are seen from the same positions."""
     config = scenario.world(SEED)
     frames = round(scenario.duration_s * config.control_hz) if instants is None else instants + COMPILED
     with World(config) as world:
@@ -131,7 +131,7 @@ def _corridor(renderer: str) -> WorldConfig:
 
 
 def _polished(config: WorldConfig) -> WorldConfig:
-    """Change a world to full detail, with a floor that mirrors and all that electronics do to images."""
+    """Change a world to full detail, with a reflecting floor and all effects of electronics."""
     cameras = {**config.robot.cameras, "thermal": THERMAL_PRESETS[PRESET]}
     fixtures = tuple(
         replace(one, part=replace(one.part, material=replace(one.part.material, shine=_SHINE)))
@@ -154,10 +154,10 @@ def _renderer_lines() -> Iterator[str]:
 
 @click.command()
 @click.argument("scenarios", nargs=-1)
-@click.option("--instants", type=click.IntRange(1), help="How many are timed; all of a run by default.")
+@click.option("--instants", type=click.IntRange(1), help="Number of timed instants.  [default: all]")
 @click.option("--renderers", is_flag=True, help="Compare renderers in a corridor instead.")
 def main(scenarios: Sequence[str], instants: int | None, *, renderers: bool) -> None:
-    """Print CPU times of SCENARIOS in plain and in full detail; those of full detail by default."""
+    """Print CPU times of SCENARIOS in plain and in full detail; the default are all in full detail."""
     if renderers:
         for line in _renderer_lines():
             click.echo(line)

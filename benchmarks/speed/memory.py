@@ -1,7 +1,7 @@
-"""Whether memory stays flat: a tracker sees people come and go for 100 000 frames, an environment is reset.
+"""Growth of memory: of a tracker over 100 000 frames with changing people, and of an environment over resets.
 
-The frames of one scenario are kept and shown again and again, with time going on; with `--world` they are
-rendered, in a new world every time.
+The frames of one scenario are repeated with advancing time; with `--world` they are rendered anew in a new
+world each time.
 """
 
 import ctypes
@@ -26,7 +26,7 @@ from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
 SCENARIO = "hall_visits"
 SAMPLES = 20
-WARM_UP = 0.25  # share of the frames after which growth is looked for
+WARM_UP = 0.25  # share of the frames before growth is measured
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,9 +34,9 @@ class MemoryCurve:
     """Resident memory over a long run.
 
     Attributes:
-        frame: (S,) numbers of frames.
-        resident_mb: (S,) [MB] held after them.
-        people: how many were born in all.
+        frame: (S,) frame numbers.
+        resident_mb: (S,) [MB] resident memory after them.
+        people: total number of initiated tracks.
     """
 
     frame: tuple[int, ...]
@@ -45,14 +45,14 @@ class MemoryCurve:
 
     @property
     def bytes_per_frame(self) -> float:
-        """How fast memory grows once all is warm: the slope over the later samples."""
+        """Growth of memory after warm-up: the slope over the later samples."""
         warm = [at > WARM_UP * self.frame[-1] for at in self.frame]
         frame, held = np.array(self.frame)[warm], np.array(self.resident_mb)[warm]
         return float(np.polyfit(frame, 1e6 * held, 1)[0])
 
 
 def memory_curve(frames: Iterable[Frame], length: int) -> MemoryCurve:
-    """Track so many frames, and look at the memory now and then."""
+    """Track a number of frames, and sample the memory."""
     tracker = make_tracker(DEFAULT_TRACKER)
     at, held, people = [], [], 0
     for number, frame in enumerate(islice(frames, length), 1):
@@ -65,7 +65,7 @@ def memory_curve(frames: Iterable[Frame], length: int) -> MemoryCurve:
 
 
 def long_run(frames: int, *, renders: bool = False) -> MemoryCurve:
-    """Do that in a process of its own, where nothing else takes memory or gives it back."""
+    """Measure the memory curve in a separate process, where no other code allocates or frees memory."""
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as process:
         return process.submit(_run, frames, renders=renders).result()
 
@@ -75,9 +75,9 @@ def _run(frames: int, *, renders: bool) -> MemoryCurve:
 
 
 def resident_mb() -> float:
-    """Return the memory [MB] that this process uses now (Linux with the GNU C library).
+    """Return the resident memory [MB] of this process (Linux with the GNU C library).
 
-    What was freed is given back to the system first, or growth could hide in it for long.
+    Freed memory is returned to the system first, since it could hide growth for long.
     """
     ctypes.CDLL(None).malloc_trim(0)
     pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
@@ -85,21 +85,21 @@ def resident_mb() -> float:
 
 
 def endless_frames(*, renders: bool = False) -> Iterator[Frame]:
-    """Show the scenario again and again, with time going on; kept, or rendered in a new world every time."""
+    """Yield the scenario's frames repeatedly with advancing time, cached or rendered in new worlds."""
     rounds = (shoot(SCENARIO) for _ in count()) if renders else repeat(list(shoot(SCENARIO)))
     for number, frame in enumerate(chain.from_iterable(rounds)):
         yield replace(frame, time_s=number * STEP_S)
 
 
 def reset_growth(resets: int) -> float:
-    """Return by how many bytes the memory of a process of its own grows with each reset."""
+    """Return the growth of memory per reset [bytes], measured in a separate process."""
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as process:
         return process.submit(_reset_growth, resets).result()
 
 
 def _reset_growth(resets: int) -> float:
     with closing(PeopleBoyEnv("single_follow", observation="truth")) as env:
-        # What the C library keeps for later use grows with the first hundred.
+        # The C library's pool of free memory grows during the first hundred.
         for seed in range(max(resets, 100)):
             env.reset(seed=seed)
         before_mb = _held_mb()
@@ -115,13 +115,13 @@ def _held_mb() -> float:
 
 @click.command()
 @click.option("--frames", default=100_000, show_default=True)
-@click.option("--world", "renders", is_flag=True, help="Render every round in a new world.")
+@click.option("--world", "renders", is_flag=True, help="Render each repetition in a new world.")
 def main(frames: int, *, renders: bool) -> None:
-    """Track, and print the curve."""
+    """Track, and print the memory curve."""
     curve = long_run(frames, renders=renders)
     for frame, held in zip(curve.frame, curve.resident_mb, strict=True):
         click.echo(f"{frame:8d} frames  {held:7.1f} MB")
-    click.echo(f"{curve.people} people were born; growth {curve.bytes_per_frame:.0f} bytes a frame")
+    click.echo(f"{curve.people} tracks initiated; growth {curve.bytes_per_frame:.0f} bytes per frame")
 
 
 if __name__ == "__main__":

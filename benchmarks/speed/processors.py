@@ -1,8 +1,7 @@
-"""`python -m benchmarks.speed.processors`: whether trackers tell the same on a processor of 2008 as here.
+"""`python -m benchmarks.speed.processors`: check that tracks are the same on a processor of 2008.
 
-The same frames are shown to each tracker in two processes: one as it is, and one in which numpy, OpenCV,
-OpenBLAS, the C library and numba use nothing that an Intel Nehalem does not have: no AVX, and no product
-joined with a sum.
+Each tracker runs on the same frames in two processes: a normal one, and one in which numpy, OpenCV, OpenBLAS,
+the C library and numba use only instructions of an Intel Nehalem, without AVX and fused multiply-add.
 """
 
 import json
@@ -25,7 +24,7 @@ from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import make_tracker
 
 TRACKERS = ("contour", "learned", "thesis", "colour", "thermal", "paper")
-# numpy refuses names that it does not know, and those that it was built for.
+# numpy rejects unknown feature names, and those of its own baseline.
 OLD = {
     "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL",
     "OPENCV_CPU_DISABLE": "AVX512-SKX,AVX2,FMA3,FP16,AVX",
@@ -37,14 +36,14 @@ OLD = {
 
 
 def first_difference(shot: Path, tracker: str, kernels: Path) -> tuple[int | None, int]:
-    """Track a film on both: the first frame whose tracks differ, None if none does, and how many tracks."""
+    """Track a sequence on both; return the first frame that differs, or None, and the number of tracks."""
     here, old = _tracked(shot, tracker, {}), _tracked(shot, tracker, {**OLD, "NUMBA_CACHE_DIR": str(kernels)})
     differing = [number for number, pair in enumerate(zip(here, old, strict=True)) if pair[0] != pair[1]]
     return (differing[0] if differing else None), sum(count for count, _ in here)
 
 
 def _tracked(shot: Path, tracker: str, environment: dict[str, str]) -> list[list[object]]:
-    """Track a film in a process of its own: how many tracks each frame has, and the digest of them."""
+    """Track a sequence in a separate process: return the number of tracks per frame, and their digests."""
     module = "benchmarks.speed.processors"
     command = [sys.executable, "-m", module, "--film", str(shot), "--trackers", tracker]
     done = subprocess.run(
@@ -66,10 +65,10 @@ def _row(track: Track) -> tuple[object, ...]:
 
 
 @click.command()
-@click.option("--trackers", default=",".join(TRACKERS), show_default=True, help="Which, by name.")
+@click.option("--trackers", default=",".join(TRACKERS), show_default=True, help="Scenarios, by name.")
 @click.option("--film", "shot", type=click.Path(path_type=Path), hidden=True)
 def main(trackers: str, shot: Path | None) -> None:
-    """Return whether tracks are the same, but for their places on the floor; exit with 1 if not."""
+    """Print whether tracks are the same, except for positions on the floor; exit with 1 if they are not."""
     if shot is not None:
         click.echo(json.dumps(_track(frames_of(open_film(shot)), trackers)))
         return
@@ -79,7 +78,7 @@ def main(trackers: str, shot: Path | None) -> None:
         for name in trackers.split(","):
             first, count = first_difference(made.folder, name, Path(folder, "kernels"))
             is_same = is_same and first is None
-            rows = "the same" if first is None else f"others from frame {first} on"
+            rows = "the same" if first is None else f"different from frame {first} on"
             click.echo(f"{name}: {rows}, {count} tracks in all frames")
     sys.exit(0 if is_same else 1)
 

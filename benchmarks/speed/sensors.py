@@ -1,6 +1,6 @@
-"""`python -m benchmarks.speed.sensors`: what sensors and detectors cost an image, beside a peer.
+"""`python -m benchmarks.speed.sensors`: CPU time per image of sensors and detectors, compared with a peer.
 
-Medians of CPU time; the peer is OpenCV's HOG, or for the panorama the thermal camera.
+Times are medians. The peer is OpenCV's HOG, or for the panorama the thermal camera.
 """
 
 from collections.abc import Iterator
@@ -25,14 +25,14 @@ from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, PANORAMA, THERMAL, Fram
 from peopleboy.tracker.trackers import make_tracker
 
 CROWD = "crossing_4"
-RGBD_SCENARIO = "crossing_3"  # three people before a standing robot
-SHIFT_PX, SCALE = 4, 1.05  # of the source's slowest and best sliding window (SA table 4.3)
+RGBD_SCENARIO = "crossing_3"  # three people in front of a standing robot
+SHIFT_PX, SCALE = 4, 1.05  # the source's slowest and best sliding window (SA table 4.3)
 WORLDS = (0, 1, 2, 3)
-LASTS_S = 1.5  # of each world
+LASTS_S = 1.5  # duration of each world
 COMPILED = 3  # instants after which all kernels are compiled
-_RGBD_WARM_UP, _DETECTOR_WARM_UP = 20, 4  # images after which the trackers have seen enough
+_RGBD_WARM_UP, _DETECTOR_WARM_UP = 20, 4  # images for warming up the trackers
 _SLIDE_EVERY = 6  # images; a slow sliding window is timed less often
-_TWICE = 2.0  # OpenCV's detector finds people of about 96 px, in this image of 48 px
+_TWICE = 2.0  # enlargement: OpenCV's detector finds people from about 96 px, in this image 48 px
 
 
 def _hog() -> cv2.HOGDescriptor:
@@ -43,7 +43,7 @@ def _hog() -> cv2.HOGDescriptor:
 
 
 def depth(instants: int = 30) -> Iterator[str]:
-    """Time a depth camera beside HOG in its colour image: view, depth and colour, and noise alone."""
+    """Compare a depth camera with HOG on its colour image: view, depth and colour, and noise alone."""
     config = load_scenario(CROWD).mounting((DEPTH,)).world(seed=0)
     camera, rng, hog = config.robot.cameras[DEPTH], stream(0, "benchmark"), _hog()
     assert isinstance(camera, DepthConfig)
@@ -67,7 +67,7 @@ def depth(instants: int = 30) -> Iterator[str]:
 
 
 def panorama(instants: int = 60) -> Iterator[str]:
-    """Time a panorama's view and truth beside those of the thermal camera."""
+    """Compare the view and truth of a panorama with those of the thermal camera."""
     config = load_scenario(CROWD).mounting((PANORAMA,)).world(seed=0)
     truths, whole = Turns(), Turns()
     with World(config) as world:
@@ -87,7 +87,7 @@ def panorama(instants: int = 60) -> Iterator[str]:
 
 
 def rgbd(instants: int = 60) -> Iterator[str]:
-    """Time the RGB-D tracker beside HOG, and beside HOG slid over the same image as the source does."""
+    """Compare the RGB-D tracker with HOG, and with HOG at the source's step and scale."""
     scenario = load_scenario(RGBD_SCENARIO).mounting((DEPTH,))
     calibrations = calibrations_of(scenario.world(0).robot.cameras)
     tracker, hog, turns, counts = make_tracker("rgbd"), _hog(), Turns(), []
@@ -112,7 +112,7 @@ def rgbd(instants: int = 60) -> Iterator[str]:
 
 
 def detector() -> Iterator[str]:
-    """Time the thermal detector, with and without a known mount, beside HOG on images of twice the size."""
+    """Compare the thermal detector, with and without a known mount, with HOG on images of twice the size."""
     hog, turns = _hog(), Turns()
     for seed in WORLDS:
         scenario = random_scenario(seed, LASTS_S)
@@ -138,13 +138,13 @@ def detector() -> Iterator[str]:
 
 
 SENSORS = {"depth": depth, "panorama": panorama, "rgbd": rgbd, "detector": detector}
-"""What can be timed, by name."""
+"""The measurements by name."""
 
 
 @click.command()
 @click.argument("sensor", type=click.Choice(tuple(SENSORS)))
 def main(sensor: str) -> None:
-    """Print what SENSOR costs an image, beside its peer."""
+    """Print the CPU time per image of SENSOR, compared with its peer."""
     for line in SENSORS[sensor]():
         click.echo(line)
 

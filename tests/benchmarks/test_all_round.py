@@ -91,8 +91,8 @@ def test_all_that_it_plays_can_be_made_and_its_table_is_printed(monkeypatch):
     monkeypatch.setattr(all_round, "time_beside_hog", lambda *_: (3.0, 60.0))
     told = CliRunner().invoke(all_round.main, ["--seeds", "2", "--laps", "3", "--workers", "1"])
     assert told.exit_code == 0, told.output
-    assert "one number in 3 of 3 runs" in told.output
-    assert "3.00 ms an image beside HOG's 60.0, 4.0 where that takes 80" in told.output
+    assert "one identity in 3 of 3 runs" in told.output
+    assert "3.00 ms per image, HOG 60.0 ms; scaled to HOG at 80 ms: 4.0 ms" in told.output
     assert "0.20 s on average" in told.output
     assert "never in 3 of 6" in told.output
     assert "0.50 s on average" in told.output

@@ -76,12 +76,12 @@ def test_runs_are_scored_together_and_their_drives_averaged(
 @pytest.mark.parametrize(
     ("row", "key", "complaint"),
     [
-        ({"measured": "found.json", "runs": 3}, "/CP", "it is of 2 runs, not of 3; measure them first"),
+        ({"measured": "found.json", "runs": 3}, "/CP", "has 2 runs, expected 3; run the measurement first"),
         ({"measured": "found.json", "runs": 2}, "/CR", "found.json: x has no /CR"),
-        ({"measured": "found.json", "runs": 2}, "/name", "/name is no figure, got 'x'"),
-        ({"measured": "gone.json"}, "/CP", "gone.json: there are no figures; measure them first"),
-        ({"measured": "gone-*"}, "/CP", "gone-*: there are no runs; measure them first"),
-        ({}, "/CP", "`make it` only prints its figures"),
+        ({"measured": "found.json", "runs": 2}, "/name", "/name must be a number, got 'x'"),
+        ({"measured": "gone.json"}, "/CP", "gone.json: no results found; run the measurement first"),
+        ({"measured": "gone-*"}, "/CP", "gone-*: no runs found; run the measurement first"),
+        ({}, "/CP", "`make it` only prints its results"),
     ],
 )
 def test_what_was_not_measured_is_refused(
