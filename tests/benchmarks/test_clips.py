@@ -104,8 +104,8 @@ def test_clips_are_printed_as_one_table_and_kept(tmp_path: Path, monkeypatch: py
         ["| airfield", "6", "detection"],
         ["| airfield", "6", "HOG x 2 + ByteTrack"],
     ]
-    assert "values chosen by: camel_21\n" in told.stdout
-    assert "only reported: airfield\n" in told.stdout
+    assert "used for tuning: camel_21\n" in told.stdout
+    assert "not used for tuning: airfield\n" in told.stdout
     kept = json.loads(OUT.read_text(encoding="utf-8"))
     assert kept["camel_21"]["detection"]["runs"] == 2
     assert kept["airfield"]["detection"]["HOTA"] is None

@@ -29,7 +29,7 @@ def test_figures_of_what_was_found() -> None:
     assert found.recall(0.0) == 0.25
     assert found.recall(0.1) == 0.5
     assert found.precision() == pytest.approx((1.0 + 2.0 / 3.0) / 4.0)
-    assert "mean overlap 0.700" in str(found)
+    assert "mean IoU 0.700" in str(found)
 
 
 def propose(monkeypatch: pytest.MonkeyPatch, shot: ThermalImage, is_person: NDArray[np.bool_]) -> None:
