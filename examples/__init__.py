@@ -1,1 +1,1 @@
-"""Controllers and trackers as your own might be, run from the root of the repository."""
+"""Examples of your own controllers and trackers; run them from the root of the repository."""

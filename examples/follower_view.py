@@ -1,6 +1,6 @@
-"""The observation of the learned follower: nine numbers about the person whom it follows, and six sonars.
+"""Observation of the learned follower: nine numbers about the followed person, and six sonars.
 
-Where `tracks` and `truth` differ only in who made them, a policy trained on one can be tried on the other.
+`tracks` and `truth` have the same format, so a policy trained on one can be evaluated on the other.
 """
 
 from __future__ import annotations
@@ -12,16 +12,16 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-REPEAT = 3  # steps for which an action is held: five decisions a second
+REPEAT = 3  # steps for which an action is repeated: five decisions per second
 FRONT_SONARS = slice(1, 7)
 SIZE = 15
 
 
 class FollowerView(gymnasium.Wrapper):  # type: ignore[type-arg]
-    """Turns observations into (15,) numbers of about -1..1, and holds each action for a fifth of a second.
+    """Wrapper that converts observations to (15,) numbers of about -1..1, and repeats each action for 0.2 s.
 
-    Seen or not; column, height, and their changes; for how long unseen; the side where last seen; speed; turn
-    rate; the six sonars that look ahead. The track that is followed is kept until it is gone.
+    The numbers are: visible or not; column, height, and their changes; time since last seen; side where last
+    seen; speed; turn rate; the six front sonars. The followed track is kept until it ends.
     """
 
     def __init__(self, env: gymnasium.Env[Any, Any]) -> None:
@@ -29,14 +29,14 @@ class FollowerView(gymnasium.Wrapper):  # type: ignore[type-arg]
         self.observation_space = spaces.Box(-2.0, 2.0, (SIZE,), np.float32)
 
     def reset(self, **settings: Any) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """Begin an episode, without a person to follow."""
+        """Start an episode without a followed person."""
         self._id, self._unseen, self._side = 0.0, 0, 0.0
         self._last = np.zeros(2)
         observation, info = self.env.reset(**settings)
         return self._view(observation), info
 
     def step(self, action: Any) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """Hold the action; the rewards are added up."""
+        """Repeat the action, and sum the rewards."""
         total = 0.0
         for _ in range(REPEAT):
             observation, reward, terminated, truncated, info = self.env.step(action)

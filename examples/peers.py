@@ -1,4 +1,4 @@
-"""Trackers of others beside ours: `peopleboy run crossing_2 --tracker examples.peers:BackgroundSort`.
+"""Trackers from other packages: `peopleboy run crossing_2 --tracker examples.peers:BackgroundSort`.
 
 They need the packages `trackers` and `supervision`, and no GPU.
 """
@@ -12,17 +12,17 @@ from peopleboy import Frame, Status, Track
 
 
 class Associated:
-    """Detections of single frames, with ids by a tracker that sees nothing but their boxes."""
+    """Base class: detections of single frames, associated by a tracker that uses only their boxes."""
 
     cameras = ("thermal",)
     tracker: SORTTracker | ByteTrackTracker
 
     def detect(self, frame: Frame) -> tuple[np.ndarray, np.ndarray]:
-        """Give boxes (N, 4) [px], left, top, width, height, and confidences (N,)."""
+        """Return boxes (N, 4) [px], left, top, width, height, and confidences (N,)."""
         raise NotImplementedError
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Detect, and associate."""
+        """Detect people, and associate the detections with tracks."""
         boxes, confidence = self.detect(frame)
         corners = np.hstack([boxes[:, :2], boxes[:, :2] + boxes[:, 2:]])
         found = self.tracker.update(sv.Detections(xyxy=corners, confidence=confidence))
@@ -36,19 +36,19 @@ class Associated:
                 age_s=0.0,
             )
             for number, (x0, y0, x1, y1), sure in rows
-            if number >= 0  # others are not confirmed
+            if number >= 0  # negative ids are not confirmed
         )
 
 
 class BackgroundSort(Associated):
-    """What is upright and differs from the background, with SORT: for robots that stand."""
+    """Background subtraction with SORT, for a standing robot."""
 
     def __init__(self, _rng: np.random.Generator) -> None:
         self.tracker = SORTTracker(frame_rate=15.0, lost_track_buffer=60)
         self._background = cv2.createBackgroundSubtractorMOG2(history=150, detectShadows=False)
 
     def detect(self, frame: Frame) -> tuple[np.ndarray, np.ndarray]:
-        """Find blobs that were not there."""
+        """Detect upright foreground blobs."""
         moving = cv2.morphologyEx(
             self._background.apply(frame.grey("thermal")), cv2.MORPH_CLOSE, np.ones((9, 5))
         )
@@ -71,7 +71,7 @@ class HogByteTrack(Associated):
         self._hog.setSVMDetector(cv2.HOGDescriptor_getDefaultPeopleDetector())
 
     def detect(self, frame: Frame) -> tuple[np.ndarray, np.ndarray]:
-        """Find windows that look like people."""
+        """Detect people."""
         large = cv2.resize(frame.grey("thermal"), None, fx=2.0, fy=2.0)
         found, margin = self._hog.detectMultiScale(
             large, hitThreshold=-0.3, winStride=(8, 8), padding=(16, 16), scale=1.07
@@ -81,7 +81,7 @@ class HogByteTrack(Associated):
 
 
 def as_torsos(boxes: np.ndarray, share: float) -> np.ndarray:
-    """Shape boxes as the truth's: the person's share of the height, and no wider than a torso."""
+    """Adapt boxes to those of the ground truth: the person's share of the height, and at most torso width."""
     height = share * boxes[:, 3:]
     size = np.hstack([np.minimum(boxes[:, 2:3], 0.27 * height), height])
     return np.hstack([boxes[:, :2] + (boxes[:, 2:] - size) / 2.0, size])

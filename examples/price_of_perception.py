@@ -1,8 +1,8 @@
-"""What perception costs a controller: one law, three pairs of eyes, the same worlds.
+"""Measure the cost of imperfect perception: one controller, three kinds of perception, the same worlds.
 
-The law turns to where the person stands in the image, and drives until the person is as tall there as wanted.
-Its eyes are the thermal image itself (its tallest warm patch), the tracker, or the truth. What
-the rows below `truth` lose is the price of seeing.
+The controller turns towards the person in the image, and drives until the person has the wanted height there.
+Perception is the tallest warm patch of the thermal image (`pixels`), the tracker (`tracks`), or the ground
+truth (`truth`). The difference from `truth` is the cost of perception.
 
     python -m examples.price_of_perception --seeds 20
 """
@@ -24,17 +24,17 @@ from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 Observation = dict[str, NDArray[Any]]
 Person = tuple[float, float] | None  # column [half image widths] and height [image heights]
 
-PHYSICS_HZ = 60  # a quarter of a run's: the way is off by millimetres
+PHYSICS_HZ = 60  # a quarter of a run's; the path deviates by millimetres
 KEEP_HEIGHT = 0.58
 WARM = 40  # grey of the thermal image: 25.9 degC, warmer than most walls
-UPRIGHT = 1.3  # height of a patch in its widths
+UPRIGHT = 1.3  # least ratio of height to width
 LEAST_HEIGHT = 0.15  # [image heights]
 NEAREST_M = 0.7
 FRONT_SONARS = slice(2, 6)
 
 
 def see_warmth(observation: Observation) -> Person:
-    """Take the tallest patch of warmth that stands upright for a person."""
+    """Return the tallest upright warm patch."""
     warm = (observation["thermal"][:, :, 0] > WARM).astype(np.uint8)
     height, width = warm.shape
     patches = cv2.connectedComponentsWithStats(warm)[2][1:]
@@ -46,18 +46,18 @@ def see_warmth(observation: Observation) -> Person:
 
 
 def see_tallest(observation: Observation) -> Person:
-    """Take the tallest track, of the tracker or of the truth."""
+    """Return the tallest track, of the tracker or of the ground truth."""
     number, x, height, *_ = observation["tracks"][:7].tolist()
     return (x, height) if number else None
 
 
 def make_controller(see: Callable[[Observation], Person]) -> Controller:
-    """Give the law the eyes."""
+    """Return a controller with a kind of perception."""
 
     def control(observation: Observation) -> tuple[float, float]:
         person = see(observation)
         if person is None:
-            return 0.0, 0.2  # look round
+            return 0.0, 0.2  # search
         x, height = person
         forward = float(np.clip(2.0 * (KEEP_HEIGHT - height), -0.3, 1.0))
         if observation["sonar"][FRONT_SONARS].min() < NEAREST_M:
@@ -73,14 +73,14 @@ EYES = {"truth": see_tallest, "tracks": see_tallest, "pixels": see_warmth}
 @click.command()
 @click.argument("scenario", default="single_follow")
 @click.option(
-    "--seeds", type=click.IntRange(min=1), default=20, show_default=True, help="How many, from 0 on."
+    "--seeds", type=click.IntRange(min=1), default=20, show_default=True, help="Number of seeds, from 0 on."
 )
-@click.option("--eyes", default=",".join(EYES), show_default=True, help="Which to compare.")
+@click.option("--eyes", default=",".join(EYES), show_default=True, help="Kinds of perception to compare.")
 def main(scenario: str, seeds: int, eyes: str) -> None:
-    """Drive by each pair of eyes in the same worlds, and print how it went."""
+    """Run the controller with each kind of perception in the same worlds, and print metrics."""
     unknown = [name for name in eyes.split(",") if name not in EYES]
     if unknown:
-        raise click.UsageError(f"--eyes {unknown[0]}: there is no such; choose from {', '.join(EYES)}")
+        raise click.UsageError(f"--eyes: unknown {unknown[0]!r}; choose from {', '.join(EYES)}")
     runs = {}
     for name in eyes.split(","):
         env = PeopleBoyEnv(scenario, observation=name, physics_hz=PHYSICS_HZ)

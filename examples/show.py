@@ -1,4 +1,4 @@
-"""Plays controllers in the same worlds, and prints how they did."""
+"""Run controllers in the same worlds, and print their metrics."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from peopleboy.scenarios.scores.bootstrap import Interval, bootstrap
 FIGURES = {
     "reward": ("reward of an episode", 1.0, ""),
     "found": ("found the person", 100.0, "%"),
-    "followed": ("person tracked since", 100.0, "%"),
+    "followed": ("person tracked afterwards", 100.0, "%"),
     "in_band": ("within 1.2 m of the right distance", 100.0, "%"),
     "facing": ("within 10 deg of the nose", 100.0, "%"),
     "mean_distance_error_m": ("distance error", 1.0, "m"),
@@ -24,14 +24,14 @@ FIGURES = {
     "personal_s": ("a person within 1.2 m", 1.0, "s"),
     "jerk_m_s3": ("jerk", 1.0, "m/s3"),
 }
-"""What is printed of an episode: its name, factor and unit; see `FollowingScore` and `ComfortScore`."""
+"""Printed metrics of an episode: label, factor and unit; see `FollowingScore` and `ComfortScore`."""
 
 Controller = Callable[[Any], Any]
 Figures = Mapping[str, float]
 
 
 def play(env: gymnasium.Env[Any, Any], controller: Controller, seed: int) -> Figures:
-    """Play one episode and give its figures."""
+    """Run one episode, and return its metrics."""
     observation, info = env.reset(seed=seed)
     reward, is_over = 0.0, False
     while not is_over:
@@ -42,11 +42,11 @@ def play(env: gymnasium.Env[Any, Any], controller: Controller, seed: int) -> Fig
 
 
 def print_figures(title: str, runs: Mapping[str, Sequence[Figures]], console: Console) -> None:
-    """Print a row for each figure: means over the worlds, with bootstrap intervals of 95 %.
+    """Print one row per metric: means over the worlds, with 95 % bootstrap intervals.
 
-    Of two controllers the differences in each world have a column, too.
+    With two controllers, a further column shows their paired differences.
     """
-    console.print(title, soft_wrap=True)  # as a table's title, it would be wrapped to the table's width
+    console.print(title, soft_wrap=True)  # a table's title would be wrapped to the table's width
     table = Table(box=None)
     table.add_column("")
     for name in summary(runs):
@@ -61,7 +61,7 @@ def print_figures(title: str, runs: Mapping[str, Sequence[Figures]], console: Co
 
 
 def summary(runs: Mapping[str, Sequence[Figures]]) -> dict[str, dict[str, Interval]]:
-    """Give every figure of each controller; of two also of the differences, paired by world."""
+    """Return the metrics of each controller, and of two also the differences, paired by world."""
     values = {
         name: {
             figure: np.array([factor * one[figure] for one in played])

@@ -1,8 +1,8 @@
-"""A follower learned with PPO, against the written one.
+"""Train a follower with PPO, and compare it with the scripted one.
 
-It learns on `truth`, which is ten times quicker, in worlds of ever new seeds; then both drive on `tracks`,
-what the tracker makes of the images, in the same 20 worlds that it has not seen. Weights are kept as plain
-arrays (.npz), which load without pickles, after every round of learning, so that it may be interrupted.
+Training uses `truth` observations, which are ten times faster, in worlds of new seeds. Both followers are
+then evaluated on `tracks`, the tracker's output, in 20 worlds that were not used for training. Weights are
+saved after every round as plain arrays (.npz), which load without pickle, so that you may interrupt training.
 
     make rl                                            # stable-baselines3, with a CPU build of torch
     python -m examples.train_follower --steps 100000   # learns, then compares
@@ -29,17 +29,17 @@ from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.written_controller import WrittenController
 from peopleboy.scenarios.files.load import load_scenario
 
-FIRST_SEED = 1000  # of the worlds in which they are compared
-PHYSICS_HZ = 60  # a quarter of a run's: the way is off by millimetres, and learning takes many steps
+FIRST_SEED = 1000  # of the worlds for evaluation
+PHYSICS_HZ = 60  # a quarter of a run's; the path deviates by millimetres
 
 
 def quick(scenario: str | Path, observation: str) -> PeopleBoyEnv:
-    """An environment whose physics is quick."""
+    """Return an environment with fast physics."""
     return PeopleBoyEnv(scenario, observation=observation, physics_hz=PHYSICS_HZ)
 
 
 class Keep(BaseCallback):
-    """Writes the weights after every round, and says how much an episode earns by then."""
+    """Callback that saves the weights after every round, and prints the mean reward per episode."""
 
     def __init__(self, out: Path) -> None:
         super().__init__()
@@ -52,13 +52,13 @@ class Keep(BaseCallback):
         np.savez(self._out, **{name: value.numpy() for name, value in self.model.policy.state_dict().items()})
         earned = [episode["r"] for episode in self.model.ep_info_buffer or ()]
         if earned:
-            Console().print(f"{self.num_timesteps} decisions: an episode earns {np.mean(earned):.1f}")
+            Console().print(f"{self.num_timesteps} decisions: mean reward per episode {np.mean(earned):.1f}")
 
     _on_training_end = _on_rollout_start
 
 
 def make_model(env: Any) -> PPO:
-    """PPO with a policy of two small layers, on the CPU."""
+    """Return a PPO model with a policy of two small layers, on the CPU."""
     return PPO(
         "MlpPolicy", env, n_steps=512, batch_size=256, n_epochs=4, gamma=0.98, gae_lambda=0.95,
         learning_rate=4e-4, ent_coef=0.002, seed=0, device="cpu",
@@ -67,7 +67,7 @@ def make_model(env: Any) -> PPO:
 
 
 def train(scenario: str, steps: int, out: Path) -> None:
-    """Learn on the truth for about so many decisions, and leave the policy's weights by name."""
+    """Train on the ground truth for about `steps` decisions, and save the policy's weights by name."""
     torch.set_num_threads(1)
     worlds = make_vec_env(lambda: FollowerView(quick(scenario, "truth")), n_envs=4, seed=0)
     make_model(worlds).learn(steps, callback=Keep(out))
@@ -75,7 +75,7 @@ def train(scenario: str, steps: int, out: Path) -> None:
 
 
 def load_policy(env: FollowerView, file: Path) -> Controller:
-    """Make a controller from weights, without pickles."""
+    """Load a controller from weights, without pickle."""
     policy = make_model(env).policy
     with np.load(file, allow_pickle=False) as weights:
         policy.load_state_dict({name: torch.as_tensor(weights[name]) for name in weights})
@@ -83,7 +83,7 @@ def load_policy(env: FollowerView, file: Path) -> Controller:
 
 
 def compare(scenario: str, eyes: str, file: Path, seeds: Sequence[int]) -> dict[str, list[Figures]]:
-    """Let the learned policy and the scenario's own behaviour drive in the same worlds."""
+    """Run the learned policy and the scenario's behaviour in the same worlds."""
     env, loaded = quick(scenario, eyes), load_scenario(scenario)
     view = FollowerView(env)
     policy = load_policy(view, file)
@@ -95,17 +95,23 @@ def compare(scenario: str, eyes: str, file: Path, seeds: Sequence[int]) -> dict[
 
 @click.command()
 @click.argument("scenario", default="single_follow")
-@click.option("--steps", type=click.IntRange(min=0), default=100_000, show_default=True, help="Decisions.")
-@click.option("--seeds", type=click.IntRange(min=1), default=20, show_default=True, help="How many worlds.")
-@click.option("--eyes", type=click.Choice(["tracks", "truth"]), default="tracks", help="To compare by.")
-@click.option("--out", type=click.Path(path_type=Path), default="runs/follower.npz", help="The weights.")
+@click.option(
+    "--steps",
+    type=click.IntRange(min=0),
+    default=100_000,
+    show_default=True,
+    help="Training decisions; 0 only compares.",
+)
+@click.option("--seeds", type=click.IntRange(min=1), default=20, show_default=True, help="Number of worlds.")
+@click.option("--eyes", type=click.Choice(["tracks", "truth"]), default="tracks", help="Observation.")
+@click.option("--out", type=click.Path(path_type=Path), default="runs/follower.npz", help="File of weights.")
 def main(scenario: str, steps: int, seeds: int, eyes: str, out: Path) -> None:
-    """Train a follower, and compare it with the written one."""
+    """Train a follower, and compare it with the scripted one."""
     if steps:
         out.parent.mkdir(parents=True, exist_ok=True)
         train(scenario, steps, out)
     elif not out.is_file():
-        raise click.UsageError(f"{out}: there is no such file; train first, with --steps 100000")
+        raise click.UsageError(f"{out}: file not found; train first, with --steps 100000")
     runs = compare(scenario, eyes, out, range(FIRST_SEED, FIRST_SEED + seeds))
     console = Console(width=110)
     print_figures(f"{scenario}, on {eyes}, {seeds} seeds: mean [95 % interval]", runs, console)

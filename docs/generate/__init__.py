@@ -1,1 +1,1 @@
-"""Parts of pages that are made from the code, so that they cannot say something else, and the pictures."""
+"""Generated parts of pages, which are always consistent with the code, and pictures."""

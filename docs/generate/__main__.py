@@ -1,4 +1,4 @@
-"""`python -m docs.generate`: make the generated parts of the pages anew, and name the pages that changed."""
+"""`python -m docs.generate`: regenerate parts of pages, and print the pages that changed."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from docs.generate.parts import outdated_pages
 
 
 def main() -> None:
-    """Write the pages that are not what they should be."""
+    """Write the outdated pages."""
     for path, text in outdated_pages():
         path.write_text(text, encoding="utf-8")
         print(path)

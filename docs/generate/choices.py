@@ -1,4 +1,4 @@
-"""What there is to choose from in scenario files: walls, clothes, colours and things."""
+"""Generate tables of values in scenario files: walls, clothes, colours and objects."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ _PLACES: Mapping[str, PlaceConfig] = {
 
 
 def walls() -> str:
-    """Name the walls of every kind of place."""
+    """List the walls of every kind of place."""
     return table(("place", "its walls"), [(f"`{name}`", _walls(place)) for name, place in _PLACES.items()])
 
 
 def garments() -> str:
-    """List everything to wear."""
+    """List all garments."""
     kinds = {"top": TOPS, "bottom": BOTTOMS, "shoes": SHOES, "hair": HAIR}
     head = ("key", "garment", "surface", "colour", "seen in heat")
     return table(
@@ -43,12 +43,12 @@ def garments() -> str:
 
 
 def colours() -> str:
-    """List the colours that have names."""
+    """List the named colours."""
     return table(("name", "", "red, green, blue"), [_colour(name, rgb) for name, rgb in COLOURS.items()])
 
 
 def things() -> str:
-    """List every kind of thing."""
+    """List all kinds of objects."""
     head = ("kind", "depth, width, height", "temperature", "where")
     return table(head, [_thing(name, kind) for name, kind in KINDS.items()])
 

@@ -1,4 +1,4 @@
-"""The command line, from the commands themselves."""
+"""Generate the reference of the command line from the commands."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from peopleboy.scenarios.cli import cli
 
 
 def commands() -> str:
-    """List every command, and then each with its usage, help and options."""
+    """List all commands, followed by usage, help and options of each."""
     context = click.Context(cli, info_name="peopleboy")
     names = cli.list_commands(context)
     links = [
@@ -23,7 +23,7 @@ def commands() -> str:
 
 
 def _section(command: click.Command, parent: click.Context, mark: str) -> str:
-    """Describe a command, and each of its own ones in a section below."""
+    """Describe a command, and its subcommands in sections below."""
     context = click.Context(command, info_name=command.name, parent=parent)
     usage = f"{context.command_path} {' '.join(command.collect_usage_pieces(context))}"
     options = [_option(option, context) for option in command.params if isinstance(option, click.Option)]

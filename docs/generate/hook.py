@@ -1,4 +1,4 @@
-"""Looks at the site when MkDocs has built it."""
+"""MkDocs hook that checks the built site."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from docs.generate.offline import loads
 
 
 def on_post_build(config: MkDocsConfig) -> None:
-    """Refuse a site that a reader without a network would not see whole.
+    """Check that the site works without a network.
 
     Raises:
-        PluginError: a page or a style sheet loads something from a network.
+        PluginError: a page or a style sheet loads a resource from a network.
     """
     for path in sorted(Path(config.site_dir).rglob("*")):
         if path.suffix in (".html", ".css"):

@@ -1,4 +1,4 @@
-"""JSON schema's types in words."""
+"""Descriptions of JSON schema types."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ Schema = dict[str, Any]
 
 
 def title(part: str) -> str:
-    """Turn a class of the schema into a heading: LCorridorSpec becomes L corridor."""
+    """Convert a class name of the schema to a heading: LCorridorSpec becomes L corridor."""
     return re.sub(r"(?<!^)([A-Z])", r" \1", part.removesuffix("Spec").removesuffix("Config")).capitalize()
 
 
 def type_text(field: Schema) -> str:
-    """Say which values a field takes."""
+    """Describe the values of a field."""
     options = [option for option in _options(field) if option.get("type") != "null"]
     return ", or ".join(dict.fromkeys(_one(option) for option in options))
 
 
 def default_text(field: Schema) -> str:
-    """Say what a field is when it is left out."""
+    """Describe the default of a field."""
     if "$ref" in field and "default" not in field:
         return "as below"
     default = field.get("default")
@@ -40,7 +40,7 @@ def default_text(field: Schema) -> str:
 
 
 def models_in(value: Any) -> Iterator[str]:
-    """Name the classes that a piece of schema refers to, in its order."""
+    """Yield the classes to which a part of the schema refers, in order."""
     if isinstance(value, dict):
         if "$ref" in value:
             yield value["$ref"].rsplit("/", 1)[-1]

@@ -6,18 +6,18 @@ from collections.abc import Iterable, Sequence
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Write a table; bars within cells are escaped, and line ends become blanks."""
+    """Return a table; bars within cells are escaped, and line ends become blanks."""
     lines = [_row(head), _row(["---"] * len(head)), *(_row(row) for row in rows)]
     return "\n".join(lines) + "\n"
 
 
 def words(names: Iterable[str]) -> str:
-    """Write names as code, with commas between them."""
+    """Format names as code, separated by commas."""
     return ", ".join(f"`{name}`" for name in names)
 
 
 def sentence(text: str) -> str:
-    """Begin a text with a capital letter, unless it begins with code, and end it with a full stop."""
+    """Capitalise a text, unless it begins with code, and end it with a full stop."""
     text = " ".join(text.split())
     return text if not text else text[0].upper() + text[1:].removesuffix(".") + "."
 

@@ -1,4 +1,4 @@
-"""What a page or style sheet loads from a network."""
+"""Resources that a page or style sheet loads from a network."""
 
 from __future__ import annotations
 
@@ -12,5 +12,5 @@ _SOURCES = re.compile(
 
 
 def loads(text: str) -> list[str]:
-    """List the addresses that scripts, styles, images and frames come from; links to follow are no matter."""
+    """List the network addresses of scripts, styles, images and frames; hyperlinks are not included."""
     return ["".join(found) for found in _SOURCES.findall(text)]

@@ -1,4 +1,4 @@
-"""Every generated part of a page by its name."""
+"""The generated parts of pages, by name."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ PLACE = re.compile(r"<!-- generated: (.*?) -->.*?<!-- end -->", re.DOTALL)
 
 
 def outdated_pages() -> Iterator[tuple[Path, str]]:
-    """Find the pages of the documentation whose parts are not what they should be, with their new text."""
+    """Return the pages of the documentation whose generated parts are outdated, with their new text."""
     for path in sorted(DOCS.rglob("*.md")):
         text = path.read_text(encoding="utf-8")
         new = fill_in(text)
@@ -66,10 +66,10 @@ def outdated_pages() -> Iterator[tuple[Path, str]]:
 
 
 def fill_in(markdown: str) -> str:
-    """Make the parts between `<!-- generated: NAME -->` and `<!-- end -->` anew.
+    """Regenerate the parts between `<!-- generated: NAME -->` and `<!-- end -->`.
 
     Raises:
-        KeyError: there is no part of that name.
+        KeyError: a part is unknown.
     """
     return PLACE.sub(lambda place: _part(place[1]), markdown)
 

@@ -36,7 +36,7 @@ def bearings() -> str:
     ]
     shares = [
         (name, ", ".join(f"{word.replace('_', ' ')} {share:.0%}" for word, share in of))
-        for name, of in (("a hand", HOLDS.items()), ("carried, of those without a `bag`", CARRIED.items()))
+        for name, of in (("a hand", HOLDS.items()), ("carried, of people without a `bag`", CARRIED.items()))
     ]
     return "\n\n".join(
         (

@@ -1,4 +1,4 @@
-"""Measured figures, from the file that keeps them."""
+"""Generate the tables of measured results from docs/results.yaml."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from docs.generate.markdown import table
 
 
 def results(one: ResultTable) -> str:
-    """Draw a table of figures, and say how, when and on what they were measured."""
+    """Return a table of results, with how, when and on what they were measured."""
     head = (one.rows_are, *(column.name for column in one.columns))
     rows = [
         (row.name, *(_cell(value, column) for value, column in zip(row.figures, one.columns, strict=True)))

@@ -1,4 +1,4 @@
-"""The keys of scenario files, from their JSON schema."""
+"""Generate the tables of scenario keys from the JSON schema."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from peopleboy.settings import unit_of
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """One key of one part of a scenario file."""
+    """One key of a part of a scenario file."""
 
     part: str
     name: str
@@ -25,12 +25,12 @@ class Key:
 
 
 def scenario_keys() -> str:
-    """List the keys of every part under a heading of its own."""
+    """List the keys of every part under a separate heading."""
     return "\n".join(_section(name, part) for name, part in parts_of_a_file().items())
 
 
 def keys_of(parts: Mapping[str, dict[str, Any]]) -> Iterator[Key]:
-    """List every key of these parts of a scenario file."""
+    """List every key of given parts of a scenario file."""
     for part, model in parts.items():
         for name, field in model["properties"].items():
             is_required = name in model.get("required", ())
@@ -45,7 +45,7 @@ def keys_of(parts: Mapping[str, dict[str, Any]]) -> Iterator[Key]:
 
 
 def parts_of_a_file() -> Mapping[str, dict[str, Any]]:
-    """Find the parts of a scenario file by class name, each after the one that it is first used in."""
+    """Return the parts of a scenario file by class name, each after the part in which it is first used."""
     whole = json_schema()
     whole["required"] = whole["anyOf"][0]["required"]
     parts = {"ScenarioSpec": whole}

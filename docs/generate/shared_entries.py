@@ -1,4 +1,4 @@
-"""Lets docstrings say `x, y: centre of the ellipse` of two attributes at once."""
+"""Extension for docstring entries with several names, such as `x, y: centre of the ellipse`."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ _ENTRY = re.compile(r"^( +)(\w+(?:, \w+)+)(: .*(?:\n\1 +.*)*)", re.MULTILINE)
 
 
 class SharedEntries(griffe.Extension):
-    """Gives each of several names that share an entry an entry of its own."""
+    """Split docstring entries with several names into one entry per name."""
 
     def on_object(self, *, obj: griffe.Object, **_: Any) -> None:
-        """Rewrite the docstring of whatever was read."""
+        """Rewrite the docstring of an object."""
         if obj.docstring is not None:
             obj.docstring.value = split(obj.docstring.value)
 
 
 def split(docstring: str) -> str:
-    """Repeat entries of several names, once a name."""
+    """Repeat an entry for each of its names."""
     return _ENTRY.sub(
         lambda entry: "\n".join(f"{entry[1]}{name}{entry[3]}" for name in entry[2].split(", ")), docstring
     )

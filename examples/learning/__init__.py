@@ -1,1 +1,1 @@
-"""A follower that evolution improved: numpy alone learns, and the weights are in the repository."""
+"""A follower trained by an evolution strategy in NumPy; the weights are in the repository."""

@@ -1,9 +1,9 @@
-"""The learned follower beside the written one, in worlds of which neither has learned anything.
+"""Compare the learned follower with the scripted one in worlds that were not used for training.
 
-Both see the tracks that the tracker makes of the images, which the learned one never did while it learned.
+Both use the tracker's output, which was not used for training either.
 
-    python -m examples.learning.evaluate                   # scenarios of which nothing was learned
-    python -m examples.learning.evaluate --new-seeds       # other worlds of those that it learned in
+    python -m examples.learning.evaluate                   # scenarios that were not used for training
+    python -m examples.learning.evaluate --new-seeds       # other worlds of the training scenarios
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from peopleboy.behaviours.safety_guard import Guarded
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.written_controller import WrittenController
 
-PHYSICS_HZ = 60  # a quarter of a run's: the way is off by millimetres
+PHYSICS_HZ = 60  # a quarter of a run's; the path deviates by millimetres
 
 
 def compare(
     policy: Path, scenarios: Sequence[str], eyes: str, seeds: Sequence[int], console: Console
 ) -> dict[str, list[Figures]]:
-    """Let both drive in the same worlds, under the same guard, and tell what each earned."""
+    """Run both in the same worlds with the same safety guard, and print their rewards."""
     weights = load_weights(policy)
     runs: dict[str, list[Figures]] = {"learned": [], "written": []}
     for scenario in scenarios:
@@ -51,7 +51,7 @@ def compare(
 
 
 def as_json(runs: dict[str, list[Figures]]) -> dict[str, Any]:
-    """Give the figures as JSON holds them, by controller."""
+    """Return the metrics by controller, for JSON."""
     return {
         "runs": len(runs["learned"]),
         **{
@@ -61,7 +61,7 @@ def as_json(runs: dict[str, list[Figures]]) -> dict[str, Any]:
 
 
 def _named(runs: dict[str, list[Figures]]) -> Iterator[tuple[str, Any]]:
-    """Call the difference by a name that keys can have."""
+    """Yield the summaries, with the key `difference` for the differences."""
     for name, of_one in summary(runs).items():
         yield ("difference" if " - " in name else name), of_one
 
@@ -71,20 +71,22 @@ def _named(runs: dict[str, list[Figures]]) -> Iterator[tuple[str, Any]]:
     "--policy",
     type=click.Path(path_type=Path),
     default=LearnedFollower.file,
-    help="Weights.  [default: ours]",
+    help="File of weights.  [default: those of the repository]",
 )
-@click.option("--new-seeds", is_flag=True, help="Take the scenarios that it learned in, by other seeds.")
-@click.option("--seeds", type=click.IntRange(min=1), default=5, show_default=True, help="Of each scenario.")
+@click.option("--new-seeds", is_flag=True, help="Use the training scenarios with other seeds.")
+@click.option("--seeds", type=click.IntRange(min=1), default=5, show_default=True, help="Seeds per scenario.")
 @click.option("--first-seed", type=click.IntRange(min=0), default=1000, show_default=True)
 @click.option("--eyes", type=click.Choice(["tracks", "truth"]), default="tracks", show_default=True)
-@click.option("--out", type=click.Path(dir_okay=False, path_type=Path), help="JSON file of all figures.")
+@click.option("--out", type=click.Path(dir_okay=False, path_type=Path), help="JSON file for all metrics.")
 def main(policy: Path, new_seeds: bool, seeds: int, first_seed: int, eyes: str, out: Path | None) -> None:
-    """Compare the learned follower with the written one, and print figures with intervals of 95 %."""
+    """Compare the learned follower with the scripted one, and print metrics with 95 % intervals."""
     console = Console(width=110)
     scenarios = LEARNED_ON if new_seeds else NEVER_SEEN
     runs = compare(policy, scenarios, eyes, range(first_seed, first_seed + seeds), console)
     print_figures(
-        f"{', '.join(scenarios)}; by {eyes}; {len(runs['learned'])} worlds: mean [95 %]", runs, console
+        f"{', '.join(scenarios)}; on {eyes}; {len(runs['learned'])} worlds: mean [95 % interval]",
+        runs,
+        console,
     )
     if out is not None:
         out.parent.mkdir(parents=True, exist_ok=True)

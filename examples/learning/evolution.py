@@ -1,4 +1,4 @@
-"""An evolution strategy: what does well is varied, by ever smaller steps where steps do not help."""
+"""Evolution strategy with recombination and cumulative step-size adaptation."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ Judge = Callable[[int, Sequence[Weights]], Sequence[float]]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Generation:
-    """What a generation came to.
+    """Result of a generation.
 
     Attributes:
         number: from 0 on.
-        mean: (N,) what the next generation is drawn around: the strategy's best guess.
+        mean: (N,) mean of the next generation, the current best estimate.
         spread: standard deviation of the next generation's weights.
-        scores: of this generation's members, in the order in which they were drawn.
+        scores: scores of this generation's members, in the order of drawing.
     """
 
     number: int
@@ -39,12 +39,13 @@ def evolve(
     covariance left at identity, for which a few hundred scores are too few.
 
     Args:
-        start: (N,) to begin from.
+        start: (N,) initial mean.
         spread: standard deviation of the first generation's weights.
-        judge: gives the scores of a generation's members by its number; all of them should face the same.
+        judge: function that returns the scores of a generation's members, given the generation's number; all
+            members should be evaluated under the same conditions.
         rng: draws members.
-        members: of a generation.
-        generations: how many.
+        members: number of members per generation.
+        generations: number of generations.
     """
     size, mean = len(start), start.copy()
     ranks = math.log((members + 1) / 2.0) - np.log(np.arange(1, members // 2 + 1))

@@ -1,8 +1,8 @@
-"""The written follower with a learned correction of its commands.
+"""The scripted follower with a learned correction of its commands.
 
-What is learned is small: sixteen weights, by which the command of `FollowPerson` is corrected by at most
-`MOST`. With weights of zero it is the written follower, so that learning begins with a tie. Left and right
-are alike: the speed is corrected by what a mirror leaves as it is, the turn rate by what it turns round.
+Sixteen weights correct the command of `FollowPerson` by at most `MOST`. With zero weights the commands are
+those of the scripted follower, so training starts at its performance. The correction is symmetric: that of
+the speed depends on mirror-invariant features, that of the turn rate on features that change their sign.
 
     peopleboy run single_follow --behaviour examples.learning.follower:LearnedFollower
 """
@@ -42,23 +42,20 @@ TURN_SIGHTS: Final = (
     "recover bearing",
 )
 SIZE: Final = len(SPEED_SIGHTS) + len(TURN_SIGHTS)
-MOST: Final = (0.4, 0.8)  # [m/s], [rad/s] of a correction
-FASTEST: Final = (-0.25, 0.8)  # [m/s] backwards and forwards, as the written follower
+MOST: Final = (0.4, 0.8)  # [m/s], [rad/s] largest correction
+FASTEST: Final = (-0.25, 0.8)  # [m/s] backwards and forwards, as the scripted follower
 _FAR_M: Final = 3.0
-_AHEAD: Final = slice(2, 6)  # of the sonars
+_AHEAD: Final = slice(2, 6)  # front sonars
 _LEFT, _RIGHT = slice(0, 3), slice(5, 8)
 
 
 class LearnedFollower:
-    """Follows a person as `FollowPerson` does, each command corrected by what was learned.
+    """Person following like `FollowPerson`, with learned corrections of the commands.
 
-    A subclass with another `file` drives by weights of your own.
+    For your own weights, derive a subclass with another `file`.
 
     Args:
-        weights: (16,) for `SPEED_SIGHTS` and then `TURN_SIGHTS`; those of the file if None.
-
-    Raises:
-        BadInput: there is no such file, or it has no such weights.
+        weights: (16,) for `SPEED_SIGHTS` followed by `TURN_SIGHTS`; None for those of the file.
     """
 
     file: Path = Path(__file__).with_name("follower.npz")
@@ -70,21 +67,21 @@ class LearnedFollower:
 
     @property
     def mode(self) -> str:
-        """What the robot is doing."""
+        """Current activity."""
         return self._written.mode
 
     @property
     def reason(self) -> str:
-        """Why it is doing that."""
+        """Reason for the mode."""
         return self._written.reason
 
     @property
     def following(self) -> int | None:
-        """Number of the track that it drives after."""
+        """Id of the followed track."""
         return self._written.following
 
     def command(self, percept: Percept) -> Command:
-        """Give the written command, corrected; none is where there is no sound sight."""
+        """Return the corrected command; invalid percepts are not corrected."""
         written = self._written.command(percept)
         if self.mode == "blind":
             return written
@@ -100,9 +97,9 @@ class LearnedFollower:
 
 
 def sights(percept: Percept, state: FollowState, config: FollowConfig) -> tuple[Weights, Weights]:
-    """Give what corrections of speed (9,) and of turn rate (7,) are made from, each within about -1..1.
+    """Return the features for correcting the speed (9,) and the turn rate (7,), each in about -1..1.
 
-    Zero is what does not count in the follower's mode.
+    Features that do not apply in the follower's mode are 0.
     """
     follows, waits, recovers = (float(state.mode == mode) for mode in ("follow", "wait", "recover"))
     near = np.minimum(percept.sonar_m, _FAR_M) / _FAR_M
@@ -125,10 +122,10 @@ def sights(percept: Percept, state: FollowState, config: FollowConfig) -> tuple[
 
 
 def load_weights(file: Path) -> Weights:
-    """Read weights, without pickles.
+    """Load weights, without pickle.
 
     Raises:
-        BadInput: there is no such file, or it has no such weights.
+        BadInput: the file is missing, or does not contain such weights.
     """
     with open_archive(file, "python -m examples.learning.train") as stored:
         weights = np.asarray(stored["weights"], np.float64)

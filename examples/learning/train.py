@@ -1,7 +1,7 @@
-"""Teach the follower its correction, by an evolution strategy on the CPU.
+"""Train the follower's correction with an evolution strategy on the CPU.
 
-Members of a generation face the same worlds, one of each scenario, and each generation new ones. They are
-judged by how much more reward they earn there than the written follower. Same options, same weights.
+Members of a generation run in the same worlds, one per scenario, and each generation in new ones. The score
+is the gain in reward over the scripted follower. Equal options give equal weights.
 
     python -m examples.learning.train --out policy.npz
 """
@@ -23,13 +23,13 @@ from examples.learning.follower import SIZE, Weights
 from examples.learning.worlds import LEARNED_ON, earn
 from peopleboy.random_streams import stream
 
-SPREAD = 0.25  # of the first generation's weights, which correct by MOST * tanh(weight * sight)
+SPREAD = 0.25  # of the first generation's weights; a correction is MOST * tanh(weight * feature)
 
 
 def judge(
     number: int, members: Sequence[Weights], *, first: int, scenarios: Sequence[str], workers: joblib.Parallel
 ) -> list[float]:
-    """Give by how much more reward of an episode each member earns than the written follower, on average."""
+    """Return the mean gain in reward per episode of each member over the scripted follower."""
     scenes = [(scenario, first + number) for scenario in scenarios]
     tasks = [(who, *scene) for who in (None, *members) for scene in scenes]
     earned = np.array(workers(joblib.delayed(earn)(*task) for task in tasks)).reshape(-1, len(scenes))
@@ -37,17 +37,27 @@ def judge(
 
 
 @click.command()
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Draws the members.")
 @click.option(
-    "--generations", type=click.IntRange(min=1), default=8, show_default=True, help="How many to try."
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed for drawing members."
 )
-@click.option("--members", type=click.IntRange(min=4), default=10, show_default=True, help="Of each of them.")
+@click.option(
+    "--generations", type=click.IntRange(min=1), default=8, show_default=True, help="Number of generations."
+)
+@click.option(
+    "--members", type=click.IntRange(min=4), default=10, show_default=True, help="Members per generation."
+)
 @click.argument("scenarios", nargs=-1)
 @click.option(
-    "--first-seed", type=click.IntRange(min=0), default=100, show_default=True, help="Of the worlds."
+    "--first-seed",
+    type=click.IntRange(min=0),
+    default=100,
+    show_default=True,
+    help="First seed of the worlds.",
 )
 @click.option("--workers", type=click.IntRange(min=1), default=1, show_default=True, help="Processes.")
-@click.option("--out", type=click.Path(dir_okay=False, path_type=Path), required=True, help="The weights.")
+@click.option(
+    "--out", type=click.Path(dir_okay=False, path_type=Path), required=True, help="File of weights."
+)
 def main(
     seed: int,
     generations: int,
@@ -57,7 +67,7 @@ def main(
     workers: int,
     out: Path,
 ) -> None:
-    """Learn, and keep the weights after every generation, so that learning may be interrupted."""
+    """Train, and save the weights after every generation, so that you may interrupt training."""
     out.parent.mkdir(parents=True, exist_ok=True)
     start = time.monotonic()
     with joblib.Parallel(workers) as pool:

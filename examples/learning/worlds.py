@@ -1,4 +1,4 @@
-"""The worlds in which followers learn and are compared, and one episode in one of them."""
+"""Worlds for training and evaluating followers, and one training episode."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from peopleboy.scenarios.environments.written_controller import WrittenControlle
 
 LEARNED_ON: Final = ("single_follow", "follow_passers_by", "follow_occluded", "follow_round_corner")
 NEVER_SEEN: Final = ("leads_robot", "reacts_ignores", "follow_at_distance", "waits_for_robot")
-"""Scenarios of which nothing was learned."""
+"""Scenarios that are not used for training."""
 
-_STEPS: Final = 675  # of an episode: 45 s
-_HEIGHT, _X = 0.04, 0.02  # how far a tracker's heights (as shares) and columns are off
-_KEPT = 0.8  # of an error, from one image to the next
-_OVERLOOKED = 0.02  # share of images in which a person is overlooked
+_STEPS: Final = 675  # per episode: 45 s
+_HEIGHT, _X = 0.04, 0.02  # standard deviations of a tracker's relative height and column errors
+_KEPT = 0.8  # autocorrelation of an error from one image to the next
+_OVERLOOKED = 0.02  # probability that a person is missed in an image
 
 
 def earn(weights: Weights | None, scenario: str, seed: int) -> float:
-    """Give the reward of an episode on `truth`, seen as unsurely as by a tracker; None is the written one."""
+    """Return the reward of an episode on noisy `truth`; None is the scripted follower."""
     env = _world(scenario)
     behaviour = make_behaviour("follow_person") if weights is None else Guarded(LearnedFollower(weights))
     control, eyes = WrittenController(behaviour), Unsure(seed)
@@ -46,14 +46,14 @@ def _world(scenario: str) -> PeopleBoyEnv:
 
 
 class Unsure:
-    """Adds noise to the truth, so that no controller learns to rely on it to the millimetre."""
+    """Noise on the ground truth, similar to a tracker's errors, so that training is robust to them."""
 
     def __init__(self, seed: int) -> None:
         self._rng = stream(seed, "examples.learning.unsure")
         self._off = np.zeros((5, 2))
 
     def __call__(self, observation: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-        """Give the observation with errors of places and heights that wander, and people overlooked."""
+        """Return the observation with correlated errors of columns and heights, and missed people."""
         rows = observation["tracks"].reshape(5, 7).copy()
         fresh = self._rng.normal(size=(5, 2)) * (_X, _HEIGHT)
         self._off = _KEPT * self._off + np.sqrt(1.0 - _KEPT**2) * fresh

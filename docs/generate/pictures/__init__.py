@@ -1,1 +1,1 @@
-"""The pictures of the site, each drawn by the code that it explains: `python -m docs.generate.pictures`."""
+"""Pictures of the site, drawn with the code that they explain: `python -m docs.generate.pictures`."""

@@ -1,4 +1,4 @@
-"""Draw every picture again, or those whose names are given, into docs/pictures."""
+"""Draw all pictures, or the named ones, into docs/pictures."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ PICTURES: Mapping[str, Callable[[], Figure | Image]] = {
     "timeline": occlusion.timeline,
 }
 
-# Where fewer do as well, to the eye.
+# Pictures for which fewer colours are sufficient.
 FEWER_COLOURS = {"first_run": 80, "panorama": 96, "scene_model": 192}
 
 for name in sys.argv[1:] or PICTURES:

@@ -1,4 +1,4 @@
-"""How people are seen all round: what a panorama shows of them, and how they are handed over."""
+"""Pictures of the panoramic trackers: a panorama with tracks, and the handover to the thermal image."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ from peopleboy.tracker.track import FloorPlace, Status, Track
 from peopleboy.tracker.trackers import make_tracker
 
 DRIVE = ("panoramic_moving", 0)
-"""Scenario and seed of what is seen: three people, and a robot that drives."""
+"""Scenario and seed of the panorama: three people, and a driving robot."""
 
 IMAGE = 304
 REACH_M = 5.0
 COLOURS = ("#0072b2", "#d55e00", "#cc79a7", "#009e73")
 ROUND = ("panoramic_round", 0)
-"""Likewise of who is handed over: anna walks round the robot, bert waits."""
+"""Scenario and seed of the handover: anna walks around the robot, bert waits."""
 
 EVERY = 5  # frames
 SURE = 2.45  # half axes of a 95 % ellipse, in standard deviations
@@ -49,13 +49,13 @@ SURE = 2.45  # half axes of a 95 % ellipse, in standard deviations
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Moment:
-    """One panorama, and what the tracker made of it.
+    """One panorama, and the tracker's results.
 
     Attributes:
-        explanation: what it took for background and for people.
-        scene: the same image with nobody found in it.
-        tracks: its people.
-        true_m: (P, 2) where people stood in the robot's frame; NaN for who was not there.
+        explanation: the tracker's background and foreground.
+        scene: explanation of the same image without people.
+        tracks: the tracks.
+        true_m: (P, 2) true positions of people in the robot's frame; NaN for absent people.
     """
 
     explanation: PeopleExplanation
@@ -65,7 +65,7 @@ class Moment:
 
 
 def all_round() -> Figure:
-    """A panorama, its background, who is in it, the patch of one of them, and the floor."""
+    """Draw a panorama, its background, foreground, the patch of one person, and the floor."""
     moment = _moment()
     figure = Figure((WIDTH_IN, 5.9), layout="constrained")
     left, right = figure.subfigures(1, 2, squeeze=False, width_ratios=(1.75, 1.0)).flat
@@ -91,7 +91,7 @@ def all_round() -> Figure:
 
 
 def handed_over() -> Figure:
-    """Where a person who walks round the robot is tracked, under which number, by two trackers."""
+    """Draw positions and ids of the tracks of a person who walks around the robot, for two trackers."""
     figure = Figure((WIDTH_IN, 5.4), layout="constrained")
     for axes, name in zip(figure.subplots(1, 2, sharey=True), ("handover", "contour"), strict=True):
         _way_round(axes, name)
@@ -99,7 +99,7 @@ def handed_over() -> Figure:
 
 
 def _moment() -> Moment:
-    """Play a drive to the tracker, as far as one image."""
+    """Run the tracker on a drive, up to one image."""
     name, seed = DRIVE
     scenario = load_scenario(name)
     film, camera = render_panoramas(scenario, seed), panorama_calibration(scenario, seed)
@@ -121,7 +121,7 @@ def _colour(track: Track) -> str:
 
 
 def _boxed(axes: Axes, track: Track, width: int) -> None:
-    """Draw a box, on both sides if it goes over the seam."""
+    """Draw a box, on both sides if it crosses the seam."""
     left, top, wide, high = track.boxes[PANORAMA]
     for shift in (0.0, -width):
         corner = (left + shift - 0.5, top - 0.5)
@@ -129,7 +129,7 @@ def _boxed(axes: Axes, track: Track, width: int) -> None:
 
 
 def _floor(axes: Axes, moment: Moment) -> None:
-    """Draw places with their 95 % ellipses, the robot in the middle, ahead up."""
+    """Draw positions with their 95 % ellipses; the robot is in the middle and faces up."""
     axes.set_title("floor, 95 % confidence ellipses", fontsize=11)
     axes.plot(0.0, 0.0, marker="^", color="0.4", markersize=9)
     axes.plot(-moment.true_m[:, 1], moment.true_m[:, 0], "k+", markersize=5, label="ground truth", zorder=3)
@@ -144,7 +144,7 @@ def _floor(axes: Axes, moment: Moment) -> None:
 def _ellipse(track: Track) -> Ellipse:
     assert track.place is not None
     (x, y), (xx, xy, yy) = track.place.position_m, track.place.covariance_m2
-    variances, axes = np.linalg.eigh(np.array([[yy, -xy], [-xy, xx]]))  # to the right, ahead
+    variances, axes = np.linalg.eigh(np.array([[yy, -xy], [-xy, xx]]))  # x right, y ahead
     along, across = 2.0 * SURE * np.sqrt(variances[::-1])
     angle = math.degrees(math.atan2(axes[1, 1], axes[0, 1]))
     colour = _colour(track)
@@ -152,7 +152,7 @@ def _ellipse(track: Track) -> Ellipse:
 
 
 def _patches(figure: Figure, moment: Moment) -> None:
-    """Draw the three layers of what is seen where the nearest person is said to stand."""
+    """Draw the three layers of the patch at the estimated position of the nearest person."""
     nearest = min(moment.tracks, key=_distance_m)
     assert nearest.place is not None
     x, y = nearest.place.position_m
@@ -176,7 +176,7 @@ def _distance_m(track: Track) -> float:
 
 
 def _way_round(axes: Axes, name: str) -> None:
-    """Draw the room, and in it where tracks stand; full where they are in the thermal image, too."""
+    """Draw the room with the positions of tracks; solid marks are tracked in the thermal image, too."""
     scenario, (_, seed) = load_scenario(ROUND[0]), ROUND
     config = scenario.world(seed)
     labels = Labels(axes)
@@ -196,7 +196,7 @@ def _way_round(axes: Axes, name: str) -> None:
 
 
 def _spots(scenario: Scenario, seed: int, name: str) -> Iterator[tuple[int, tuple[float, float], bool]]:
-    """Give, every third of a second, numbers and places of tracks, and if they are in the thermal image."""
+    """Yield id, position, and presence in the thermal image of tracks every third of a second."""
     config = scenario.world(seed)
     frames = round(scenario.duration_s * config.control_hz)
     with World(config) as world:

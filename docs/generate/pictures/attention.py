@@ -1,4 +1,4 @@
-"""A person goes away and comes back: where attention would look, and who looks like her."""
+"""Picture of attention: the score map while a person is absent, and the similarity of people to her."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class _Film:
 
 
 def absence() -> Figure:
-    """Images and scores of places before, while and after she is away; below, everybody's likeness to her."""
+    """Draw images and score maps before, during and after her absence, and everyone's similarity to her."""
     film = _watch()
     figure = Figure(figsize=(7.6, 5.6), layout="constrained")
     grid = figure.add_gridspec(3, len(film.moments), height_ratios=(1.0, 1.0, 1.1))

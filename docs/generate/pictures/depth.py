@@ -1,4 +1,4 @@
-"""What a depth camera sees: depth with more and less noise, and what is behind a thing that is moved."""
+"""Pictures of a depth camera: depth with different noise, and the truth behind moved objects."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ MOVED_TITLES = (
 
 
 def scales() -> Figure:
-    """Three people in a corridor whose end is beyond the range."""
+    """Draw three people in a corridor whose end is out of range."""
     people = tuple(PersonConfig(name=name, path=(Waypoint(at_m=at),)) for name, at in PEOPLE.items())
     depth = {name: DepthConfig(scale=scale) for name, scale in SCALES.items()}
     robot = RobotConfig(at_m=(0.5, 0.0), cameras={"thermal": ThermalConfig(), **depth})
@@ -47,7 +47,7 @@ def scales() -> Figure:
 
 
 def moved() -> Figure:
-    """A man carries a bear."""
+    """Draw a man who carries a teddy bear."""
     for world, observation in blind_drive(load_scenario(MOVED), 0):
         if observation.time_s >= MOVED_AT_S:
             truth = world.truth("depth")
@@ -63,7 +63,7 @@ def moved() -> Figure:
 
 
 def _owners(truth: Truth) -> np.ndarray:
-    """Grey, but for people and things that are moved, each in a colour."""
+    """Return the grey image with people and moved objects in separate colours."""
     image = np.full((*truth.depth_m.shape, 3), 225, np.uint8)
     names = [*(person.name for person in truth.people), *(thing.name for thing in truth.things)]
     for number, name in enumerate(names, start=1):

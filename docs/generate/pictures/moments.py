@@ -1,4 +1,4 @@
-"""Moments of runs that pictures show."""
+"""Moments of runs for pictures."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from peopleboy.tracker.contour.explanation import ContourExplanation
 from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
 CROSSING = ("crossing_2", 3)
-"""Scenario and seed: nina, who is near, walks in front of olaf, who is far off."""
+"""Scenario and seed: nina, who is near, walks in front of olaf, who is farther away."""
 
 
 def ticks(
     scenario: str, seed: int, frames: int, tracker: str = CONTOUR_TRACKER
 ) -> Iterator[tuple[World, Tick]]:
-    """Play the first frames of a scenario with a standing robot, as `peopleboy run` does."""
+    """Yield the first ticks of a scenario with a standing robot, as in `peopleboy run`."""
     with World(load_scenario(scenario).world(seed)) as world:
         eyes = make_tracker(tracker, seed)
         for tick in closed_loop(world, eyes, Stand(), frames):
@@ -30,7 +30,7 @@ def ticks(
 
 
 def world_at(scenario: str, seed: int, time_s: float) -> World:
-    """Give a world that has come to a time; the caller closes it."""
+    """Return a world advanced to a time; the caller closes it."""
     config = load_scenario(scenario).world(seed)
     world = World(config)
     for _ in range(round(time_s * config.control_hz)):
@@ -39,26 +39,26 @@ def world_at(scenario: str, seed: int, time_s: float) -> World:
 
 
 def explained(tick: Tick) -> ContourExplanation:
-    """Give what the contour tracker explains at a tick."""
+    """Return the contour tracker's explanation at a tick."""
     assert isinstance(tick.explanation, ContourExplanation)
     return tick.explanation
 
 
 def state_of(tick: Tick, track: int) -> NDArray[np.float64]:
-    """Give a track's contour as a state (9,)."""
+    """Return a track's contour as a state (9,)."""
     return np.array(astuple(explained(tick).ellipses[track]))
 
 
 @dataclass(slots=True)
 class History:
-    """What is true of one person and what its track says, over time."""
+    """Ground truth and track of one person over time."""
 
     time_s: list[float] = field(default_factory=list)
     visible: list[float] = field(default_factory=list)
     status: list[str] = field(default_factory=list)
 
     def add(self, tick: Tick, person: str, track: int) -> None:
-        """Take in the next tick."""
+        """Add a tick."""
         self.time_s.append(tick.truth.time_s)
         self.visible += [one.visible_fraction for one in tick.truth.people if one.name == person]
         found = [one.status.value for one in tick.tracks if one.id == track]

@@ -1,4 +1,4 @@
-"""What becomes of a person behind another one."""
+"""Pictures of the tracks of an occluded person."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ COLOURS = {
 
 
 def explained_away() -> Figure:
-    """What the filter of the person behind is compared with, once the one in front is taken out."""
+    """Draw the image for the filter of the person behind, in which the person in front is removed."""
     *_, (_, tick) = ticks(*CROSSING, frames=PARTLY)
     tracks = {track.id: track for track in tick.tracks}
     model = ContourModel.build(tick.observation.images["thermal"].shape, CONTOUR.contour)
@@ -62,7 +62,7 @@ def explained_away() -> Figure:
 
 
 def walking_on() -> Figure:
-    """Four moments of an occlusion."""
+    """Draw four moments of an occlusion."""
     figure, axes = panels([""] * len(WALK), 3.4)
     chosen = dict(zip(WALK, axes, strict=True))
     for _, tick in ticks(*CROSSING, frames=WALK[-1]):
@@ -72,7 +72,7 @@ def walking_on() -> Figure:
 
 
 def timeline() -> Figure:
-    """How much of olaf is seen, and what his track says."""
+    """Draw the visible fraction of olaf, and the status of his track."""
     history = History()
     for _, tick in ticks(*CROSSING, frames=240):
         history.add(tick, "olaf", FAR)
@@ -103,7 +103,7 @@ def _moment(panel: Axes, tick: Tick) -> None:
 
 
 def _outlined(panel: Axes, tick: Tick, track: Track) -> None:
-    """Draw a contour; dashed if its person is hidden."""
+    """Draw a contour, dashed if the person is occluded."""
     style = ":" if track.status is Status.TOTALLY_OCCLUDED else "-"
     for line in outline(explained(tick).ellipses[track.id]):
         panel.plot(*line.T, style, color=_hex(track.id), linewidth=1.8)

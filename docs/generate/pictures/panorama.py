@@ -1,4 +1,4 @@
-"""What a panoramic camera sees: the lens's round image, the panorama, and how far off distances in it are."""
+"""Pictures of a panoramic camera: the circular image, the panorama, and distance errors."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SCALE = 1.5
 
 
 def raw_and_unrolled() -> Image.Image:
-    """The round image above, the panorama with the truth below."""
+    """Draw the circular image above the panorama with ground truth."""
     people = tuple(PersonConfig(name=name, path=(Waypoint(at_m=at),)) for name, at in PEOPLE.items())
     cameras = {"thermal": ThermalConfig(), "panorama": PanoramaConfig(raw=True)}
     robot = RobotConfig(at_m=(4.0, 0.0), cameras=cameras)
@@ -40,11 +40,11 @@ def raw_and_unrolled() -> Image.Image:
     left = (page.shape[1] - raw.shape[1]) // 2
     page[: raw.shape[0], left : left + raw.shape[1]] = raw
     page[-panorama.shape[0] :] = panorama
-    return Image.fromarray(page).quantize(128)  # noise would make the file large
+    return Image.fromarray(page).quantize(128)  # reduced palette, since noise makes the file large
 
 
 def errors_over_distance() -> Figure:
-    """The paper's network in every room; films that `peopleboy reproduce` left are taken from there."""
+    """Draw the errors of the paper's network in every room, from the sequences of `peopleboy reproduce`."""
     plan, folder = Plan(cache=Path("runs/films")), Path("runs/reproduce")
     store = open_store(folder / RESULTS)
     try:

@@ -1,4 +1,4 @@
-"""What all pictures have in common: how large they are, how images are shown, and how they are stored."""
+"""Common parts of all pictures: size, display of images, and file format."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ COLOURS = 256
 
 
 def panels(titles: Sequence[str], height_in: float, columns: int | None = None) -> tuple[Figure, list[Axes]]:
-    """Lay out panels without axes, row by row, each under its title."""
+    """Create panels without axes, row by row, each with a title."""
     across = len(titles) if columns is None else columns
     figure = Figure((WIDTH_IN, height_in), layout="constrained")
     grid = figure.subplots(-(-len(titles) // across), across, squeeze=False)
@@ -29,7 +29,7 @@ def panels(titles: Sequence[str], height_in: float, columns: int | None = None) 
 
 
 def plot(height_in: float) -> tuple[Figure, Axes]:
-    """Lay out one diagram with light axes."""
+    """Create one diagram with light axes."""
     figure = Figure((WIDTH_IN, height_in), layout="constrained")
     axes = figure.subplots()
     axes.spines[["top", "right"]].set_visible(False)
@@ -37,7 +37,7 @@ def plot(height_in: float) -> tuple[Figure, Axes]:
 
 
 def show(axes: Axes, image: NDArray[Any], **style: Any) -> Any:
-    """Show an (H, W) or (H, W, 3) image as it is, pixel by pixel; grey spans 0..255."""
+    """Show an (H, W) or (H, W, 3) image without interpolation; grey spans 0..255."""
     usual: dict[str, Any] = (
         {"cmap": "gray", "vmin": 0, "vmax": 255} if image.ndim == 2 and image.dtype == np.uint8 else {}
     )
@@ -45,7 +45,7 @@ def show(axes: Axes, image: NDArray[Any], **style: Any) -> Any:
 
 
 def zoom(axes: Axes, box: tuple[float, float, float, float], margin: float, aspect: float) -> None:
-    """Show only a box (left, top, width, height), a margin [px], and what the panel has room for."""
+    """Zoom to a box (left, top, width, height) with a margin [px], extended to fill the panel."""
     left, top, width, height = box
     half = aspect * (height / 2.0 + margin)
     axes.set_xlim(left + width / 2.0 - half, left + width / 2.0 + half)
@@ -53,7 +53,7 @@ def zoom(axes: Axes, box: tuple[float, float, float, float], margin: float, aspe
 
 
 def save(picture: Figure | Image.Image, path: Path, colours: int = COLOURS) -> Path:
-    """Write a picture as a PNG of few colours."""
+    """Write a picture as a PNG with a reduced palette."""
     if isinstance(picture, Figure):
         file = io.BytesIO()
         picture.savefig(file, dpi=100, facecolor="white")

@@ -1,4 +1,4 @@
-"""What the ray caster says of every pixel."""
+"""Pictures of the ray caster's output per pixel."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SCENE = ("crossing_4", 0, 3.2)
 
 
 def layers() -> Figure:
-    """Depth, part numbers and normals of one frame, beside the images that are made of them."""
+    """Draw depth, part numbers and normals of a frame next to the images formed from them."""
     titles = ("depth", "part", "normal", "thermal image", "colour image", "people and body parts")
     figure, axes = panels(titles, 5.6, columns=3)
     with world_at(*SCENE) as world:
@@ -30,7 +30,7 @@ def layers() -> Figure:
 
 
 def silhouettes() -> Figure:
-    """Everybody's whole silhouette, and what is seen of it."""
+    """Draw the whole silhouette of each person, and its visible part."""
     with world_at(*SCENE) as world:
         view = world._see(world.config.robot.cameras["thermal"]).view
         truth = world.truth()
@@ -54,14 +54,14 @@ def silhouettes() -> Figure:
 
 
 def _shuffled(part: NDArray[np.int32]) -> NDArray[np.uint8]:
-    """Give every part number a colour of its own."""
+    """Return a separate colour for every part number."""
     colours = np.random.default_rng(4).integers(40, 255, (part.max() + 2, 3), dtype=np.uint8)
     colours[0] = 0
     return np.asarray(colours[part + 1])
 
 
 def _parts(instance: NDArray[np.uint8], body_part: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Colour persons, and their parts by brightness."""
+    """Colour people, and vary the brightness by body part."""
     picture = np.full((*instance.shape, 3), 30, np.uint8)
     for person in np.unique(instance[instance > 0]):
         mask = instance == person

@@ -1,4 +1,4 @@
-"""How people are found in depth: floor and ceiling, the view from above, and what has the size of a human."""
+"""Picture of people detection in depth: floor and ceiling, plan view, and clusters of human size."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ FOUND, LINE = "#1b9e77", "#d95f02"
 
 
 def steps() -> Figure:
-    """Colour with tracks, depth with what was found, the v-disparity image, and the view from above."""
+    """Draw colour with tracks, depth with detections, the v-disparity image, and the plan view."""
     frame, view, tracks, told = _watch()
     figure = Figure(figsize=(7.6, 5.9), layout="constrained")
     (colour, depth), (rows, above) = figure.subplots(2, 2)
@@ -67,7 +67,7 @@ def _draw(axes: Axes, box: tuple[float, ...], colour: object, text: str, *, dash
 
 
 def _draw_rows(axes: Axes, frame: Frame, view: DepthView, told: RgbdExplanation) -> None:
-    """Rows by disparity: the floor is a line that falls, the ceiling one that rises, people stand upright."""
+    """Draw rows over disparity: the floor is a falling line, the ceiling rises, people are vertical."""
     counts = v_disparity(frame.depth(DEPTH), view)
     last = int(view.disparity_px_m / NEAREST_M / BIN_PX)
     axes.imshow(
@@ -82,7 +82,7 @@ def _draw_rows(axes: Axes, frame: Frame, view: DepthView, told: RgbdExplanation)
 
 
 def _draw_above(axes: Axes, view: DepthView, told: RgbdExplanation) -> None:
-    """Columns by depth, between floor, ceiling and walls, which are lines in disparity."""
+    """Draw columns over depth, between floor, ceiling and walls, which are lines in disparity."""
     counts = told.layout.counts
     depth_m = depths_m(FARTHEST_M / (len(counts) - 1))
     extent = (-0.5, counts.shape[1] - 0.5, 0.0, float(depth_m[-1]))

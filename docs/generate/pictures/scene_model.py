@@ -1,4 +1,4 @@
-"""What a scene model learns of a place: its background, early and late, and the things that were moved."""
+"""Picture of a scene model: its background, early and late, and moved objects."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ NEAREST_M, FARTHEST_M = 1.5, 6.5
 
 
 def scenes() -> Figure:
-    """Three instants: what is seen, with people and things in colours, and what is known to stand."""
+    """Draw three instants: the image with people and objects marked, and the background model."""
     figure = Figure(figsize=(7.6, 4.1), layout="constrained")
     rows = figure.subplots(2, len(TIMES_S))
     for (above, below), (frame, scene) in zip(rows.T, _watch(), strict=True):
@@ -53,7 +53,7 @@ def _watch() -> list[tuple[Frame, VistaScene]]:
 
 
 def _marked(frame: Frame, scene: VistaScene) -> np.ndarray[tuple[int, int, int], np.dtype[np.uint8]]:
-    """(H, W, 3) the colours, those of people and things mixed with their own."""
+    """Return the image (H, W, 3) with people and objects tinted."""
     image = frame.rgb(DEPTH_COLOUR).astype(np.float64)
     for labels, colour in ((scene.people, person_colour), (scene.things, track_colour)):
         for number in np.unique(labels[labels > 0]).tolist():
@@ -64,7 +64,7 @@ def _marked(frame: Frame, scene: VistaScene) -> np.ndarray[tuple[int, int, int],
 def _name(axes: Axes, mask: np.ndarray[tuple[int, int], np.dtype[np.bool_]], text: str) -> None:
     if mask.sum() > 100:
         rows, columns = np.nonzero(mask)
-        is_left = columns.mean() < 0.53 * mask.shape[1]  # names of neighbours would lie on each other
+        is_left = columns.mean() < 0.53 * mask.shape[1]  # labels of neighbours would overlap
         place = columns.min() - 4 if is_left else columns.max() + 4
         side = "right" if is_left else "left"
         axes.text(place, rows.mean(), text, color="black", fontsize=7, ha=side, clip_on=True)

@@ -1,4 +1,4 @@
-"""How temperatures become a grey image, and what a camera's electronics do to it."""
+"""Pictures of thermal imaging: from temperatures to greys, and effects of the electronics."""
 
 from __future__ import annotations
 
@@ -45,20 +45,20 @@ _THREE: tuple[tuple[str, tuple[float, float], Sex, float, Clothes], ...] = (
     ("cleo", (5.6, -0.85), "female", 1.64, Clothes(top="t_shirt", top_colour="grey", bottom="jeans")),
 )
 
-_USUAL = ThermalConfig(netd_k=0.03, fixed_pattern_k=0.02)  # noise takes most of a picture's bytes
+_USUAL = ThermalConfig(netd_k=0.03, fixed_pattern_k=0.02)  # noise makes up most of the file size
 _PLATEAU = replace(_USUAL, gain="plateau")
 _DRIFT_S = 60.0
-_STEP = 8  # of greys, so that files are small
+_STEP = 8  # [grey] quantisation, for small files
 
 Grey = NDArray[np.uint8]
 
 
 def steps() -> Figure:
-    """One image on its way: surface temperature, radiance through the optics, noise, grey."""
+    """Draw the steps of image formation: surface temperature, radiance through the optics, noise, grey."""
     titles = ("surface temperature", "emissivity and optics", "detector noise", "8 bit")
     figure, axes = panels(titles, 2.35)
     with world_at("crossing_4", 0, 4.0) as world:
-        # The surfaces alone: what every part would look like if it were black and the lens perfect.
+        # The surfaces only: every part as a black body, with a perfect lens.
         config = world.config.robot.cameras["thermal"]
         assert isinstance(config, ThermalConfig)
         seen = replace(world._camera_view(config), turn_rad_s=0.0)
@@ -76,7 +76,7 @@ def steps() -> Figure:
 
 
 def bars() -> Figure:
-    """What everyday surfaces look like: temperature, apparent temperature, grey."""
+    """Draw everyday surfaces: temperature, apparent temperature, grey."""
     surfaces = _surfaces()
     names = list(surfaces)
     true = np.array([temperature for temperature, _ in surfaces.values()])
@@ -96,7 +96,7 @@ def bars() -> Figure:
 
 
 def mirror() -> Figure:
-    """How emissivity and the surroundings decide what a surface seems to be."""
+    """Draw the apparent temperature over emissivity and temperature of the surroundings."""
     figure, axes = plot(3.4)
     true = np.linspace(10.0, 60.0, 101)
     for emissivity, colour in ((1.0, "0.2"), (CLOTH, "#009e73"), (0.6, "#0072b2"), (0.2, "#d55e00")):
@@ -112,7 +112,7 @@ def mirror() -> Figure:
 
 
 def finely() -> Figure:
-    """Three people, plainly and in full detail, by the thermal and by the colour camera."""
+    """Draw three people in plain and in full detail, in the thermal and the colour image."""
     titles = [
         f"{camera}, detail: {detail}" for camera in ("thermal", "colour") for detail in get_args(Detail)
     ]
@@ -128,7 +128,7 @@ def finely() -> Figure:
 
 
 def _three(detail: Detail) -> WorldConfig:
-    """A man and two women who walk towards the robot, before cameras without noise."""
+    """Return a scene of a man and two women who walk towards the robot, with noise-free cameras."""
     people = tuple(
         PersonConfig(
             name=name,
@@ -152,7 +152,7 @@ def _three(detail: Detail) -> WorldConfig:
 
 
 def apparent_c(true_c: NDArray[np.float64], emissivity: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Tell what surfaces (N,) [degC] in a room seem to be, by the same radiance that images are made of."""
+    """Return the apparent temperature of surfaces (N,) [degC] in a room, by the renderer's radiance model."""
     radiance = emissivity * band_radiance(true_c)
     radiance += (1.0 - emissivity) * band_radiance(np.array([ROOM_C]))
     table = np.linspace(-40.0, 160.0, 4001)
@@ -160,7 +160,7 @@ def apparent_c(true_c: NDArray[np.float64], emissivity: NDArray[np.float64]) -> 
 
 
 def _surfaces() -> dict[str, tuple[float, float]]:
-    """Temperature [degC] and emissivity of what stands about in a scene."""
+    """Return temperature [degC] and emissivity of the surfaces in a scene."""
     found = {name: (SKIN_C[name], SKIN) for name in ("head", "hand")}
     for name in ("t_shirt", "shirt", "wool_jumper", "fleece", "jacket"):
         found[name] = (TOPS[name].temperature_c, CLOTH)
@@ -171,7 +171,7 @@ def _surfaces() -> dict[str, tuple[float, float]]:
 
 
 def gains() -> Figure:
-    """One scene by each gain, and as people are shown it."""
+    """Draw one scene with each gain, and with processing for display."""
     titles = ("gain: fixed, 24..36 °C", "gain: percentile", "gain: plateau", "thermal_scene, for display")
     figure, axes = panels(titles, 2.0)
     take = _camera()
@@ -183,7 +183,7 @@ def gains() -> Figure:
 
 
 def faults() -> Figure:
-    """A part of the scene without and with each fault."""
+    """Draw a part of the scene without and with each fault."""
     told: dict[str, dict[str, Any]] = {
         "none": {},
         "column_noise_k: 0.2": {"column_noise_k": 0.2},
@@ -200,7 +200,7 @@ def faults() -> Figure:
 
 
 def _camera() -> Callable[..., Grey]:
-    """Give what makes an image of one scene by some settings."""
+    """Return a camera that forms an image of a scene, with given settings."""
     with world_at("crossing_2", 0, 3.0) as world:
         config = world.config.robot.cameras["thermal"]
         assert isinstance(config, ThermalConfig)

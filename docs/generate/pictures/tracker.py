@@ -1,4 +1,4 @@
-"""How a person is found and followed: samples, and the contour that each of them is judged by."""
+"""Pictures of the contour tracker: samples, and the contour by which they are weighted."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ FRAME = 45
 
 
 def detector() -> Figure:
-    """From chance to a person: the samples of the first frames."""
+    """Draw the samples of the first frames, from the initial distribution to a person."""
     figure, axes = panels([f"frame {frame}" for frame in SHOWN], 2.4)
     chosen = dict(zip(SHOWN, axes, strict=True))
     for _, tick in ticks(*CROSSING, frames=SHOWN[-1]):
@@ -36,7 +36,7 @@ def detector() -> Figure:
 
 
 def contour() -> Figure:
-    """The points that a contour is compared at, and what each section says, of a good sample and another."""
+    """Draw the points of a contour and the response of each section, for a good and a bad sample."""
     *_, (_, tick) = ticks(*CROSSING, frames=FRAME)
     track = min(tick.tracks, key=lambda one: one.id)
     good = state_of(tick, track.id)
@@ -55,7 +55,7 @@ def contour() -> Figure:
 def place_probes(
     probes: Probes, state: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Place inner and outer points (P, 2) [px] of a state's contour."""
+    """Return inner and outer points (P, 2) [px] of a state's contour."""
     x, y, w, h, d = state[:5]
     mix = np.array([d, w, h, 1.0])
     return np.array([x, y]) + probes.inner @ mix, np.array([x, y]) + probes.outer @ mix
@@ -64,7 +64,7 @@ def place_probes(
 def _judged(
     panel: Axes, model: ContourModel, image: NDArray[np.uint8], state: NDArray[np.float64]
 ) -> PathCollection:
-    """Draw pairs of points in the colour of what their section says; gives the drawing, for a scale."""
+    """Draw pairs of points in the colour of their section's response; return the artist for a colour bar."""
     differences = model.differences(image, state.astype(np.float32)[None])[0]
     inner, outer = place_probes(model.probes, state)
     for a, b in zip(inner, outer, strict=True):
@@ -95,7 +95,7 @@ def _cloud(panel: Axes, tick: Tick) -> None:
 
 
 def _samples(panel: Axes, cloud: Particles, colour: str) -> None:
-    """Draw the bodies' centres, the heavier the more solid."""
+    """Draw the centres of the bodies, with opacity by weight."""
     share = cloud.weight / cloud.weight.max()
     panel.scatter(
         cloud.state[:, 0], cloud.state[:, 1], s=5, color=colour, alpha=0.4 + 0.6 * share, linewidths=0

@@ -1,1 +1,1 @@
-"""Parts of the reference pages."""
+"""Generated parts of the reference pages."""

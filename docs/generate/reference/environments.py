@@ -1,4 +1,4 @@
-"""The gymnasium environments: registration ids, and the spaces of their observations."""
+"""Generate the tables of gymnasium environments: registration ids, and observation spaces."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The scenario library by what each scenario tests, as a table and as a gallery."""
+"""Generate the table and the gallery of the scenario library."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def library_groups() -> tuple[LibraryGroup, ...]:
 
 
 def library_table() -> str:
-    """Draw the table of groups with their scenarios."""
+    """Return the table of groups with their scenarios."""
     rows = [
         (f"[{group.title}](../gallery.md#{_anchor(group.title)})", group.tests, _names(group))
         for group in library_groups()
@@ -40,7 +40,7 @@ def library_table() -> str:
 
 
 def gallery() -> str:
-    """Draw one section a group, with the plan, name and description of each scenario."""
+    """Return one section per group, with plan, name and description of each scenario."""
     return "\n\n".join(_section(group) for group in library_groups())
 
 

@@ -1,4 +1,4 @@
-"""Metrics, from the table that prints them."""
+"""Generate the tables of metrics from their declarations."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from peopleboy.tracker.evaluation.table import FIGURES
 
 
 def metrics(group: str) -> str:
-    """List the figures of one group: thesis, paper, mot, floor or counts."""
+    """List the metrics of one group: thesis, paper, mot, floor or counts."""
     rows = [
         (
             f"**{figure.name}**",
@@ -26,24 +26,24 @@ def metrics(group: str) -> str:
 
 
 def comfort() -> str:
-    """List the figures of people's comfort."""
+    """List the metrics of people's comfort."""
     figures = ComfortScore.metrics().values()
     rows = [(f"**{one.name}**", one.unit or "count", sentence(one.meaning)) for one in figures]
     return table(("metric", "unit", "meaning"), rows)
 
 
 def following() -> str:
-    """List the figures of following a person."""
+    """List the metrics of person following."""
     return _driving(FollowingScore)
 
 
 def corridor() -> str:
-    """List the figures of following corridors."""
+    """List the metrics of corridor following."""
     return _driving(CorridorScore)
 
 
 def _driving(score: type[ScoreRecord]) -> str:
-    """List figures with their keys."""
+    """List metrics with their keys."""
     rows = [
         (f"**{one.name}**", f"`{key}`", one.unit or "count", sentence(one.meaning))
         for key, one in score.metrics().items()

@@ -1,4 +1,4 @@
-"""The tracker's settings: what each is for, and its value in the main trackers."""
+"""Generate the tables of tracker settings, with the values in the main trackers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ COLUMNS: Mapping[str, TrackerConfig] = {
 
 @dataclass(frozen=True, slots=True)
 class CommentedSetting:
-    """One field of a settings class: its name, default and the comment beside or above it."""
+    """One field of a settings class: name, default, and the comment next to or above it."""
 
     name: str
     default: str
@@ -30,7 +30,7 @@ class CommentedSetting:
 
 
 def settings() -> str:
-    """List every setting, its meaning, and its value in the main trackers."""
+    """List every setting with its meaning and its value in the main trackers."""
     text = inspect.getsource(source)
     parts = []
     for part in fields(TrackerConfig):
@@ -52,7 +52,7 @@ def settings() -> str:
 
 
 def commented_settings(text: str, kind: str) -> list[CommentedSetting]:
-    """Read the fields of a class and their comments from its source."""
+    """Read the fields of a class and their comments from the source code."""
     lines = text.splitlines()
     body = next(
         node for node in ast.parse(text).body if isinstance(node, ast.ClassDef) and node.name == kind
@@ -75,7 +75,7 @@ def _section(title: str, kind: type[Any], found: list[CommentedSetting], given: 
 
 
 def _comment(lines: list[str], node: ast.AnnAssign) -> str:
-    """Join the comment lines right above a field and the one behind it."""
+    """Join the comment lines directly above a field and the comment behind it."""
     first, last = node.lineno - 1, (node.end_lineno or node.lineno) - 1
     above: list[str] = []
     while lines[first - 1].lstrip().startswith("# "):

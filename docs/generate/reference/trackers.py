@@ -1,4 +1,4 @@
-"""The reference table of trackers, from their registry."""
+"""Generate the table of trackers from their registry."""
 
 from __future__ import annotations
 
@@ -7,6 +7,6 @@ from peopleboy.tracker.trackers import TRACKERS
 
 
 def trackers() -> str:
-    """List every tracker, its scope, and what it is."""
+    """List every tracker with its scope and description."""
     rows = [(f"`{name}`", entry.scope, entry.summary) for name, entry in TRACKERS.shipped.items()]
     return table(("`--tracker`", "source", "description"), rows)

@@ -1,1 +1,1 @@
-"""The page of the sources' tables and figures that is shipped, from a run of `peopleboy reproduce`."""
+"""The shipped page of reproduced tables and figures, from a run of `peopleboy reproduce`."""

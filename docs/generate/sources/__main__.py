@@ -1,7 +1,7 @@
-"""`python -m docs.generate.sources RUN`: ship what a run of `peopleboy reproduce` has on people tracking.
+"""`python -m docs.generate.sources RUN`: ship the people-tracking results of a run of `peopleboy reproduce`.
 
-Results of any code count, as long as all are of the same: the page says of which. With `--add ID`,
-this part of a later run takes the place of the one that is shipped, or joins the rest, and the page says so.
+Results may be of any version of the code, which the page states. With `--add ID`, this part of a later run
+replaces the shipped one, or is added, and the page states that.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ _COMMAND = "peopleboy reproduce --paper thesis; peopleboy reproduce --paper 2005
 
 @click.command()
 @click.argument("run", type=click.Path(path_type=Path, exists=True, file_okay=False))
-@click.option("--machine", required=True, help="On which it ran, in words.")
+@click.option("--machine", required=True, help="Description of the machine.")
 @click.option(
-    "--add", "added", multiple=True, help="Take this part alone, and keep all others that are shipped."
+    "--add", "added", multiple=True, help="Update only this part, and keep all other shipped parts."
 )
 def main(run: Path, machine: str, added: tuple[str, ...]) -> None:
-    """Put the figures, the pictures and the page of a run into docs/sources."""
+    """Write results, pictures and page of a run to docs/sources."""
     results = run / RESULTS
     code = _newest_code(results)
     plan, store = full_plan(run / "films"), Store(results, code)
@@ -51,7 +51,7 @@ def main(run: Path, machine: str, added: tuple[str, ...]) -> None:
             old.unlink()
     shipped = SourceRun(replace(head, facts=facts), tuple(_with_file(one) for one in outcomes))
     (shipped if before is None else before.with_later(shipped)).write()
-    # As it is read: figures are cut to a few digits.
+    # Read back what was written, since values are rounded to a few digits.
     (FOLDER / PAGE).write_text(whole_page(SourceRun.read()), encoding="utf-8")
     click.echo(FOLDER / PAGE)
 
@@ -63,7 +63,7 @@ def _newest_code(results: Path) -> str:
 
 
 def _with_file(outcome: ExperimentOutcome) -> ExperimentOutcome:
-    """Put its picture, or its plot, into a file of its own."""
+    """Write the picture or plot to a separate file."""
     number = outcome.experiment.id
     address = outcome.picture or draw(outcome.experiment, outcome.samples)
     if address is None:

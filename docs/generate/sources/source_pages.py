@@ -1,4 +1,4 @@
-"""The page of a run, and a table of it for the documentation."""
+"""Page of a reproduction run, and its overview table for the documentation."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ _WHO: Final = ("literal", "default")
 
 
 def whole_page(run: SourceRun) -> str:
-    """Give the page as `peopleboy reproduce` writes it, its pictures in files beside it."""
+    """Return the page as written by `peopleboy reproduce`, with its pictures in separate files."""
     return page_text([section(one) for one in run.outcomes], run.head)
 
 
 def overview(run: SourceRun) -> str:
-    """Say how each table and figure fares, with a link to the whole of it."""
+    """Return a table of the outcome of each table and figure, with links to details."""
     rows = [
         (
             f"[{part.id}]({PAGE}#{part.id})",

@@ -1,4 +1,4 @@
-"""What a run of `peopleboy reproduce` came to, as a file small enough to be shipped."""
+"""Results of a run of `peopleboy reproduce`, in a file that is small enough to be shipped."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ from peopleboy.studies.reproductions.source_page import PageHead
 
 FOLDER: Final = Path(__file__).parents[2] / "sources"
 RUN: Final = "run.json"
-_DIGITS: Final = 6  # significant ones of each figure
-_OF_A_PART: Final = ("Recorded", "Machine", "Code")  # what is said of a part of a later run
-_OF_A_RUN: Final = ("Time", "Results")  # which no longer hold once parts of another run are there
+_DIGITS: Final = 6  # significant digits of each value
+_OF_A_PART: Final = ("Recorded", "Machine", "Code")  # facts that are given for a part of a later run
+_OF_A_RUN: Final = ("Time", "Results")  # facts that are not valid with parts of another run
 
 
 @dataclass(frozen=True, slots=True)
 class SourceRun:
-    """A run.
+    """Results of a run.
 
     Attributes:
-        head: what was done, with what, and when.
-        outcomes: of each table and figure; their pictures are names of files beside the page.
+        head: facts about the run: what was done, with what, and when.
+        outcomes: outcomes of each table and figure; their pictures are names of files next to the page.
     """
 
     head: PageHead
@@ -44,23 +44,23 @@ class SourceRun:
 
     @classmethod
     def read(cls, folder: Path = FOLDER) -> SourceRun:
-        """Read the run that is shipped."""
+        """Read the shipped run."""
         data = json.loads((folder / RUN).read_text(encoding="utf-8"))
         return cls(
             PageHead(**data["head"]), tuple(_outcome(number, one) for number, one in data["parts"].items())
         )
 
     def without(self, others: Sequence[ExperimentOutcome]) -> SourceRun:
-        """Leave out the tables and figures that others are of, and what is said of them."""
+        """Return the run without the tables and figures of others, and without the facts about them."""
         theirs = {one.experiment.id for one in others}
         facts = {name: fact for name, fact in self.head.facts.items() if name not in theirs}
         kept = tuple(one for one in self.outcomes if one.experiment.id not in theirs)
         return SourceRun(replace(self.head, facts=facts), kept)
 
     def with_later(self, later: SourceRun) -> SourceRun:
-        """Take in tables and figures of a later run, and say of each when and with what it was made.
+        """Return the run with tables and figures of a later run, and with the facts about each.
 
-        What the first run took as a whole is left out: each part says that for itself.
+        The total time of the first run is left out, since each part has its own.
         """
         said = "; ".join(f"{name.lower()} {later.head.facts[name]}" for name in _OF_A_PART)
         kept = self.without(later.outcomes)
@@ -73,7 +73,7 @@ class SourceRun:
         return SourceRun(replace(self.head, facts=facts), tuple(every))
 
     def write(self, folder: Path = FOLDER) -> None:
-        """Keep it."""
+        """Write the run to a file."""
         parts = {one.experiment.id: _plain(one) for one in self.outcomes}
         lines = (f"  {json.dumps(number)}: {json.dumps(one)}" for number, one in parts.items())
         text = ",\n".join(lines)
@@ -129,7 +129,7 @@ def _values(plain: list[float | None] | Mapping[str, Any]) -> Values:
 
 
 def _short(values: NDArray[np.float64]) -> list[float | None]:
-    """Cut figures to a few digits; None for NaN."""
+    """Round values to a few digits; None for NaN."""
     return [None if math.isnan(one) else float(f"{one:.{_DIGITS}g}") for one in values.tolist()]
 
 

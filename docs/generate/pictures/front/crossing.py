@@ -1,4 +1,4 @@
-"""The moving picture of a crossing: `python -m docs.generate.pictures.front.crossing` draws it."""
+"""Animation of a crossing: `python -m docs.generate.pictures.front.crossing` draws it."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ robot:
   cameras: {thermal: {kind: thermal, preset: uncooled}}
 """
 SEED, FROM_S, UNTIL_S = 0, 2.4, 10.4
-EVERY = 2  # ticks a frame of the picture: 7.5 frames a second, real time
+EVERY = 2  # ticks per frame: 7.5 frames per second, real time
 SCALE = 2
 HEIGHT_IN, DPI = 3.1, 100
-QUALITY = 65  # of WebP, 0 to 100: less makes lines and labels fray
+QUALITY = 65  # of WebP, 0 to 100; lower values blur lines and labels
 TITLES = ("thermal image with tracks", "ground truth: visible fraction", "plan: who occludes whom")
 
 
 def frames(path: Path) -> Iterator[Image.Image]:
-    """Play the scenario of a file and draw every second tick."""
+    """Run the scenario of a file, and draw every second tick."""
     scenario = load_scenario(path)
     with World(scenario.world(SEED)) as world:
         first, last = (round(time_s * world.config.control_hz) for time_s in (FROM_S, UNTIL_S))
@@ -65,7 +65,7 @@ def _raster(figure: Figure) -> Image.Image:
 
 
 def main() -> None:
-    """Write the moving picture."""
+    """Write the animation."""
     with TemporaryDirectory() as folder:
         path = Path(folder) / "crossing.yaml"
         path.write_text(SCENARIO, encoding="utf-8")

@@ -13,7 +13,7 @@ from peopleboy.scenarios.files.library import library
 from peopleboy.scenarios.files.load import load_scenario
 
 FOLDER = Path(__file__).parents[3] / "pictures" / "gallery"
-HEAD_PX, FOOT_PX, SIDE_PX = 110, 192, 140  # title, legend and colour bar, which the page explains once
+HEAD_PX, FOOT_PX, SIDE_PX = 110, 192, 140  # title, legend and colour bar, which the page explains
 WIDTH_PX, QUALITY = 640, 72
 
 

@@ -29,7 +29,7 @@ PATH = Path(__file__).parents[3] / "overview.png"
 SCENARIO, SEED, FRAME = "crossing_4", 0, 41
 SCALE = 3
 LEAST_SHARE = 0.02  # smallest occluded fraction that gets an arrow
-LABEL_M = 0.4  # beyond the far wall, so that names of people near it are not cut
+LABEL_M = 0.4  # beyond the far wall, so that labels near it are not clipped
 NIGHT: Rgb = (24, 26, 32)
 TITLES = (
     "thermal image with tracks",

@@ -1,4 +1,4 @@
-"""Pictures that commands leave behind."""
+"""Pictures from the output of commands."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ TUTORIAL = Path(__file__).parents[3] / "tutorial" / "own-scenario.md"
 
 
 def first_run() -> Image.Image:
-    """The upper third of a contact sheet: its first row of moments."""
+    """Draw the upper third of a contact sheet: its first row of moments."""
     name, seed = CROSSING
     with TemporaryDirectory() as folder:
         out = Path(folder) / "run"
@@ -30,7 +30,7 @@ def first_run() -> Image.Image:
 
 
 def my_scene() -> Image.Image:
-    """The plan of the tutorial's scenario."""
+    """Draw the plan of the tutorial's scenario."""
     text = TUTORIAL.read_text(encoding="utf-8")
     blocks = re.findall(r'```yaml title="my_scene.yaml"\n(.*?)^```', text, re.DOTALL | re.MULTILINE)
     with TemporaryDirectory() as folder:

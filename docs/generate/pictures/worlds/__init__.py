@@ -1,1 +1,1 @@
-"""What full detail adds to images, on and off side by side."""
+"""Pictures of random and detailed worlds."""

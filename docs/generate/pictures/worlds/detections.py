@@ -1,4 +1,4 @@
-"""What the detector of people finds, and what it looks at."""
+"""Picture of the people detector: detections, and feature channels."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from peopleboy.tracker.detector.detector import SMALLEST_PX, PeopleDetector
 from peopleboy.tracker.detector.pyramid import pyramid_levels
 
 WORLDS = (3, 24, 28)
-"""Seeds of worlds; of each that image is shown in which most people are plain to see."""
+"""Seeds of worlds; the picture shows the image of each with the most clearly visible people."""
 
-_STEP = 24  # of greys, so that the file is small
+_STEP = 24  # [grey] quantisation, for small files
 _CHANNELS = {GRADIENT: "gradient", FIRST_DIRECTION: "gradient to the right", MOTION: "motion"}
 
 
 def detections() -> Figure:
-    """Three images with what is found in them; below, channels of the first."""
+    """Draw three images with detections, and below the channels of the first."""
     figure, axes = panels(
         [f"world {seed}" for seed in WORLDS]
         + [f"{name} in world {WORLDS[0]}" for name in _CHANNELS.values()],

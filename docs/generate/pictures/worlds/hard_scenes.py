@@ -1,4 +1,4 @@
-"""The library's scenes that are as hard for a thermal camera as real ones."""
+"""Picture of the library's scenes with realistic difficulties for a thermal camera."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ SCENES: Final = {
     "workshop": 6.0,
     "crowded_foyer": 6.0,
 }
-_GREYS: Final = 14  # apart, so that the file is small
+_GREYS: Final = 14  # quantisation step, for small files
 
 
 def hard_scenes() -> Figure:
-    """One image of each, as the robot gets it."""
+    """Draw one image of each scene, as captured by the robot."""
     figure, axes = panels(tuple(SCENES), 5.0, columns=4)
     for panel, (scene, time_s) in zip(axes, SCENES.items(), strict=True):
         with world_at(scenario=scene, seed=0, time_s=time_s) as world:
             grey = world.observe().images["thermal"]
-        smooth = cv2.GaussianBlur(grey, (0, 0), 0.5)  # noise takes most of a picture's bytes
+        smooth = cv2.GaussianBlur(grey, (0, 0), 0.5)  # noise makes up most of the file size
         show(panel, smooth // _GREYS * _GREYS)
     return figure

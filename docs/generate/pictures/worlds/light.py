@@ -1,4 +1,4 @@
-"""What light does with full detail."""
+"""Picture of light in full detail."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ WINDOW = slice(230, 470), slice(150, 420)  # rows and columns of 640 x 480
 
 
 def light() -> Figure:
-    """People and their mirror images on a polished floor, in plain and in full detail."""
+    """Draw people and their reflections on a polished floor, in plain and in full detail."""
     titles = ("plain, colour", "full, colour", "plain, thermal", "full, thermal")
     figure, axes = panels(titles, 2.7)
     for at, detail in enumerate(get_args(Detail)):
@@ -29,7 +29,7 @@ def light() -> Figure:
 
 
 def _images(scenario: str, time_s: float, detail: Detail) -> dict[str, Image]:
-    """Take the images of an instant, 640 x 480 and without noise, on a floor that is well polished."""
+    """Return the images of an instant, 640 x 480 and without noise, with a polished floor."""
     config = replace(load_scenario(scenario).world(0), detail=detail)
     cameras = {
         name: config.robot.cameras[name].resized(640, 480).noisier(0.0) for name in ("thermal", "colour")

@@ -1,4 +1,4 @@
-"""The ways of robot and people in the scenarios of people who react, from above, with where they look."""
+"""Plans of the scenarios with reacting people: paths and gaze directions."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _NOSE, _EARS = JOINT_NAMES.index("nose"), [JOINT_NAMES.index(f"{side}_ear") for 
 
 
 def reactions() -> Figure:
-    """Ten plans: who goes where, a dot and a tick for the gaze every second."""
+    """Draw ten plans: paths, with a dot and a tick for the gaze every second."""
     figure = Figure((WIDTH_IN, 6.3), layout="constrained")
     grid = figure.subplots(3, 4)
     for axes, (name, title) in zip(grid.flat, SCENES.items(), strict=False):
@@ -92,7 +92,7 @@ def _draw_person(axes: Axes, rows: Any, colour: str, *, looks: bool) -> None:
 
 
 def _gaze(joints: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(T, 2) unit vectors on the floor from between the ears to the nose."""
+    """Return unit vectors (T, 2) on the floor from between the ears to the nose."""
     way = (joints[:, _NOSE] - joints[:, _EARS].mean(axis=1))[:, :2]
     unit: NDArray[np.float64] = way / np.linalg.norm(way, axis=1, keepdims=True)
     return unit
