@@ -14,7 +14,7 @@ _SPHERE = int(ShapeKind.SPHERE)
 _CAPSULE = int(ShapeKind.CAPSULE)
 _CYLINDER = int(ShapeKind.CYLINDER)
 _BOX = int(ShapeKind.BOX)
-_SIDES = 16  # of the prism that stands for a cylinder which does not stand upright
+_SIDES = 16  # of the prism that approximates a cylinder that is not upright
 MOST_POINTS = 8 * _SIDES
 _UPRIGHT = 1.0 - 1e-9
 _BOX_EDGES = np.array(
@@ -38,21 +38,21 @@ _PRISM_EDGES = np.array(
 def footprint(
     kind: int, size: Array, pose: Array, low_m: float, high_m: float, outline: Array
 ) -> tuple[int, float]:
-    """Write the outline of a primitive; exact but for capsules and cylinders that lean.
+    """Write the outline of a primitive between two heights; exact except for tilted capsules and cylinders.
 
-    Those that lean are taken as a capsule wherever its axis is within a radius of the heights, and as a prism
-    of 16 sides. A plane has none.
+    A tilted capsule counts where its axis is within a radius of the heights; a tilted cylinder is
+    approximated by a prism with 16 sides. A plane has no outline.
 
     Args:
         kind: ShapeKind, not a mesh.
         size: (3,) [m] as in `Shape`.
         pose: (4, 4) world from shape.
-        low_m: [m] the lower height.
-        high_m: [m] the upper one.
-        outline: (MOST_POINTS, 2) [m] gets the corners, counter-clockwise.
+        low_m: [m] lower height.
+        high_m: [m] upper height.
+        outline: (MOST_POINTS, 2) [m] is filled with the corners, counter-clockwise.
 
     Returns:
-        How many corners there are, 0 if nothing lies between the heights, and the radius [m].
+        The number of corners, 0 if no part is between the heights, and the radius [m].
     """
     is_upright = abs(pose[2, 2]) > _UPRIGHT
     if kind == _SPHERE or (kind == _CAPSULE and is_upright):
@@ -75,7 +75,7 @@ def footprint(
 
 @njit(cache=True)
 def triangle_footprint(corners: Array, pose: Array, low_m: float, high_m: float, outline: Array) -> int:
-    """Write the outline of a triangle (3, 3), given in a frame with this pose; see `footprint`."""
+    """Write the outline of a triangle (3, 3) in a frame with a given pose; see `footprint`."""
     moved = np.empty((3, 3))
     for k in range(3):
         moved[k, 0], moved[k, 1], moved[k, 2] = map_point(pose, corners[k, 0], corners[k, 1], corners[k, 2])
@@ -86,7 +86,7 @@ def triangle_footprint(corners: Array, pose: Array, low_m: float, high_m: float,
 def _clip_segment(
     half: float, radius: float, pose: Array, low_m: float, high_m: float, outline: Array
 ) -> int:
-    """Keep what of a leaning capsule's axis is within a radius of the heights."""
+    """Clip the axis of a tilted capsule to the heights, extended by its radius."""
     rise = pose[2, 2] * half
     start, end = -1.0, 1.0
     if abs(rise) > 1e-12:
@@ -125,7 +125,7 @@ def _box_corners(size: Array, pose: Array) -> Array:
 
 @njit(cache=True)
 def _clip(corners: Array, edges: NDArray[np.int64], low_m: float, high_m: float, outline: Array) -> int:
-    """Write the hull of what lies of a convex solid between two heights."""
+    """Write the convex hull of the part of a convex solid between two heights."""
     points = np.empty((MOST_POINTS, 2))
     count = 0
     if corners[:, 2].max() <= low_m or corners[:, 2].min() >= high_m:
@@ -166,17 +166,17 @@ def _hull(points: Array, outline: Array) -> int:
                 count -= 1
             outline[count, 0], outline[count, 1] = p[0], p[1]
             count += 1
-        count -= 1  # it begins the other chain
+        count -= 1  # the first point of the other chain
     return max(count, 1)
 
 
 @njit(cache=True)
 def _turns(a: Array, b: Array, c: Array) -> float:
-    """Positive if the way from a by b to c turns to the left."""
+    """Return a positive number if the path from a through b to c turns left."""
     return float((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
 
 
-_FLUSH_M = 1e-3  # corners no farther back than that bear, too
+_FLUSH_M = 1e-3  # corners within this distance of the contact are part of it, too
 APART = (-math.inf, 0.0, 0.0, 0.0)
 
 
@@ -186,12 +186,12 @@ def overlap(half: Array, outline: Array, radius: float) -> tuple[float, float, f
 
     Args:
         half: (2,) [m] half lengths of a rectangle about the origin, along x and y.
-        outline: (N, 2) [m] counter-clockwise corners of the other, in the rectangle's frame.
-        radius: [m] by which it is wider.
+        outline: (N, 2) [m] counter-clockwise corners of the other shape, in the rectangle's frame.
+        radius: [m] by which the outline is expanded.
 
     Returns:
-        depth [m], negative when they are apart; the unit normal x, y, from the outline to the rectangle; and
-        where along (-y, x) of that normal they bear on each other [m].
+        depth [m], negative without contact; the unit normal x, y, from the outline to the rectangle; and the
+        position of the contact along (-y, x) of that normal [m].
     """
     separation, nx, ny = _widest_gap(half, outline)
     if separation > radius:
@@ -205,7 +205,7 @@ def overlap(half: Array, outline: Array, radius: float) -> tuple[float, float, f
 
 @njit(cache=True)
 def _widest_gap(half: Array, outline: Array) -> tuple[float, float, float]:
-    """The greatest gap along a normal of either's sides, negative if they overlap, and that normal."""
+    """Return the greatest gap along the side normals of both, negative if they overlap, and its normal."""
     best, best_x, best_y = -math.inf, 0.0, 0.0
     count = len(outline)
     for axis in range(2):
@@ -230,7 +230,7 @@ def _widest_gap(half: Array, outline: Array) -> tuple[float, float, float]:
 
 @njit(cache=True)
 def _nearest(half: Array, outline: Array) -> tuple[float, float, float]:
-    """The distance of two that are apart, and the direction to the rectangle."""
+    """Return the distance of two separate shapes, and the direction to the rectangle."""
     best, best_x, best_y = math.inf, 0.0, 0.0
     count = len(outline)
     for k in range(count):
@@ -252,7 +252,7 @@ def _nearest(half: Array, outline: Array) -> tuple[float, float, float]:
 
 @njit(cache=True)
 def _bearing(half: Array, outline: Array, nx: float, ny: float) -> float:
-    """The middle of where the sides that face each other lie side by side, along (-ny, nx)."""
+    """Return the middle of the overlap of the facing sides, along (-ny, nx)."""
     corners = np.empty((4, 2))
     for k in range(4):
         corners[k, 0] = half[0] if k & 1 else -half[0]
@@ -267,7 +267,7 @@ def _bearing(half: Array, outline: Array, nx: float, ny: float) -> float:
 
 @njit(cache=True)
 def _foremost(points: Array, way: float, nx: float, ny: float) -> tuple[float, float]:
-    """Least and greatest place along (-ny, nx) of the points that lie farthest along `way` times (nx, ny)."""
+    """Return the range along (-ny, nx) of the points that are farthest along `way` times (nx, ny)."""
     most = -math.inf
     for k in range(len(points)):
         most = max(most, way * (nx * points[k, 0] + ny * points[k, 1]))

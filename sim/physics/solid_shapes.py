@@ -1,4 +1,4 @@
-"""Solid shapes of a world as arrays for kernels: their poses, and ray intersection (numba kernels)."""
+"""Solid shapes of a world as arrays: poses and ray casting (numba kernels)."""
 
 import math
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ _PARKED_M = -500.0
 
 @dataclass(frozen=True, slots=True)
 class PartKey:
-    """One part of the world: a link of a body, -1 being the body's base."""
+    """One part of the world: a link of a body; -1 is the body's base."""
 
     name: str
     link: int
@@ -34,13 +34,13 @@ class PartKey:
 
 
 class Placements(NamedTuple):
-    """B bodies with P parts; `places`, `hidden` and `stale` are set from outside, `poses` follow.
+    """B bodies with P parts. Callers set `places`, `hidden` and `stale`; `refresh` updates `poses`.
 
     Attributes:
         places: (B, 7) position [m] and quaternion x, y, z, w of each body's base.
-        hidden: (B,) not there.
-        stale: (B,) moved, hidden or shown since `refresh`.
-        of_part: (P,) which body a part belongs to.
+        hidden: (B,) whether the body is absent.
+        stale: (B,) whether the body was moved, hidden or shown since `refresh`.
+        of_part: (P,) number of the body to which a part belongs.
         base_from_part: (P, 4, 4).
         poses: (P, 4, 4) world from part; hidden ones are far below the floor.
     """
@@ -54,12 +54,12 @@ class Placements(NamedTuple):
 
 
 class Solids(NamedTuple):
-    """S solid shapes, and where they are now.
+    """S solid shapes with their current poses.
 
     Attributes:
-        table: what they are.
-        poses: (S, 4, 4) world from shape, of a mesh world from part.
-        boxes: (S, 2, 3) [m] least and greatest corner of the upright box around each, world frame.
+        table: the shapes.
+        poses: (S, 4, 4) world from shape; for a mesh world from part.
+        boxes: (S, 2, 3) [m] least and greatest corner of the axis-aligned bounding boxes, world frame.
     """
 
     table: ShapeTable
@@ -68,7 +68,7 @@ class Solids(NamedTuple):
 
 
 def make_solids(shapes: Sequence[VisualShape]) -> Solids:
-    """Return shapes, by the numbers of their parts, room for where they are, which `refresh` fills."""
+    """Return solids for shapes with part numbers; `refresh` fills in their poses."""
     table = make_shape_table(shapes)
     count = len(table.kind)
     return Solids(table, np.zeros((count, 4, 4)), np.zeros((count, 2, 3)))
@@ -76,7 +76,7 @@ def make_solids(shapes: Sequence[VisualShape]) -> Solids:
 
 @njit(cache=True, nogil=True)
 def refresh(bodies: Placements, solids: Solids) -> None:
-    """Put all parts and solids of stale bodies where they are now."""
+    """Update the poses of all parts and solids of stale bodies."""
     for part in range(len(bodies.of_part)):
         body = bodies.of_part[part]
         if bodies.stale[body]:
@@ -93,7 +93,7 @@ def refresh(bodies: Placements, solids: Solids) -> None:
 
 
 class PlacedBodies:
-    """Bodies by number, which are put somewhere from outside, and whose solids rays meet there.
+    """Bodies by number, placed by the caller, whose solids block rays.
 
     Attributes:
         places, hidden, stale: (B, 7), (B,) and (B,) as in `Placements`.
@@ -107,26 +107,26 @@ class PlacedBodies:
         self._packed: tuple[Placements, Solids] | None = None
 
     def add(self) -> int:
-        """Take in a body that has no parts yet, and return its number."""
+        """Add a body without parts, and return its number."""
         self.places = np.concatenate([self.places, np.zeros((1, 7))])
         self.hidden, self.stale = (np.append(flags, False) for flags in (self.hidden, self.stale))
         self._packed = None
         return len(self.places) - 1
 
     def add_part(self, body: int, base_from_part: Array, solid: Sequence[Shape]) -> None:
-        """Give a body a part at a pose (4, 4) in its base's frame, and solids in the part's."""
+        """Add a part to a body at a pose (4, 4) in its base frame, with solids in the part's frame."""
         self._solid += [as_given(shape, len(self._of_part)) for shape in solid]
         self._of_part.append(body)
         self._base_from_part.append(base_from_part)
         self._packed = None
 
     def put(self, body: int | Sequence[int], positions: ArrayLike, orientations: ArrayLike) -> None:
-        """Put one body, or N, at (3,) or (N, 3) [m] and unit quaternions (4,) or (N, 4)."""
+        """Place one body, or N bodies, at (3,) or (N, 3) [m] and unit quaternions (4,) or (N, 4)."""
         self.places[body, :3], self.places[body, 3:] = positions, orientations
         self.stale[body] = True
 
     def now(self) -> tuple[Placements, Solids]:
-        """All bodies and solids as they are now."""
+        """Return all bodies and solids with current poses."""
         if self._packed is None:
             self.stale[:] = True
             count = len(self._of_part)
@@ -146,7 +146,7 @@ class PlacedBodies:
         return self._packed
 
     def rebind(self, bodies: Placements, solids: Solids) -> None:
-        """Keep all that in other arrays from now on, which hold the same already."""
+        """Use other arrays, which already hold the same values, from now on."""
         self._packed = bodies, solids
         self.places, self.hidden, self.stale = bodies.places, bodies.hidden, bodies.stale
 
@@ -166,7 +166,7 @@ def _place(place: Array, base_from_part: Array, pose: Array) -> None:
 
 @njit(cache=True)
 def _box_around(kind: int, size: Array, extent: Array, pose: Array, box: Array) -> None:
-    """Write the upright box around a shape; of a cylinder and of a mesh it is that of their own box."""
+    """Write the axis-aligned box around a shape; for cylinders and meshes that of their oriented box."""
     if kind == _PLANE:
         box[0], box[1] = -math.inf, math.inf
         return
@@ -188,26 +188,26 @@ def _box_around(kind: int, size: Array, extent: Array, pose: Array, box: Array) 
             box[0, axis], box[1, axis] = min(box[0, axis], point[axis]), max(box[1, axis], point[axis])
 
 
-_MARGIN_M = 1e-3  # around boxes: far more than PyBullet's rays are off
-_BLOCK = 15  # rays that are looked at together, such as those of a sonar
+_MARGIN_M = 1e-3  # around boxes; far more than the error of PyBullet's rays
+_BLOCK = 15  # rays that are culled together, such as those of a sonar
 
 
 @njit(cache=True, nogil=True)
 def cast(
     starts: Array, ends: Array, bodies: Placements, solids: Solids, passed: int
 ) -> tuple[Array, NDArray[np.int64]]:
-    """Find what rays hit first; shapes are met from outside only, triangles from both sides.
+    """Find the first hit of each ray; shapes are hit from outside only, triangles from both sides.
 
     Args:
         starts: (R, 3) [m] world frame.
         ends: (R, 3) [m].
-        bodies: up to date.
-        solids: likewise.
-        passed: number of a body that rays pass through, -1 for none.
+        bodies: bodies with current poses.
+        solids: solids with current poses.
+        passed: number of a body that rays ignore, -1 for none.
 
     Returns:
-        fraction: (R,) of the way, 1 where nothing is hit.
-        part: (R,) what is hit, -1 for nothing.
+        fraction: (R,) hit distance as a fraction of the ray, 1 without a hit.
+        part: (R,) number of the hit part, -1 for none.
     """
     fraction, part = np.ones(len(starts)), np.full(len(starts), -1, np.int64)
     if len(starts) > 0:
@@ -225,7 +225,7 @@ def cast_into(
     fraction: Array,
     part: NDArray[np.int64],
 ) -> None:
-    """Do as `cast`, where fraction is 1 and part -1 at first; there must be a ray."""
+    """Do the same as `cast`, into arrays initialised to 1 and -1; requires at least one ray."""
     whole = np.empty((2, 3))
     _surround(starts, ends, 0, len(starts), whole)
     blocks = (len(starts) + _BLOCK - 1) // _BLOCK
@@ -248,7 +248,7 @@ def cast_into(
 
 @njit(cache=True)
 def _surround(starts: Array, ends: Array, first: int, stop: int, box: Array) -> None:
-    """Write (2, 3) least and greatest corner of the upright box around some rays."""
+    """Write (2, 3) least and greatest corner of the axis-aligned box around rays."""
     for axis in range(3):
         low, high = np.inf, -np.inf
         for ray in range(first, stop):
@@ -259,7 +259,7 @@ def _surround(starts: Array, ends: Array, first: int, stop: int, box: Array) -> 
 
 @njit(cache=True)
 def _share(one: Array, other: Array, margin_m: float) -> bool:
-    """Whether two upright boxes share a point, or nearly so."""
+    """Return whether two axis-aligned boxes overlap, within a margin."""
     for axis in range(3):
         if one[0, axis] > other[1, axis] + margin_m or one[1, axis] < other[0, axis] - margin_m:
             return False
@@ -268,7 +268,7 @@ def _share(one: Array, other: Array, margin_m: float) -> bool:
 
 @njit(cache=True)
 def _hit(start: Array, end: Array, solids: Solids, k: int) -> float:
-    """Where, as a fraction of its way, a ray enters a solid; infinite where it misses."""
+    """Return where a ray enters a solid, as a fraction of its length; inf for a miss."""
     pose, table = solids.poses[k], solids.table
     o = turn_back(pose, start[0] - pose[0, 3], start[1] - pose[1, 3], start[2] - pose[2, 3])
     d = turn_back(pose, end[0] - start[0], end[1] - start[1], end[2] - start[2])
@@ -282,7 +282,7 @@ def _hit(start: Array, end: Array, solids: Solids, k: int) -> float:
 
 @njit(cache=True, error_model="numpy")
 def _hit_triangle(corners: Array, o: Point, d: Point) -> float:
-    """Where a ray meets a triangle (3, 3), from either side.
+    """Return where a ray hits a triangle (3, 3) from either side, as a fraction of its length.
 
     Source: Moeller and Trumbore, Fast, minimum storage ray/triangle intersection, 1997.
     """
@@ -301,9 +301,9 @@ def _hit_triangle(corners: Array, o: Point, d: Point) -> float:
 
 @njit(cache=True)
 def entered_at(start: Array, end: Array, box: Array) -> float:
-    """Share of its way at which a line from start to end comes into a box, or within 1 mm; inf for never.
+    """Return the fraction at which a line from start to end enters a box, enlarged by 1 mm; inf for a miss.
 
-    There it is within all three pairs of faces at once.
+    Slab method: the line is inside where it is within all three pairs of faces.
     """
     enters, leaves = 0.0, 1.0
     for axis in range(3):

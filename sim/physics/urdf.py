@@ -1,4 +1,4 @@
-"""Model files: the location of PyBullet's, and shapes, links, joints and masses of URDFs."""
+"""Model files: location of PyBullet's models, and shapes, links, joints and masses of URDFs."""
 
 import importlib.util
 import re
@@ -17,14 +17,14 @@ from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, ShapeKind, Vector
 
 MISSING = "PyBullet is not installed: there are wheels for Python 3.11 to 3.13 on Linux, macOS and Windows"
-"""Message where PyBullet or its models are needed but not installed."""
+"""Message if PyBullet or its models are needed but not installed."""
 
-MISSING_PHYSICS = f"{MISSING}; install it, or choose physics kinematic, which needs none"
-"""Message where PyBullet is needed to move the robot but is not installed."""
+MISSING_PHYSICS = f"{MISSING}; install it, or choose physics kinematic, which does not need it"
+"""Message if PyBullet is needed to move the robot but not installed."""
 
 
 def data_folder() -> Path:
-    """The folder of pybullet_data.
+    """Return the folder of pybullet_data.
 
     Raises:
         BadInput: PyBullet is not installed.
@@ -36,7 +36,7 @@ def data_folder() -> Path:
 
 
 def is_in_data(path: Path | str) -> bool:
-    """Return whether a file, by its name or its whole path, is one of pybullet_data."""
+    """Return whether a file, by name or full path, belongs to pybullet_data."""
     folder = _data_folder()
     return folder is not None and (folder / path).is_file() and (folder / path).is_relative_to(folder)
 
@@ -47,27 +47,27 @@ def _data_folder() -> Path | None:
 
 
 def find_model(path: Path | str) -> Path:
-    """Find a URDF or SDF file: as it stands, else in pybullet_data.
+    """Find a URDF or SDF file: by its path, else in pybullet_data.
 
     Raises:
-        BadInput: there is no such file, or PyBullet is not installed.
+        BadInput: the file does not exist, or PyBullet is not installed.
     """
     if Path(path).is_file():
         return Path(path).resolve()
     candidate = data_folder() / path
     if candidate.is_file():
         return candidate.resolve()
-    raise BadInput(f"model file {path}: there is no such file, neither as it stands nor in pybullet_data")
+    raise BadInput(f"model file {path}: not found, neither as a path nor in pybullet_data")
 
 
-# Where PyBullet looks for what a URDF names, from the URDF's own folder.
+# Where PyBullet searches for files named in a URDF, relative to the URDF's folder.
 MESH_PLACES = (".", "..", "../..")
 _GREY = (0.5, 0.5, 0.5)
-# How an OBJ names its materials, and these their textures; the name is a line's last word.
+# Keywords for materials in OBJ files, and for textures in material files; the name is the line's last word.
 _NAMED = {".obj": r"^mtllib\s+(?:.*\s)?(\S+)\s*$", ".mtl": r"^(?:map_\w+|bump)\s+(?:.*\s)?(\S+)\s*$"}
 
 Numbers = NDArray[np.float64]
-Joints = dict[str, ElementTree.Element]  # by the link that hangs on it
+Joints = dict[str, ElementTree.Element]  # by child link
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +75,8 @@ class UrdfShape:
     """One visible shape of a URDF.
 
     Attributes:
-        shape: where it is with all joints at zero, in the root link's frame.
-        rgb: red, green, blue in 0..1 as the file has it; grey where it says nothing.
+        shape: shape and pose in the root link's frame with all joints at zero.
+        rgb: red, green, blue in 0..1 from the file; grey by default.
     """
 
     shape: Shape
@@ -84,7 +84,7 @@ class UrdfShape:
 
 
 def find_urdf(name: str) -> Path:
-    """Find a URDF as PyBullet does: an absolute path, or a name inside pybullet_data.
+    """Find a URDF like PyBullet: an absolute path, or a name in pybullet_data.
 
     Raises:
         BadInput: it is a name, and PyBullet is not installed.
@@ -94,10 +94,10 @@ def find_urdf(name: str) -> Path:
 
 @cache
 def read_urdf(path: Path) -> tuple[UrdfShape, ...]:
-    """Read the visible shapes of all links, in the file's order.
+    """Read the visible shapes of all links, in the order of the file.
 
     Raises:
-        BadInput: the file is no URDF, or has a shape or a number that cannot be read.
+        BadInput: the file is not a URDF, or has an invalid shape or number.
     """
     root = parse_urdf(path)
     joints = {link_named(joint, "child"): joint for joint in root.iterfind("./joint")}
@@ -106,24 +106,24 @@ def read_urdf(path: Path) -> tuple[UrdfShape, ...]:
         return tuple(
             _read_visual(visual, link_pose(link.get("name", ""), joints), colours, path)
             for link in root.iterfind("./link")
-            for visual in link.findall("./visual") or link.findall("./collision")  # as PyBullet shows it
+            for visual in link.findall("./visual") or link.findall("./collision")  # like PyBullet
         )
     except (KeyError, ValueError, RecursionError) as error:
         raise BadInput(f"{path} cannot be read as a URDF: {error}") from error
 
 
 def mesh_files(path: Path) -> Iterator[str]:
-    """Yield the mesh files that a URDF names, as it names them.
+    """Yield the mesh files of a URDF, as written there.
 
     Raises:
-        BadInput: the file is no XML.
+        BadInput: the file is not XML.
     """
     for mesh in parse_urdf(path).iter("mesh"):
         yield mesh.get("filename", "")
 
 
 def files_of(urdf: Path) -> Iterator[Path]:
-    """Yield a URDF and all files that it needs: its meshes, their materials and textures."""
+    """Yield a URDF and all files that it needs: meshes, their materials and textures."""
     yield urdf
     for part in parse_urdf(urdf).iter():
         name = part.get("filename", "").removeprefix("package://")
@@ -134,7 +134,7 @@ def files_of(urdf: Path) -> Iterator[Path]:
 
 
 def _named_by(path: Path) -> Iterator[Path]:
-    """Yield what a mesh or a material names in turn."""
+    """Yield the files that a mesh or a material refers to."""
     pattern = _NAMED.get(path.suffix.lower())
     if pattern is None:
         return
@@ -149,7 +149,7 @@ def parse_urdf(path: Path) -> ElementTree.Element:
     """Read a file as XML.
 
     Raises:
-        BadInput: it cannot be read, or is none.
+        BadInput: it cannot be read, or is not XML.
     """
     try:
         # A declaration may claim an encoding that is not the file's.
@@ -159,7 +159,7 @@ def parse_urdf(path: Path) -> ElementTree.Element:
 
 
 def link_pose(link: str, joints: Joints) -> tuple[Numbers, Rotation]:
-    """Where a link is in the root link's frame: position and rotation."""
+    """Return position and rotation of a link in the root link's frame."""
     if link not in joints:
         return np.zeros(3), Rotation.identity()
     position, turn = link_pose(link_named(joints[link], "parent"), joints)
@@ -182,7 +182,7 @@ def _read_visual(
 
 
 def read_shape(element: ElementTree.Element, link: tuple[Numbers, Rotation], path: Path) -> Shape:
-    """Read a visual or a collision of a link, whose position and rotation are given."""
+    """Read a visual or collision element of a link with a given position and rotation."""
     offset, rotation = _origin(element)
     kind, size, mesh = _read_geometry(element, path)
     return Shape(
@@ -220,7 +220,7 @@ def _find_mesh(urdf: Path, name: str) -> Path:
     places = [urdf.parent / place / name.removeprefix("package://") for place in MESH_PLACES]
     found = [place.resolve() for place in places if place.is_file()]
     if not found:
-        raise ValueError(f"there is no mesh {name!r}")
+        raise ValueError(f"mesh {name!r} not found")
     return found[0]
 
 
@@ -233,7 +233,7 @@ def _origin(element: ElementTree.Element) -> tuple[Numbers, Rotation]:
 
 
 def link_named(joint: ElementTree.Element, tag: str) -> str:
-    """Name the parent or the child of a joint."""
+    """Return the name of the parent or child link of a joint."""
     element = joint.find(tag)
     return "" if element is None else element.get("link", "")
 
@@ -244,7 +244,7 @@ def _rgb(material: ElementTree.Element) -> tuple[float, float, float]:
 
 
 def read_numbers(text: str) -> Numbers:
-    """Read numbers as PyBullet does, which takes commas for spaces."""
+    """Read numbers like PyBullet, which accepts commas for spaces."""
     return np.array([float(word) for word in text.replace(",", " ").split()])
 
 
@@ -266,14 +266,14 @@ class UrdfLink:
     """One link with all joints at zero.
 
     Attributes:
-        name: its own.
-        joint: name of the joint on which it hangs; empty for the root.
-        turns: whether that joint turns without end, as a wheel's does.
-        base_from_link: (4, 4) in the root link's frame.
-        visible, solid: what is seen of it, and what others bump into, in its own frame.
+        name: name of the link.
+        joint: name of its parent joint; empty for the root.
+        turns: whether that joint is continuous, like a wheel's.
+        base_from_link: (4, 4) pose in the root link's frame.
+        visible, solid: visual and collision shapes, in the link's frame.
         mass_kg: [kg].
-        centre_m: (3,) [m] of mass, in its own frame.
-        inertia_kg_m2: [kg m2] about the vertical through that centre.
+        centre_m: (3,) [m] centre of mass, in the link's frame.
+        inertia_kg_m2: [kg m2] moment of inertia about the vertical axis through that centre.
     """
 
     name: str
@@ -288,10 +288,10 @@ class UrdfLink:
 
 
 def read_links(path: Path, scale: float = 1.0) -> tuple[UrdfLink, ...]:
-    """Read all links, the root first, each before what hangs on it, all lengths times a factor.
+    """Read all links, parents before children, with all lengths scaled by a factor.
 
     Raises:
-        BadInput: the file is no URDF, or has a shape or a number that cannot be read.
+        BadInput: the file is not a URDF, or has an invalid shape or number.
     """
     return tuple(_scaled(link, scale) for link in _read_links(path))
 

@@ -1,4 +1,4 @@
-"""A body on two driven wheels: its outline, read from a URDF, and its step in a kinematic world."""
+"""A vehicle with two driven wheels: its outline from a URDF, and its step in kinematic physics."""
 
 import math
 from collections.abc import Sequence
@@ -23,14 +23,14 @@ from peopleboy.sim.shapes.shapes import UPRIGHT, ShapeKind
 
 
 class Vehicle(NamedTuple):
-    """A vehicle in the format of the kernels; the frame of its root link is midway between the wheels.
+    """A vehicle in the format of the kernels; the origin of its root link is midway between the wheels.
 
     Attributes:
-        middles, halves: (K, 2) [m] of the upright boxes that bump into things.
-        heights: (K, 2) [m] lower and upper end of each.
-        reach_m: [m] of the circle about the origin that holds them all.
-        centre: (2,) [m] of mass.
-        gyration_m2: [m2] inertia about the vertical through it, over the mass.
+        middles, halves: (K, 2) [m] centres and half sizes of the upright boxes for collisions.
+        heights: (K, 2) [m] lower and upper end of each box.
+        reach_m: [m] radius of the circle about the origin that contains all boxes.
+        centre: (2,) [m] centre of mass.
+        gyration_m2: [m2] moment of inertia about the vertical axis through it, divided by the mass.
         wheel_radius_m, wheel_distance_m: [m].
     """
 
@@ -45,10 +45,10 @@ class Vehicle(NamedTuple):
 
 
 def wheels_of(name: str, links: Sequence[UrdfLink]) -> tuple[int, int]:
-    """Numbers of the links that are its left and its right wheel.
+    """Return the link numbers of the left and the right wheel.
 
     Raises:
-        BadInput: it has not exactly two wheels, each a solid cylinder, on either side of its root.
+        BadInput: there are not exactly two wheels, solid cylinders to the left and right of the root.
     """
     turning = [number for number, link in enumerate(links) if link.turns]
     turning.sort(key=lambda number: -float(links[number].base_from_link[1, 3]))
@@ -57,8 +57,8 @@ def wheels_of(name: str, links: Sequence[UrdfLink]) -> tuple[int, int]:
         if links[left].base_from_link[1, 3] > 0.0 > links[right].base_from_link[1, 3]:
             return left, right
     raise BadInput(
-        f"body {name!r}: kinematic physics moves what rolls on two wheels, cylinders on continuous joints to "
-        "the left and to the right of the root link; hold it in place, or choose bullet"
+        f"body {name!r}: kinematic physics requires two wheels, cylinders on continuous joints to the left "
+        "and to the right of the root link; fix the body in place, or choose physics bullet"
     )
 
 
@@ -66,12 +66,12 @@ def make_vehicle(name: str, links: Sequence[UrdfLink]) -> Vehicle:
     """Make a vehicle from its links.
 
     Raises:
-        BadInput: it does not roll on two wheels, or its root is not of upright boxes.
+        BadInput: it does not have two wheels, or its root link has no upright boxes.
     """
     left, right = (links[number] for number in wheels_of(name, links))
     boxes = links[0].solid
     if not boxes or any(box.kind != ShapeKind.BOX or box.orientation != UPRIGHT for box in boxes):
-        raise BadInput(f"body {name!r}: kinematic physics bumps with upright boxes; give its root some")
+        raise BadInput(f"body {name!r}: kinematic physics requires upright collision boxes in the root link")
     middles = np.array([box.position[:2] for box in boxes])
     halves = np.array([box.size[:2] for box in boxes]) / 2.0
     rise = np.array([(box.position[2], box.size[2] / 2.0) for box in boxes])
@@ -121,13 +121,13 @@ class VehicleState(NamedTuple):
     own: int
 
 
-TOUCH_M = 5e-4  # what is nearer is touched
+TOUCH_M = 5e-4  # objects within this distance are touched
 _PUSHES = 16
 _ENOUGH_M = 1e-6
 _MESH = int(ShapeKind.MESH)
 _PLANE = int(ShapeKind.PLANE)
 
-Contact = tuple[float, float, float, float, float]  # depth, normal x and y, where x and y; world frame
+Contact = tuple[float, float, float, float, float]  # depth, normal x and y, position x and y; world frame
 
 
 @njit(cache=True, nogil=True)
@@ -142,19 +142,19 @@ def advance(
 ) -> bool:
     """Roll a vehicle for one physics step, and push it out of solids.
 
-    Its parts stay where they were until they are refreshed, as it passes through itself.
+    Its own solids are not updated until the next refresh, since it does not collide with itself.
 
     Args:
-        vehicle: what it is.
-        motion: changed in place.
-        bodies: up to date; the vehicle's place is changed.
-        solids: up to date.
+        vehicle: the vehicle.
+        motion: its motion, changed in place.
+        bodies: bodies with current poses; the vehicle's place is changed.
+        solids: solids with current poses.
         own: number of the vehicle's body.
-        dt_s: [s] length of the step.
-        touched: (B,) gets True for the bodies that it touches.
+        dt_s: [s] duration of the step.
+        touched: (B,) set to True for touched bodies.
 
     Returns:
-        Whether it has moved.
+        Whether the vehicle moved.
     """
     pose, speeds, velocity = motion.pose, motion.speeds, motion.velocity
     x, y, heading = pose[0], pose[1], pose[2]
@@ -172,7 +172,7 @@ def advance(
 
 @njit(cache=True, nogil=True)
 def place_on_floor(pose: Array, place: Array) -> None:
-    """Write the place (7,) of a body, position and quaternion, that stands at a pose (3,) on the floor."""
+    """Write the place (7,) of a body, position and quaternion, for a pose (3,) on the floor."""
     place[:] = 0.0
     place[0], place[1] = pose[0], pose[1]
     place[5], place[6] = math.sin(pose[2] / 2.0), math.cos(pose[2] / 2.0)
@@ -180,7 +180,7 @@ def place_on_floor(pose: Array, place: Array) -> None:
 
 @njit(cache=True, nogil=True)
 def roll(vehicle: Vehicle, pose: Array, left_rad_s: float, right_rad_s: float, dt_s: float) -> None:
-    """Move a pose (3,), x, y [m] and heading [rad], along the arc of wheels that do not slip."""
+    """Move a pose (3,), x, y [m] and heading [rad], along the arc of wheels without slip."""
     left, right = left_rad_s * vehicle.wheel_radius_m, right_rad_s * vehicle.wheel_radius_m
     turn = (right - left) / vehicle.wheel_distance_m * dt_s
     advance = (left + right) / 2.0 * dt_s
@@ -195,17 +195,17 @@ def roll(vehicle: Vehicle, pose: Array, left_rad_s: float, right_rad_s: float, d
 def push_out(
     vehicle: Vehicle, pose: Array, bodies: Placements, solids: Solids, own: int, touched: NDArray[np.bool_]
 ) -> None:
-    """Push a vehicle out of all solids, the deepest contact first, until it is in none or 16 pushes are done.
+    """Push a vehicle out of all solids, deepest contact first, until it is free or after 16 pushes.
 
-    Each push moves and turns it about its centre of mass as a free body that is hit there, without friction.
+    Each push translates and rotates it about its centre of mass like a free body, without friction.
 
     Args:
-        vehicle: what it is.
-        pose: (3,) changed in place.
-        bodies: up to date.
-        solids: likewise.
+        vehicle: the vehicle.
+        pose: (3,) its pose, changed in place.
+        bodies: bodies with current poses.
+        solids: solids with current poses.
         own: number of the vehicle's body.
-        touched: (B,) gets True for the bodies that it touches.
+        touched: (B,) set to True for touched bodies.
     """
     near = _near(vehicle, pose, bodies, solids, own)
     if len(near) == 0:
@@ -227,16 +227,16 @@ def push_out(
 
 @njit(cache=True)
 def _wrapped(angle: float) -> float:
-    """The same angle within half a turn of 0."""
+    """Return the angle, wrapped to half a turn around 0."""
     return angle - 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)
 
 
 @njit(cache=True)
 def _near(vehicle: Vehicle, pose: Array, bodies: Placements, solids: Solids, own: int) -> NDArray[np.int64]:
-    """Numbers of the solids whose boxes come near the vehicle."""
+    """Return the numbers of the solids whose bounding boxes are near the vehicle."""
     near = np.empty(len(solids.boxes), np.int64)
     count = 0
-    reach = vehicle.reach_m + 0.1  # as it is pushed meanwhile
+    reach = vehicle.reach_m + 0.1  # margin for the pushes
     low, high = vehicle.heights.min(), vehicle.heights.max()
     for k in range(len(solids.boxes)):
         body, box = bodies.of_part[solids.table.part[k]], solids.boxes[k]
@@ -280,7 +280,7 @@ def _deepest(
 
 @njit(cache=True)
 def _pieces(solids: Solids, k: int) -> int:
-    """Convex pieces of a solid: the triangles of a mesh, else one."""
+    """Return the number of convex pieces of a solid: the triangles of a mesh, else one."""
     if solids.table.kind[k] == _MESH:
         return int(solids.table.triangle_range[k, 1] - solids.table.triangle_range[k, 0])
     return 1
@@ -300,7 +300,7 @@ def _outline(
 
 @njit(cache=True)
 def _meet(vehicle: Vehicle, box: int, pose: Array, outline: Array, radius: float) -> Contact:
-    """One box of the vehicle against one outline."""
+    """Return the contact of one box of the vehicle with one outline."""
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     local = np.empty_like(outline)
     for k in range(len(outline)):

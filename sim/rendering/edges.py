@@ -1,9 +1,9 @@
-"""Anti-aliasing of edges: surfaces that meet within a pixel are mixed by their shares of it.
+"""Anti-aliasing of edges: surfaces that meet within a pixel are mixed by their shares of its area.
 
-Four rays go through a pixel, none in a row or column with another. Beside a pixel that shows something else,
-the ray nearest to that is tried against what both show, and if it meets the other, the next nearest is; if
-not, those of the other pixel are. What they meet looks as one of the two pixels does. So nothing is evaluated
-twice, and any image of the view can do it. Where an image shows no step, nothing is done.
+A pixel has four rays, in different rows and columns. Next to a pixel that shows another surface, the nearest
+ray is tested against both surfaces. If it hits the other one, the next nearest ray is tested, too; if not,
+those of the other pixel are. Each ray gets the value of one of the two pixels. No surface is shaded twice,
+and the method works for any image of the view. Pixels without contrast are skipped.
 """
 
 import numpy as np
@@ -21,18 +21,18 @@ from peopleboy.sim.shapes.shapes import ShapeKind
 Array = NDArray[np.float64]
 Pixels = NDArray[np.int32]
 
-# [px] where rays go through a pixel, from its middle: the first is nearest to the pixel above it, the next to
-# those on the right, on the left and below; and which rays are next nearest to these.
+# [px] positions of the rays relative to the pixel's centre: the first is nearest to the pixel above, the
+# others to those on the right, on the left and below; and the next nearest ray to each of these pixels.
 _RAYS = np.array([(-0.125, -0.375), (0.375, -0.125), (-0.375, 0.125), (0.125, 0.375)])
 _NEXT = (1, 3, 0, 2)
-_BESIDE = np.array([(-1, 0), (0, 1), (0, -1), (1, 0)])  # the pixels nearest to them, in row and column
+_BESIDE = np.array([(-1, 0), (0, 1), (0, -1), (1, 0)])  # the nearest pixels, in row and column
 
 _BOX = int(ShapeKind.BOX)
 _CAPSULE = int(ShapeKind.CAPSULE)
 _MESH = int(ShapeKind.MESH)
 _NONE = -1
 
-_BEHIND = 1.03  # what is farther than this many times another's depth is behind it all over a pixel
+_BEHIND = 1.03  # beyond this ratio of depths, a surface is behind another over the whole pixel
 
 
 def smooth(image: NDArray[np.float32], contrast: float, seen: RenderPass, camera: Pinhole) -> None:
@@ -40,9 +40,9 @@ def smooth(image: NDArray[np.float32], contrast: float, seen: RenderPass, camera
 
     Args:
         image: (H, W, C) linear in light or radiance, C-contiguous.
-        contrast: least difference of any channel between two pixels that makes an edge.
-        seen: by a pinhole camera.
-        camera: the same.
+        contrast: least difference in any channel between two pixels of an edge.
+        seen: view of a pinhole camera.
+        camera: that camera.
     """
     view, scene = seen.view, seen.scene
     if view.surface is None:
@@ -54,7 +54,7 @@ def smooth(image: NDArray[np.float32], contrast: float, seen: RenderPass, camera
 
 @njit(cache=True)
 def _shapes_from_camera(table: ShapeTable, camera_from_part: Array) -> Array:
-    """(S, 3, 4) the camera's frame in that of each shape."""
+    """Return (S, 3, 4) shape from camera, for each shape."""
     poses, pose = np.empty((len(table.part), 3, 4)), np.empty((3, 4))
     for shape in range(len(table.part)):
         compose(camera_from_part[table.part[shape]], table.part_from_shape[shape], pose)
@@ -69,7 +69,7 @@ def _shapes_from_camera(table: ShapeTable, camera_from_part: Array) -> Array:
 
 @njit(cache=True)
 def _pieces_of(table: ShapeTable) -> Pixels:
-    """(M,) the piece that a surface is of: itself, but of a capsule or mesh its first surface."""
+    """Return the piece (M,) of each surface: itself, but for a capsule or mesh its first surface."""
     pieces = np.empty(len(table.surface_shape), np.int32)
     for surface in range(len(pieces)):
         shape = table.surface_shape[surface]
@@ -80,7 +80,7 @@ def _pieces_of(table: ShapeTable) -> Pixels:
 
 @njit(cache=True)
 def _differ(one: NDArray[np.float32], other: NDArray[np.float32], contrast: np.float32) -> bool:
-    """Whether two values (C,) differ by more than the contrast."""
+    """Return whether two values (C,) differ by more than the contrast."""
     for c in range(len(one)):  # noqa: SIM110 (kernels have no generators)
         if abs(one[c] - other[c]) > contrast:
             return True
@@ -113,19 +113,19 @@ def _smooth(  # noqa: C901 (in one function)
 ) -> None:
     """Cast rays on both sides of each edge, and mix the surfaces that they hit.
 
-    No ray is tried where that would look the same.
+    Rays are cast only where the values differ.
 
-    All is in one function, as to pass arrays to a kernel costs as much as to try a ray.
+    This is a single function because passing arrays to a kernel costs as much as casting a ray.
     """
     kind, size, first_surface, shape_of = table.kind, table.size, table.first_surface, table.surface_shape
     pose, piece_of = _shapes_from_camera(table, camera_from_part), _pieces_of(table)
     faces, is_known = np.empty((len(shape_of), 15)), np.zeros(len(shape_of), np.bool_)
     height, width, channels = image.shape
-    # Pixels that get something of others, by how much four times their value changes, and where they are in
-    # these lists: of this row and the next.
+    # Pixels that are mixed with others, four times the change of their value, and their positions in these
+    # lists: for this row and the next.
     pixel, more = np.empty((height * width, 2), np.int32), np.empty((height * width, channels), np.float32)
     places, found = np.full((2, width), -1, np.int32), 0
-    # Eight at a time, as nearly all pixels are beside others of the same surface.
+    # Eight at a time, since nearly all pixels are next to others of the same surface.
     changes, scale = np.zeros(-(-width // 8) * 8, np.uint8), 1.0 / lens.focal
     eight = changes.view(np.uint64)
     for v in range(height):
@@ -149,7 +149,7 @@ def _smooth(  # noqa: C901 (in one function)
                     continue
                 is_met = False
                 for end in range(2):
-                    # Where the ray on one side meets what the other shows, that one's need not be tried.
+                    # If the ray on one side hits the other surface, that on the other side is skipped.
                     if is_met:
                         break
                     if end == 0:
@@ -162,8 +162,8 @@ def _smooth(  # noqa: C901 (in one function)
                         one, other, shape_of[one] == shape_of[other], depth[y0, x0], depth[y1, x1]
                     )
                     for turn in range(2):
-                        # If the ray nearest to the pixel beside meets what that shows, the next nearest may,
-                        # too, but not if it has another such pixel nearer to it.
+                        # If the ray nearest to the neighbour hits its surface, the next nearest may hit it,
+                        # too, unless it is nearer to another such neighbour.
                         k = side
                         if turn == 1:
                             k = _NEXT[side]
@@ -216,14 +216,14 @@ def _smooth(  # noqa: C901 (in one function)
 
 @njit(cache=True, error_model="numpy")
 def _set_face(form: Array, face: int, size: Array, pose: Array) -> None:
-    """Set what decides whether a ray (x, y, 1) meets a face of a box, and how near, without a division.
+    """Set the coefficients for intersecting rays (x, y, 1) with a face of a box without a division.
 
     Args:
-        form: (15,) gets five triples whose product with the ray is positive on the inner side of each of the
-            four edges, and the nearness of the face's plane.
-        face: which of the six.
-        size: (3,) of the box.
-        pose: (3, 4) the camera's frame in that of the box.
+        form: (15,) output, five triples whose dot products with the ray are positive on the inner side of
+            each of the four edges, and the nearness of the face's plane.
+        face: number of the face, 0..5.
+        size: (3,) size of the box.
+        pose: (3, 4) box from camera.
     """
     i = face % 3
     away = (0.5 * size[i] if face < 3 else -0.5 * size[i]) - pose[i, 3]
@@ -231,7 +231,7 @@ def _set_face(form: Array, face: int, size: Array, pose: Array) -> None:
         plane = pose[i, c] / away
         form[12 + c] = plane
         for k in range(2):
-            # The ray meets the plane where 1 / plane goes along it; within half the size either way.
+            # The ray hits the plane at distance 1 / plane; inside the face within half the size.
             j = (face + 1 + k) % 3
             slope = pose[j, c] + pose[j, 3] * plane
             form[6 * k + c] = 0.5 * size[j] * plane - slope
@@ -240,7 +240,7 @@ def _set_face(form: Array, face: int, size: Array, pose: Array) -> None:
 
 @njit(cache=True, error_model="numpy")
 def _hit_face(form: Array, x: float, y: float) -> float:
-    """How near [1/m] the camera's ray (x, y, 1) meets a face of a box, 0 if it does not; form as above."""
+    """Return the nearness [1/m] at which the ray (x, y, 1) hits a face of a box, 0 for a miss."""
     a = form[0] * x + form[1] * y + form[2]
     b = form[3] * x + form[4] * y + form[5]
     c = form[6] * x + form[7] * y + form[8]
@@ -251,10 +251,10 @@ def _hit_face(form: Array, x: float, y: float) -> float:
 
 @njit(cache=True)
 def _in_order(one: int, other: int, is_same: bool, z: float, other_z: float) -> tuple[int, int, int]:
-    """Two pieces by their depths, the nearer first, and how many of their shapes are to be tried.
+    """Return two pieces by depth, the nearer first, and the number of shapes to test.
 
-    Only the nearer is if the other is far behind, and of two pieces of one shape the second, where a miss
-    is unknown.
+    Only the nearer is tested if the other is far behind, and only the second of two pieces of one shape, for
+    which a miss is unknown.
     """
     if is_same and one != _NONE and other != _NONE:
         return other, one, 1

@@ -1,7 +1,7 @@
-"""The ray caster: takes every shape of a table apart into pieces of planes and quadrics (numba kernels).
+"""Ray caster that renders every shape of a table as pieces of planes and quadrics (numba kernels).
 
-Nothing is clipped: the formulas of `canvas` hold for corners behind the camera too. Shapes are solid and
-seen from outside only: a camera within one does not see it. TinyRenderer leaves out the same sides.
+There is no clipping: the formulas of `canvas` are valid for corners behind the camera, too. Shapes are solid
+and visible from outside only: a camera inside a shape does not see it. TinyRenderer culls the same sides.
 """
 
 import math
@@ -49,15 +49,15 @@ def draw(
     lens: Lens,
     canvas: Canvas,
 ) -> None:
-    """Draw all shapes but those of parts to skip.
+    """Draw all shapes except those of skipped parts.
 
     Args:
         table: the shapes.
         camera_from_part: (P, 4, 4).
         skip: (P,) parts that are not drawn.
-        bits: (P,) what a part's silhouette adds to the cover.
-        lens: where pixels look.
-        canvas: what to draw on.
+        bits: (P,) bits that a part's silhouette sets in the cover.
+        lens: ray directions of the pixels.
+        canvas: canvas to draw on.
     """
     borders = borders_of(lens)
     for shape in range(len(table.kind)):
@@ -75,9 +75,9 @@ def draw(
 
 @njit(cache=True, error_model="numpy")
 def borders_of(lens: Lens) -> Borders:
-    """The planes through the borders of an image that is a pixel larger on every side: left, right, up, down.
+    """Return the planes through the image's borders, enlarged by a pixel: left, right, up, down.
 
-    Each as (slope, length): f x - slope z is the length times the distance of a point (x, z) from the plane.
+    Each is (slope, length): f x - slope z is the length times the distance of a point (x, z) from the plane.
     """
     left, right = -1.0 - lens.centre_u, lens.width - lens.centre_u
     up, down = -1.0 - lens.centre_v, lens.height - lens.centre_v
@@ -92,7 +92,7 @@ def borders_of(lens: Lens) -> Borders:
 
 @njit(cache=True, error_model="numpy")
 def is_outside(middle: Point, reach: float, focal: float, borders: Borders) -> bool:
-    """Whether a ball about a point lies wholly outside the image or behind the camera."""
+    """Return whether a ball around a point is completely outside the image or behind the camera."""
     x, y, z = middle
     left, right, up, down = borders
     is_out: bool = (
@@ -107,7 +107,7 @@ def is_outside(middle: Point, reach: float, focal: float, borders: Borders) -> b
 
 @njit(cache=True, error_model="numpy")
 def quick_bounds(table: ShapeTable, shape: int, pose: Array) -> Bounds:
-    """Bounds of a shape; of a mesh those of its box."""
+    """Return the bounds of a shape; for a mesh those of its box."""
     if table.kind[shape] == _MESH:
         low, high = table.extent[shape, 0], table.extent[shape, 1]
         return box_bounds(pose, low[0], low[1], low[2], high[0], high[1], high[2])
@@ -116,7 +116,7 @@ def quick_bounds(table: ShapeTable, shape: int, pose: Array) -> Bounds:
 
 @njit(cache=True, error_model="numpy")
 def draw_shape(table: ShapeTable, shape: int, brush: Brush) -> None:
-    """Draw the shape of some number at the canvas's pose."""
+    """Draw a shape, by number, at the canvas's pose."""
     kind, size, surface = table.kind[shape], table.size[shape], table.first_surface[shape]
     pose = brush.canvas.pose
     if kind == _SPHERE:
@@ -183,7 +183,7 @@ def _draw_round(
 def _draw_lid(height: float, radius: float, surface: int, brush: Brush) -> None:
     """Draw the flat end of a cylinder at a height along the pose's z axis.
 
-    With g . p = 1 its plane and c its centre, d lies on it where |d - (g . d) c| <= r (g . d).
+    With the plane g . p = 1 and the centre c, the ray d hits it where |d - (g . d) c| <= r (g . d).
     """
     pose = brush.canvas.pose
     sign = 1.0 if height > 0.0 else -1.0
@@ -226,12 +226,12 @@ def draw_face(size: Array, axis: int, sign: float, surface: int, brush: Brush) -
 
 @njit(cache=True, error_model="numpy")
 def _draw_triangle(corners: Array, surface: int, brush: Brush) -> None:
-    """Draw the side of a triangle from which its corners run counterclockwise."""
+    """Draw the front of a triangle, from which its corners are counterclockwise."""
     pose = brush.canvas.pose
     a = map_point(pose, corners[0, 0], corners[0, 1], corners[0, 2])
     b = map_point(pose, corners[1, 0], corners[1, 1], corners[1, 2])
     c = map_point(pose, corners[2, 0], corners[2, 1], corners[2, 2])
-    # Half of all triangles face away and most others of a fine mesh lie between pixels: these go first.
+    # Half of all triangles face away, and most others of a fine mesh fall between pixels: cull these first.
     normal = cross(minus(b, a), minus(c, a))
     if dot(normal, a) >= 0.0 or max(a[2], b[2], c[2]) < NEAR_M:
         return
@@ -249,7 +249,7 @@ def _draw_triangle(corners: Array, surface: int, brush: Brush) -> None:
 
 @njit(cache=True, error_model="numpy")
 def _narrowed(area: Rectangle, a: Point, b: Point, c: Point, lens: Lens) -> Rectangle:
-    """The pixels of an area within the bounds of a triangle in front of the camera."""
+    """Return the pixels of an area within the bounds of a triangle in front of the camera."""
     ax, ay, bx, by, cx, cy = a[0] / a[2], a[1] / a[2], b[0] / b[2], b[1] / b[2], c[0] / c[2], c[1] / c[2]
     own = pixels(lens, (min(ax, bx, cx), min(ay, by, cy), max(ax, bx, cx), max(ay, by, cy)))
     return max(area[0], own[0]), max(area[1], own[1]), min(area[2], own[2]), min(area[3], own[3])
@@ -257,9 +257,9 @@ def _narrowed(area: Rectangle, a: Point, b: Point, c: Point, lens: Lens) -> Rect
 
 @njit(cache=True, error_model="numpy")
 def _draw_flat(normal: Point, point: Point, edges: np.int64, surface: int, brush: Brush) -> None:
-    """Draw the polygon of the first `edges` edges in the plane through a point, from the normal's side.
+    """Draw the polygon of the first `edges` edges in the plane through a point, from the side of the normal.
 
-    Literals as their number would have this compiled once for each.
+    Pass `edges` as a variable: each literal would be compiled separately.
     """
     distance = dot(normal, point)
     if distance >= 0.0:

@@ -1,9 +1,9 @@
 """Reflections in shiny flat surfaces.
 
-What a mirror shows is what a camera behind it would see, its pose reflected by the mirror's plane: so the ray
-caster draws that as well, in the window in which mirrored people and warm or bright things may be. All else
-only hides them there: what is mirrored besides is taken as the surroundings. As no floor is that smooth, it
-is drawn at every third pixel.
+A mirror shows the view of a virtual camera, whose pose is reflected by the mirror's plane. The ray caster
+draws that view, too, in the window that may contain mirrored people and warm or bright objects. All other
+objects only occlude them; elsewhere the mirror reflects the surroundings. Since real floors are not that
+smooth, reflections are drawn at every third pixel.
 """
 
 import math
@@ -45,12 +45,12 @@ _CYLINDER = int(ShapeKind.CYLINDER)
 _BOX = int(ShapeKind.BOX)
 _FLAT = (_BOX, int(ShapeKind.PLANE))
 _NO_AXIS: Point = (0.0, 0.0, 0.0)
-_FEWEST = 30  # pixels of a surface in which anything would be seen
-EVERY = 3  # pixels of the image for one of a reflection, in row and column
-_MOST = 6  # planes that mirror at a time, those of most pixels
-_SAME_M, _SAME_COS = 2e-3, 0.99999  # between surfaces in one plane
-_SUNK_M = 0.03  # how far feet may sink into a mirror
-_HAIR_M = 0.004  # objects and feet may sink this far into a surface without being hidden by it
+_FEWEST = 30  # least pixels of a surface with visible reflections
+EVERY = 3  # image pixels per pixel of a reflection, in rows and columns
+_MOST = 6  # largest number of mirror planes, those with the most pixels
+_SAME_M, _SAME_COS = 2e-3, 0.99999  # tolerances of surfaces in one plane
+_SUNK_M = 0.03  # depth by which feet may sink into a mirror
+_HAIR_M = 0.004  # depth by which objects and feet may sink into a surface without being occluded by it
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,11 +59,11 @@ class Reflection:
 
     Attributes:
         left, top: [px] the window's first column and row in the image.
-        view: (h, w) what is seen beyond the mirror at every third pixel of the window in row and column; part
-            is -1 where only the surroundings are.
+        view: (h, w) mirrored view at every third pixel of the window in rows and columns; part is -1 for the
+            surroundings.
         world_from_camera: (4, 4) pose of the mirrored camera.
-        cosine: (h, w) between the plane's normal and the ray to the pixel.
-        is_surface: (M,) surfaces that lie in the plane.
+        cosine: (h, w) cosine between the plane's normal and the ray to the pixel.
+        is_surface: (M,) whether a surface is in the plane.
     """
 
     left: int
@@ -80,10 +80,10 @@ def find_reflections(
     """Find the reflections in a camera's view.
 
     Args:
-        seen: by a pinhole camera.
-        camera: the same.
-        is_shiny: (P,) parts that mirror.
-        is_mirrored: (P,) parts that are seen in mirrors.
+        seen: view of a pinhole camera.
+        camera: that camera.
+        is_shiny: (P,) reflecting parts.
+        is_mirrored: (P,) parts that appear in reflections.
     """
     view, scene, eye = seen.view, seen.scene, seen.world_from_camera
     if view.surface is None or not is_shiny.any():
@@ -114,11 +114,11 @@ def _find_mirrors(
     eye: Array,
     lens: Lens,
 ) -> tuple[Array, NDArray[np.int64], Mask]:
-    """The planes that most pixels lie in, most first.
+    """Return the mirror planes, by descending number of pixels.
 
     Returns:
-        (K, 4) normals, and how far each plane lies from the origin along its own, world frame; (K, 4) [px]
-        windows of their pixels: left, top, right, bottom; (K, M) the surfaces in them.
+        (K, 4) normals and distances from the origin along them, world frame; (K, 4) [px] windows of their
+        pixels: left, top, right, bottom; (K, M) the surfaces in them.
     """
     count, window, example = _count(part, surface, is_shiny, len(table.surface_part))
     large = np.flatnonzero(count >= _FEWEST)
@@ -150,7 +150,7 @@ def _find_mirrors(
 
 @njit(cache=True)
 def _same_plane(planes: Array, normal: Image, offset: float) -> int:
-    """Number of the plane (K, 4) that has this normal (3,) and offset [m], K for none."""
+    """Return the number of the plane (K, 4) with a normal (3,) and an offset [m], K for none."""
     for k in range(len(planes)):
         cosine = 0.0
         for i in range(3):
@@ -171,17 +171,17 @@ def _look_into(
     window: NDArray[np.int64],
     lens: Lens,
 ) -> tuple[int, int, Array, Pixels, Image, Image, Pixels, Image]:
-    """What a mirrored camera sees: all of a `Reflection` but its surfaces; parts (0, w) if that is nothing.
+    """Return all of a `Reflection` except its surfaces; parts are (0, w) if nothing is mirrored.
 
     Args:
         table: the world's shapes.
         eye: (4, 4) pose of the camera.
         world_from_part: (P, 4, 4).
-        hidden: (P,) parts that are not there.
-        is_mirrored: (P,) parts that are seen in mirrors.
-        mirror: (4,) its plane, as `_find_mirrors` gives it.
-        window: (4,) [px] of its pixels.
-        lens: the camera.
+        hidden: (P,) absent parts.
+        is_mirrored: (P,) parts that appear in reflections.
+        mirror: (4,) plane of the mirror, as in `_find_mirrors`.
+        window: (4,) [px] window of its pixels.
+        lens: lens of the camera.
     """
     away = mirror[3] - (mirror[0] * eye[0, 3] + mirror[1] * eye[1, 3] + mirror[2] * eye[2, 3])
     world_from_camera, up = eye.copy(), np.empty(3)
@@ -196,7 +196,7 @@ def _look_into(
     canvas = make_canvas(lens, len(table.surface_part))
     camera_from_part = _seen_from(world_from_camera, world_from_part)
     box = _draw_beyond(table, camera_from_part, hidden, is_mirrored, plane, lens, canvas)
-    # A pixel more all round, for what is mirrored ends between pixels.
+    # A margin of one pixel, since reflections end between pixels.
     column, row = max(box[0] - 1, 0), max(box[1] - 1, 0)
     width, height = min(box[2] + 2, lens.width) - column, min(box[3] + 2, lens.height) - row
     if box[0] > box[2] or box[1] > box[3]:
@@ -223,7 +223,7 @@ def _look_into(
 
 @njit(cache=True)
 def _seen_from(world_from_camera: Array, world_from_part: Array) -> Array:
-    """(P, 3, 4) camera from part, by rigid poses (4, 4) and (P, 4, 4)."""
+    """Return (P, 3, 4) camera from part, for rigid poses (4, 4) and (P, 4, 4)."""
     inverse, found = np.empty((3, 4)), np.empty((len(world_from_part), 3, 4))
     for i in range(3):
         inverse[i, 3] = 0.0
@@ -237,7 +237,7 @@ def _seen_from(world_from_camera: Array, world_from_part: Array) -> Array:
 
 @njit(cache=True)
 def _every(lens: Lens, left: int, top: int, right: int, bottom: int) -> Lens:
-    """A lens for some of the pixels of a window."""
+    """Return a lens for every n-th pixel of a window."""
     u, v = (lens.centre_u - left) / EVERY, (lens.centre_v - top) / EVERY
     return Lens(lens.focal / EVERY, u, v, (right - left) // EVERY + 2, (bottom - top) // EVERY + 2)
 
@@ -254,8 +254,8 @@ def _draw_beyond(
 ) -> Rectangle:
     """Draw the view in a mirror with its occluders, and return the pixels that it can cover.
 
-    Of what is drawn, the middle lies on the side of the mirror to which it faces. Arguments as in `draw`, but
-    for `is_mirrored` (P,), what is wanted, and the mirror's plane as in `_keep`.
+    Only shapes whose centre is in front of the mirror are drawn. Arguments are as in `draw`, except
+    `is_mirrored` (P,), the parts that appear in reflections, and the mirror's plane as in `_keep`.
     """
     left, top, right, bottom = lens.width, lens.height, -1, -1
     pose, borders, farthest = canvas.pose, borders_of(lens), 0.0
@@ -299,7 +299,7 @@ def _draw_beyond(
                 draw_shape(table, shape, Brush(np.uint64(0), lens, area, canvas))
         if right < 0:
             break
-        # What hides something must be nearer than that, and within its bounds.
+        # An occluder must be nearer, and within the bounds.
         bounds = (left, top, right, bottom)
         borders = borders_of(
             Lens(lens.focal, lens.centre_u - left, lens.centre_v - top, right - left + 1, bottom - top + 1)
@@ -309,7 +309,7 @@ def _draw_beyond(
 
 @njit(cache=True, error_model="numpy")
 def _draw_round(kind: int, size: Array, surface: int, lens: Lens, area: Rectangle, canvas: Canvas) -> None:
-    """Draw a sphere or a capsule by trying the ray of each pixel, which is quick where these are few."""
+    """Draw a sphere or a capsule by casting the ray of each pixel, which is fast for few pixels."""
     pose = canvas.pose
     centre, axis = (pose[0, 3], pose[1, 3], pose[2, 3]), (pose[0, 2], pose[1, 2], pose[2, 2])
     radius, half = (size[1], 0.5 * size[0]) if kind == _CAPSULE else (size[0], 0.0)
@@ -335,7 +335,7 @@ def _draw_round(kind: int, size: Array, surface: int, lens: Lens, area: Rectangl
 
 @njit(cache=True, error_model="numpy")
 def _around_balls(size: Array, pose: Array) -> Bounds:
-    """Bounds that a capsule, or a sphere, does not leave, quickly: those of a box round each end."""
+    """Return fast, conservative bounds of a capsule or a sphere: those of a box around each end."""
     is_capsule = size[1] > 0.0
     radius, half = (size[1], 0.5 * size[0]) if is_capsule else (size[0], 0.0)
     bounds = EMPTY
@@ -359,14 +359,14 @@ def _around_balls(size: Array, pose: Array) -> Bounds:
 
 @njit(cache=True)
 def _depth_of(size: Array, pose: Array) -> float:
-    """How far [m] a box reaches from its middle towards the camera."""
+    """Return the extent [m] of a box from its centre towards the camera."""
     depth: float = 0.5 * (abs(pose[2, 0]) * size[0] + abs(pose[2, 1]) * size[1] + abs(pose[2, 2]) * size[2])
     return depth
 
 
 @njit(cache=True)
 def _take_in(kind: int, size: Array, pose: Array, least: Array, most: Array) -> None:
-    """Widen the bounds (3,), (3,) [m] of what is drawn, in the camera's frame, by one shape."""
+    """Extend the bounds (3,), (3,) [m] of the drawn shapes, in the camera's frame, by one shape."""
     for i in range(3):
         if kind == _BOX:
             wide = 0.5 * (abs(pose[i, 0]) * size[0] + abs(pose[i, 1]) * size[1] + abs(pose[i, 2]) * size[2])
@@ -379,9 +379,9 @@ def _take_in(kind: int, size: Array, pose: Array, least: Array, most: Array) -> 
 
 @njit(cache=True)
 def _is_beside(size: Array, pose: Array, least: Array, most: Array) -> bool:
-    """Whether the camera and bounds (3,), (3,) [m] of its frame lie before the same face of a box.
+    """Return whether camera and bounds (3,), (3,) [m] in its frame are in front of the same face of a box.
 
-    The box hides nothing within them then, but for what is sunk into it by a hair.
+    The box then occludes nothing within the bounds, except parts that are sunk into it slightly.
     """
     for j in range(3):
         middle = pose[0, j] * pose[0, 3] + pose[1, j] * pose[1, 3] + pose[2, j] * pose[2, 3]
@@ -401,9 +401,9 @@ def _is_beside(size: Array, pose: Array, least: Array, most: Array) -> bool:
 def _count(
     part: Pixels, surface: Pixels, is_shiny: Mask, surfaces: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Count the pixels of each shiny surface; its window (left, top, right, bottom), and one pixel of it.
+    """Return pixel count, window (left, top, right, bottom) and one pixel of each shiny surface.
 
-    Every other row and column is looked at, and stands for the next.
+    Only every other row and column is evaluated.
     """
     height, width = part.shape
     count, example = np.zeros(surfaces, np.int64), np.zeros(surfaces, np.int64)
@@ -411,7 +411,7 @@ def _count(
     for v in range(0, height, 2):
         end = 0
         while end < width:
-            # Pixels of one surface that are next to each other are counted together.
+            # Adjacent pixels of one surface are counted together.
             first, p, s = end, part[v, end], surface[v, end]
             while end < width and part[v, end] == p and surface[v, end] == s:
                 end += 2
@@ -436,15 +436,15 @@ def _keep(
     lens: Lens,
     cosine: NDArray[np.float32],
 ) -> bool:
-    """Keep the wanted parts of the view beyond a mirror, and return whether there are any.
+    """Keep only wanted parts of the view behind a mirror, and return whether there are any.
 
     Args:
-        canvas: what is drawn; loses what is not wanted, or lies before the mirror.
+        canvas: the drawn view; pixels of unwanted parts, or in front of the mirror, are cleared.
         surface_part: (M,) part of each surface.
-        wanted: (P,) parts.
+        wanted: (P,) whether to keep a part.
         plane: x, y, z of the mirror's normal, and its distance along that, in the camera's frame.
-        lens: where the pixels look.
-        cosine: (h, w) gets the cosine between normal and ray.
+        lens: ray directions of the pixels.
+        cosine: (h, w) output, cosine between normal and ray.
     """
     is_any = False
     for v in range(lens.height):

@@ -1,6 +1,6 @@
-"""The ray caster for panoramas: each column is a pinhole camera of its own, one pixel wide (numba kernels).
+"""Ray caster for panoramas: each column is a separate pinhole camera, one pixel wide (numba kernels).
 
-A column is drawn as a row, by a camera that lies on its side: rows are what the ray caster is quick at.
+A column is drawn as a row, by a camera rotated by 90 degrees, since the ray caster is fast along rows.
 """
 
 import math
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 _PLANE, _MESH = int(ShapeKind.PLANE), int(ShapeKind.MESH)
 _SPHERE, _CAPSULE, _BOX = int(ShapeKind.SPHERE), int(ShapeKind.CAPSULE), int(ShapeKind.BOX)
 
-# Widens every span of columns, so that rounding loses none.
+# Margin of every span of columns, so that rounding does not lose any.
 _SLACK = 1e-9
 
 
@@ -32,7 +32,7 @@ class Ring(NamedTuple):
     """The cameras of a panorama's W columns.
 
     Attributes:
-        lens: the same for all: its row runs down the column.
+        lens: common lens; its row runs down the column.
         column_from_ring: (W, 3, 4) poses: x down the column, y to the left, z along the camera's axis.
     """
 
@@ -47,8 +47,8 @@ class Pieces(NamedTuple):
         shape: (N,) number of the shape.
         face: (N,) number of the face, -1 for the whole shape.
         pose: (N, 3, 4) ring from shape.
-        first: (W + 1,) where the pieces of each column start in `among`, and where the last one's end.
-        among: pieces of one column after the other, in the order of the shapes.
+        first: (W + 1,) offsets of the columns' pieces in `among`.
+        among: numbers of the pieces, by column, in the order of the shapes.
     """
 
     shape: NDArray[np.int64]
@@ -93,12 +93,12 @@ def make_drawing(camera: Panorama) -> Drawing:
 
 
 class Outline(NamedTuple):
-    """Pixels of parts in a panorama that continues beyond its top and bottom, as bits of the parts.
+    """Silhouettes of parts in a panorama that is extended beyond its top and bottom, as bits of the parts.
 
     Attributes:
-        pixels: (N,) those that fill a pixel, for each that any does.
-        rows: (R,) those that fill any of a row.
-        columns: (W,) those that fill any of a column.
+        pixels: (N,) bits of all nonempty pixels.
+        rows: (R,) bits by row.
+        columns: (W,) bits by column.
         first_row: number of the first row, negative above the image.
     """
 
@@ -109,15 +109,14 @@ class Outline(NamedTuple):
 
 
 def outline(table: ShapeTable, ring_from_part: Array, bits: NDArray[np.uint64], camera: Panorama) -> Outline:
-    """Return the pixels of some parts, ignoring occlusion and the image's top and bottom.
+    """Return the silhouettes of parts, ignoring occlusion and the image's top and bottom.
 
-    The image is continued by its own height upwards, and downwards as well or to where it would look straight
-    down, if that is nearer.
+    The image is extended by its height upwards and downwards, but not beyond the vertical downwards.
 
     Args:
         table: the shapes.
         ring_from_part: (P, 4, 4).
-        bits: (P,) of each part, 0 for those that do not count.
+        bits: (P,) bits of each part, 0 for ignored parts.
         camera: the panorama.
     """
     lens, poses = ring_of(camera)
@@ -169,20 +168,20 @@ def draw_ring(
     depth: NDArray[np.float32],
     normal: NDArray[np.float32],
 ) -> None:
-    """Draw all shapes but those of parts to skip, and turn each column into what `shade` returns.
+    """Draw all shapes except those of skipped parts, and convert each column with `shade`.
 
     Args:
         table: the shapes.
         ring_from_part: (P, 4, 4).
         skip: (P,) parts that are not drawn.
-        bits: (P,) what a part's silhouette adds to the cover.
+        bits: (P,) bits that a part's silhouette sets in the cover.
         ring: the columns' cameras.
-        shading: (M, 7) space, as in `Canvas`.
-        drawing: what to draw on.
+        shading: (M, 7) buffer, as in `Canvas`.
+        drawing: buffers to draw on.
         rotation: (3, 3) world from the panorama's optical frame.
-        part: (H, W) gets the part numbers, -1 where nothing is.
-        depth: (H, W) gets the depths [m] along the axis of the column's camera, inf where nothing is.
-        normal: (H, W, 3) gets the unit normals, world frame, 0 where nothing is.
+        part: (H, W) output, part numbers, -1 for none.
+        depth: (H, W) output, depths [m] along the axis of the column's camera, inf for none.
+        normal: (H, W, 3) output, unit normals, world frame, 0 for none.
     """
     pieces, column = _before(table, ring_from_part, skip, ring), np.empty((1, len(normal), 3), np.float32)
     for u in range(len(drawing.nearness)):
@@ -203,7 +202,7 @@ def draw_ring(
 
 @njit(cache=True, error_model="numpy")
 def _canvas(drawing: Drawing, u: int, shading: Array) -> Canvas:
-    """The canvas of one column."""
+    """Return the canvas of one column."""
     row = slice(u, u + 1)
     return Canvas(
         drawing.nearness[row],
@@ -219,7 +218,7 @@ def _canvas(drawing: Drawing, u: int, shading: Array) -> Canvas:
 def _draw_column(
     table: ShapeTable, bits: NDArray[np.uint64], ring: Ring, u: int, pieces: Pieces, canvas: Canvas
 ) -> None:
-    """Draw the pieces that may be seen in one column."""
+    """Draw the potentially visible pieces of one column."""
     for i in pieces.among[pieces.first[u] : pieces.first[u + 1]]:
         shape, face = pieces.shape[i], pieces.face[i]
         bit = bits[table.part[shape]]
@@ -237,7 +236,7 @@ def _draw_column(
 
 @njit(cache=True, error_model="numpy")
 def _before(table: ShapeTable, ring_from_part: Array, skip: NDArray[np.bool_], ring: Ring) -> Pieces:
-    """Find what may be seen of the shapes not to skip."""
+    """Find the potentially visible pieces of the shapes that are not skipped."""
     most, width = 6 * len(table.kind), len(ring.column_from_ring)
     number, faces = np.empty(most, np.int64), np.empty(most, np.int64)
     poses, spans = np.empty((most, 3, 4)), np.empty((most, 2), np.int64)
@@ -267,7 +266,7 @@ def _before(table: ShapeTable, ring_from_part: Array, skip: NDArray[np.bool_], r
 
 @njit(cache=True)
 def _by_column(spans: NDArray[np.int64], width: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Sort the spans (N, 2) by the columns that they take in; see `Pieces`."""
+    """Sort the spans (N, 2) by the columns that they include; see `Pieces`."""
     first = np.zeros(width + 1, np.int64)
     for i in range(len(spans)):
         for k in range(spans[i, 1]):
@@ -284,7 +283,7 @@ def _by_column(spans: NDArray[np.int64], width: int) -> tuple[NDArray[np.int64],
 
 @njit(cache=True, error_model="numpy")
 def _may_face(pose: Array, size: Array, face: int, radius: float) -> bool:
-    """Whether a box's face may be turned to one of the cameras, which are so far from the middle."""
+    """Return whether a box's face may be visible from a camera at a distance from the centre."""
     axis, sign = face % 3, 1.0 if face < 3 else -1.0
     distance = size[axis] / 2.0
     for i in range(3):
@@ -294,14 +293,14 @@ def _may_face(pose: Array, size: Array, face: int, radius: float) -> bool:
 
 @njit(cache=True, error_model="numpy")
 def _is_out_of_sight(pose: Array, low: Array, high: Array, ring: Ring, radius: float) -> bool:
-    """Whether the box between two corners is above all views or below them, as ceiling and robot are.
+    """Return whether the box between two corners is above or below all views, like ceiling and robot.
 
     Args:
         pose: ring from shape.
         low: one corner, in the shape's frame.
-        high: the other one.
+        high: the opposite corner.
         ring: the cameras.
-        radius: [m] of the ring.
+        radius: [m] radius of the ring.
     """
     lens, axis = ring.lens, math.atan2(ring.column_from_ring[0, 2, 1], ring.column_from_ring[0, 0, 1])
     highest = axis + math.atan((-0.5 - lens.centre_u) / lens.focal)
@@ -318,7 +317,7 @@ def _is_out_of_sight(pose: Array, low: Array, high: Array, ring: Ring, radius: f
 
 @njit(cache=True, error_model="numpy")
 def _flattened(corner: Array, axis: int, other: Array) -> Array:
-    """A corner of a box that is moved to the opposite one's plane along an axis, if it is one."""
+    """Return a corner of a box, moved to the opposite corner's plane along an axis if that is valid."""
     moved = corner.copy()
     if 0 <= axis < 3:
         moved[axis] = other[axis]
@@ -327,7 +326,7 @@ def _flattened(corner: Array, axis: int, other: Array) -> Array:
 
 @njit(cache=True, error_model="numpy")
 def _span(table: ShapeTable, shape: int, face: int, pose: Array, width: int) -> tuple[int, int]:
-    """First column, and number of columns, in which a shape, or a face of a box, may be seen."""
+    """Return first column and number of columns in which a shape, or a face of a box, may be visible."""
     kind, size = table.kind[shape], table.size[shape]
     if kind == _SPHERE:
         return _round_span(pose, 0.0, size[0], width)
@@ -339,7 +338,7 @@ def _span(table: ShapeTable, shape: int, face: int, pose: Array, width: int) -> 
 
 @njit(cache=True, error_model="numpy")
 def _box_span(pose: Array, low: Array, high: Array, width: int) -> tuple[int, int]:
-    """The columns in which the box between two corners may be seen."""
+    """Return the columns in which the box between two corners may be visible."""
     x, _, z = map_point(pose, (low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0, (low[2] + high[2]) / 2.0)
     middle, least, most = math.atan2(x, z), 0.0, 0.0
     for corner in range(8):
@@ -352,7 +351,7 @@ def _box_span(pose: Array, low: Array, high: Array, width: int) -> tuple[int, in
 
 @njit(cache=True, error_model="numpy")
 def _round_span(pose: Array, half: float, radius: float, width: int) -> tuple[int, int]:
-    """The columns in which a capsule of half a length, or a ball, is seen: from one end to the other."""
+    """Return the columns in which a capsule, by half its length, or a ball is visible."""
     x, _, z = map_point(pose, 0.0, 0.0, -half)
     middle, reach = math.atan2(x, z), math.asin(min(radius / math.hypot(x, z), 1.0))
     x, _, z = map_point(pose, 0.0, 0.0, half)
@@ -363,9 +362,9 @@ def _round_span(pose: Array, half: float, radius: float, width: int) -> tuple[in
 
 @njit(cache=True, error_model="numpy")
 def _columns(least: float, most: float, width: int) -> tuple[int, int]:
-    """First column, and number of columns, whose middles look between two angles to the right [rad].
+    """Return first column and number of columns whose centres are between two angles to the right [rad].
 
-    Who spans half the horizon stands round the middle, and is seen all round.
+    A span of more than half the horizon encloses the centre, and counts as all columns.
     """
     if not most - least < math.pi:
         return 0, width
@@ -376,7 +375,7 @@ def _columns(least: float, most: float, width: int) -> tuple[int, int]:
 
 @njit(cache=True, error_model="numpy")
 def _corners(table: ShapeTable, shape: int) -> tuple[Array, Array]:
-    """Least and greatest corner of a shape's box, in its own frame."""
+    """Return least and greatest corner of a shape's box, in the shape's frame."""
     kind, size = table.kind[shape], table.size[shape]
     if kind == _MESH:
         return table.extent[shape, 0], table.extent[shape, 1]
@@ -386,6 +385,6 @@ def _corners(table: ShapeTable, shape: int) -> tuple[Array, Array]:
     elif kind == _SPHERE:
         half = np.full(3, size[0])
     elif kind != _BOX:
-        # A capsule is as much longer than a cylinder as its ends are round.
+        # A capsule is longer than a cylinder by its round ends.
         half = np.array([size[1], size[1], size[0] / 2.0 + size[1]])
     return -half, half

@@ -1,8 +1,8 @@
-"""The rectangle that a shape's image fills, from its outline and not from its pixels (numba kernels).
+"""Bounding rectangle of a shape's image, computed analytically and not from pixels (numba kernels).
 
-Bounds are (x0, y0, x1, y1), the least and greatest x / z and y / z over the points of the shape that lie
-beyond the near plane, in the optical frame; `EMPTY` if there is none. Poses are (3, 4) or (4, 4) arrays,
-camera from shape.
+Bounds are (x0, y0, x1, y1), the least and greatest x / z and y / z over the points of the shape beyond the
+near plane, in the optical frame; `EMPTY` if there are none. Poses are (3, 4) or (4, 4) arrays, camera from
+shape.
 """
 
 import math
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from peopleboy.sim.geometry.vectors import Point, map_point
 from peopleboy.sim.shapes.shapes import ShapeKind
 
-# The planes between which renderers draw [m].
+# Near and far plane of the renderers [m].
 NEAR_M = 0.05
 FAR_M = 100.0
 
@@ -29,28 +29,28 @@ _CAPSULE = int(ShapeKind.CAPSULE)
 _CYLINDER = int(ShapeKind.CYLINDER)
 _BOX = int(ShapeKind.BOX)
 _PLANE = int(ShapeKind.PLANE)
-# Spheres that stand for a capsule which reaches through the near plane.
+# Number of spheres that approximate a capsule across the near plane.
 _BEADS = 16
 
 
 @njit(cache=True)
 def unite(a: Bounds, b: Bounds) -> Bounds:
-    """The smallest bounds around both."""
+    """Return the smallest bounds around both."""
     return min(a[0], b[0]), min(a[1], b[1]), max(a[2], b[2]), max(a[3], b[3])
 
 
 @njit(cache=True)
 def shape_bounds(kind: int, size: Array, pose: Array, triangles: Array) -> Bounds:
-    """Bounds of one shape.
+    """Return the bounds of one shape.
 
-    Exact, but for a cylinder that reaches through the near plane (its box is taken) and a capsule that does
-    (it shrinks to a row of spheres, by less than a hundredth of its length).
+    They are exact except across the near plane, where a cylinder is replaced by its box, and a capsule by a
+    row of spheres, which are smaller by less than a hundredth of its length.
 
     Args:
         kind: ShapeKind.
         size: (3,) as in `Shape`.
         pose: camera from shape.
-        triangles: (T, 3, 3) of a mesh, in the frame of its pose.
+        triangles: (T, 3, 3) triangles of a mesh, in the frame of its pose.
     """
     if kind == _SPHERE:
         return _sphere(map_point(pose, 0.0, 0.0, 0.0), size[0])
@@ -76,7 +76,7 @@ def shape_bounds(kind: int, size: Array, pose: Array, triangles: Array) -> Bound
 
 @njit(cache=True)
 def box_bounds(pose: Array, x0: float, y0: float, z0: float, x1: float, y1: float, z1: float) -> Bounds:
-    """Bounds of the box between two corners of its own frame."""
+    """Return the bounds of a box between two corners in its frame."""
     corners = (
         map_point(pose, x0, y0, z0),
         map_point(pose, x1, y0, z0),
@@ -104,7 +104,7 @@ def box_bounds(pose: Array, x0: float, y0: float, z0: float, x1: float, y1: floa
 
 @njit(cache=True)
 def _segment(a: Point, b: Point) -> Bounds:
-    """Bounds of a straight line between two points."""
+    """Return the bounds of a line segment."""
     if a[2] < NEAR_M and b[2] < NEAR_M:
         return EMPTY
     if a[2] < NEAR_M:
@@ -127,10 +127,10 @@ def _sphere(centre: Point, radius: float) -> Bounds:
 
 @njit(cache=True)
 def _circle(x: float, z: float, radius: float) -> tuple[float, float]:
-    """Least and greatest x / z over the part of a disc that lies beyond the near plane.
+    """Return least and greatest x / z over the part of a disc beyond the near plane.
 
-    They are reached where the two lines through the origin touch the disc, at (low_x, low_z) and (high_x,
-    high_z), or else on the near plane, which cuts the disc in a line of 2 `half`.
+    They are at the points where tangents through the origin touch the disc, (low_x, low_z) and (high_x,
+    high_z), or else on the near plane, which cuts the disc in a line of length 2 `half`.
     """
     half = math.sqrt(max(radius**2 - (z - NEAR_M) ** 2, 0.0))
     low, high = (x - half) / NEAR_M, (x + half) / NEAR_M
@@ -148,7 +148,7 @@ def _circle(x: float, z: float, radius: float) -> tuple[float, float]:
 
 @njit(cache=True)
 def _capsule(a: Point, b: Point, radius: float) -> Bounds:
-    """A capsule is the convex hull of its end spheres, so its image is that of theirs."""
+    """Return the bounds of a capsule: those of its end spheres, of which it is the convex hull."""
     if min(a[2], b[2]) - radius >= NEAR_M:
         return unite(_sphere(a, radius), _sphere(b, radius))
     bounds = EMPTY
@@ -161,7 +161,7 @@ def _capsule(a: Point, b: Point, radius: float) -> Bounds:
 
 @njit(cache=True)
 def _cylinder(pose: Array, half_length: float, radius: float) -> Bounds:
-    """A cylinder is the convex hull of its end discs."""
+    """Return the bounds of a cylinder: those of its end discs, of which it is the convex hull."""
     axis = (pose[0, 2], pose[1, 2], pose[2, 2])
     top, bottom = map_point(pose, 0.0, 0.0, half_length), map_point(pose, 0.0, 0.0, -half_length)
     lowest = min(top[2], bottom[2]) - radius * math.sqrt(max(1.0 - axis[2] ** 2, 0.0))
@@ -177,7 +177,7 @@ def _cylinder(pose: Array, half_length: float, radius: float) -> Bounds:
 
 @njit(cache=True)
 def _disc(x: float, z: float, axis_x: float, axis_z: float, radius: float) -> tuple[float, float]:
-    """Least and greatest x / z over a disc in space that lies beyond the near plane.
+    """Return least and greatest x / z over a disc in space beyond the near plane.
 
     The plane x = m z touches the disc if (x - m z)^2 = r^2 (1 + m^2 - (axis_x - m axis_z)^2).
     """

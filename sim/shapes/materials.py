@@ -1,4 +1,4 @@
-"""Materials of surfaces for thermal and colour cameras, and colours by name."""
+"""Materials of surfaces for thermal and colour cameras, and named colours."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -11,23 +11,23 @@ from pydantic import Discriminator, Field, Tag
 
 from peopleboy.settings import Share, word_or_list
 
-# Details of a surface in addition to its material: folds, a face, straps, on a grid wrapped round its part.
+# Details of a surface in addition to its material, such as folds or a face, on a grid around its part.
 
 Grid = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Finish:
-    """Differences from a part's material by the direction from its z axis, and by height along it.
+    """Differences from a part's material by direction from its z axis, and by height along it.
 
-    Column c of C looks c / C of a turn from +x towards +y; the first column comes again after the last.
+    Column c of C has the direction c / C of a turn from +x towards +y; columns wrap around.
 
     Attributes:
         lowest_m: [m] z of the first row.
-        texel_m: [m] from row to row; rows go up.
+        texel_m: [m] distance of rows; rows go up.
         kelvin: (R, C) [K] added to the temperature.
-        light: (R, C) factor on what the surface reflects.
-        cover: (R, C) share 0..1 that has the finish's colour instead of the material's.
+        light: (R, C) factor on the reflected light.
+        cover: (R, C) share 0..1 of the finish's colour instead of the material's.
         rgb: (3,) linear reflectance of that colour.
     """
 
@@ -39,7 +39,7 @@ class Finish:
     rgb: Grid = field(default_factory=lambda: np.zeros(3))
 
     def texels(self) -> NDArray[np.int16]:
-        """(R C, 3) kelvin, light and cover in steps of 1 / 256, so that every machine has the same."""
+        """Return (R C, 3) kelvin, light and cover, rounded to 1 / 256, so that all machines have the same."""
         layers = np.stack([self.kelvin, self.light, self.cover], axis=-1).reshape(-1, 3)
         return np.clip(np.rint(layers / TEXEL_STEP), -32768, 32767).astype(np.int16)
 

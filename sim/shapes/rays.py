@@ -1,8 +1,8 @@
-"""One ray against one shape, in the shape's own frame (numba kernels).
+"""Intersection of one ray with one shape, in the shape's frame (numba kernels).
 
-A hit is a number t, where the ray o + t d enters the shape, and the shape's surface that it meets, counted as
-in `ShapeTable`; t is infinite for a miss. As in `raycast`, shapes are seen from outside only. Meshes are none
-of these kernels' business: they are always missed.
+A hit is the number t at which the ray o + t d enters the shape, and the surface of the shape, numbered as in
+`ShapeTable`; t is infinite for a miss. As in `raycast`, shapes are visible from outside only. Meshes are not
+supported: they are always missed.
 """
 
 import math
@@ -25,13 +25,13 @@ _PLANE = int(ShapeKind.PLANE)
 
 @njit(cache=True, error_model="numpy")
 def hit_shape(kind: int, size: Point, o: Point, d: Point) -> Hit:
-    """Where a ray meets a shape.
+    """Return the hit of a ray on a shape.
 
     Args:
         kind: ShapeKind.
         size: as in `Shape`.
-        o: where the ray begins, in the shape's frame.
-        d: where it goes to; it need not be a unit vector.
+        o: origin of the ray, in the shape's frame.
+        d: direction of the ray; not necessarily a unit vector.
     """
     if kind == _BOX:
         return _hit_box(size, o, d)
@@ -48,7 +48,7 @@ def hit_shape(kind: int, size: Point, o: Point, d: Point) -> Hit:
 
 @njit(cache=True, error_model="numpy")
 def _first_root(a: float, b: float, c: float) -> float:
-    """Return the smaller root of a t^2 + 2 b t + c if that is where t > 0 first makes it negative."""
+    """Return the smaller root of a t^2 + 2 b t + c if the function first becomes negative there for t > 0."""
     square = b * b - a * c
     if c <= 0.0 or b >= 0.0 or square < 0.0:
         return math.inf
@@ -57,14 +57,14 @@ def _first_root(a: float, b: float, c: float) -> float:
 
 @njit(cache=True, error_model="numpy")
 def _hit_ball(height: float, radius: float, o: Point, d: Point) -> float:
-    """Where a ray meets the ball whose middle is at a height on the z axis."""
+    """Return the hit on a ball with its centre at a height on the z axis."""
     p = (o[0], o[1], o[2] - height)
     return _first_root(dot(d, d), dot(p, d), dot(p, p) - radius * radius)
 
 
 @njit(cache=True, error_model="numpy")
 def _hit_tube(half: float, radius: float, o: Point, d: Point) -> float:
-    """Where a ray meets the round side of a cylinder along z."""
+    """Return the hit on the round side of a cylinder along z."""
     t = _first_root(
         d[0] * d[0] + d[1] * d[1], o[0] * d[0] + o[1] * d[1], o[0] * o[0] + o[1] * o[1] - radius * radius
     )
@@ -73,7 +73,7 @@ def _hit_tube(half: float, radius: float, o: Point, d: Point) -> float:
 
 @njit(cache=True, error_model="numpy")
 def _hit_capsule(half: float, radius: float, o: Point, d: Point) -> Hit:
-    """By the endless tube: where that is met beyond an end, only the ball at that end can be met.
+    """Return the hit on a capsule: that on the infinite tube, or beyond an end that on the end's ball.
 
     Source: Quilez, Intersectors (iquilezles.org/articles/intersectors), capIntersect.
     """
@@ -108,7 +108,7 @@ def _hit_cylinder(half: float, radius: float, o: Point, d: Point) -> Hit:
 
 @njit(cache=True, error_model="numpy")
 def _hit_box(size: Point, o: Point, d: Point) -> Hit:
-    """By slabs: the ray enters the box where it enters the last of them, if it has left none before."""
+    """Return the hit on a box by the slab method: the ray enters the last slab before it leaves any."""
     enter, leave, surface = 0.0, math.inf, -1
     for i in range(3):
         half = 0.5 * size[i]

@@ -1,4 +1,4 @@
-"""All visible shapes of one world, and of many, as arrays for the kernels of the ray caster."""
+"""All visible shapes of one or of many worlds, as arrays for the kernels of the ray caster."""
 
 import math
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from peopleboy.sim.shapes.shapes import Shape, ShapeKind, Vector, load_triangles
 
 Numbers = NDArray[np.int64]
 
-# How many surfaces a shape has, each a piece of a plane or of a quadric: a mesh has one a triangle.
+# Number of surfaces of a shape, each a piece of a plane or of a quadric; a mesh has one per triangle.
 _SURFACES = {
     ShapeKind.SPHERE: 1,
     ShapeKind.CAPSULE: 3,
@@ -44,23 +44,23 @@ class VisualShape:
 
 
 def as_given(shape: Shape, part: int) -> VisualShape:
-    """Take a shape for one of a part of this number."""
+    """Return a shape for the part with a number."""
     pose = pose_matrices(shape.position, shape.orientation)
     return VisualShape(part, shape.kind, shape.size, pose, shape.mesh)
 
 
 class ShapeTable(NamedTuple):
-    """S shapes with M surfaces and T triangles in all; the arrays cannot be written to.
+    """S shapes with M surfaces and T triangles in total; the arrays are read-only.
 
     Attributes:
         kind: (S,) ShapeKind.
         size: (S, 3) as in `Shape`.
         part: (S,) number of the part that the shape belongs to.
-        part_from_shape: (S, 4, 4) pose in the part's frame; of a mesh the identity.
+        part_from_shape: (S, 4, 4) pose in the part's frame; for a mesh the identity.
         triangle_range: (S, 2) first and one after the last triangle of a mesh, 0 and 0 for other shapes.
         triangles: (T, 3, 3) [m] corners, in the part's frame.
         extent: (S, 2, 3) [m] least and greatest corner of a mesh, in the part's frame; 0 for other shapes.
-        reach: (S,) [m] how far a shape reaches from the origin of its frame at most, inf for a plane.
+        reach: (S,) [m] largest distance of a shape's points from the origin of its frame, inf for a plane.
         first_surface: (S,) number of the shape's first surface.
         surface_part: (M,) number of the part that a surface belongs to.
         surface_shape: (M,) number of the shape that a surface belongs to.
@@ -80,7 +80,7 @@ class ShapeTable(NamedTuple):
 
 
 def make_shape_table(shapes: Sequence[VisualShape]) -> ShapeTable:
-    """Put shapes into arrays, in their order.
+    """Convert shapes to arrays, in their order.
 
     Raises:
         BadInput: a mesh file cannot be read.
@@ -110,7 +110,7 @@ def make_shape_table(shapes: Sequence[VisualShape]) -> ShapeTable:
 
 
 def _triangles(shape: VisualShape) -> NDArray[np.float64]:
-    """(T, 3, 3) triangles of a mesh in its part's frame, none of any other shape."""
+    """Return the triangles (T, 3, 3) of a mesh in its part's frame; none for other shapes."""
     if shape.kind != ShapeKind.MESH or shape.mesh is None:
         return np.zeros((0, 3, 3))
     return transform(shape.part_from_shape, load_triangles(shape.mesh) * np.array(shape.size))
@@ -123,7 +123,7 @@ def _extent(triangles: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _reach(shape: VisualShape, extent: NDArray[np.float64]) -> float:
-    """How far [m] a shape reaches from its frame's origin at most; a mesh of some extent (2, 3)."""
+    """Return the largest distance [m] of a shape, or of a mesh's extent (2, 3), from the frame's origin."""
     length, radius, _ = shape.size
     if shape.kind == ShapeKind.SPHERE:
         return length
@@ -134,15 +134,15 @@ def _reach(shape: VisualShape, extent: NDArray[np.float64]) -> float:
     return math.inf if shape.kind == ShapeKind.PLANE else float(np.linalg.norm(np.abs(extent).max(axis=0)))
 
 
-# The shape tables of many worlds in arrays of all of them.
+# The shape tables of many worlds in common arrays.
 
 
 class JoinedTables(NamedTuple):
-    """B tables, one after the other; numbers within them are those of each by itself.
+    """B concatenated tables; the numbers within each table are unchanged.
 
     Attributes:
-        arrays: of all of them, which cannot be written to.
-        shape, surface, triangle: (B + 1,) where those of each begin, and where the last end.
+        arrays: concatenated arrays, read-only.
+        shape, surface, triangle: (B + 1,) offsets of each table's entries.
     """
 
     arrays: ShapeTable
@@ -152,7 +152,7 @@ class JoinedTables(NamedTuple):
 
 
 def join_tables(tables: Sequence[ShapeTable]) -> JoinedTables:
-    """Copy tables into arrays of all of them."""
+    """Concatenate tables."""
     return JoinedTables(
         arrays=ShapeTable(*map(_fixed, zip(*tables, strict=True))),
         shape=ends([len(table.kind) for table in tables]),
@@ -163,7 +163,7 @@ def join_tables(tables: Sequence[ShapeTable]) -> JoinedTables:
 
 @njit(cache=True, nogil=True)
 def table_of(joined: JoinedTables, number: int) -> ShapeTable:
-    """One of the tables, which lies in those arrays."""
+    """Return one of the tables, as views of those arrays."""
     arrays = joined.arrays
     s, s_end = joined.shape[number], joined.shape[number + 1]
     m, m_end = joined.surface[number], joined.surface[number + 1]
@@ -184,7 +184,7 @@ def table_of(joined: JoinedTables, number: int) -> ShapeTable:
 
 
 def ends(counts: Sequence[int]) -> Numbers:
-    """(B + 1,) where the items of each of B begin that are so many, and where the last end."""
+    """Return the offsets (B + 1,) for B counts."""
     return np.cumsum([0, *counts]).astype(np.int64)
 
 

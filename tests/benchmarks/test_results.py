@@ -99,7 +99,7 @@ def test_a_row_without_a_figure_for_each_column_is_refused(tmp_path: Path) -> No
     path = tmp_path / "results.yaml"
     table = {"command": "a", "recorded": "b", "seeds": "c", "columns": [{"name": "CP"}], "rows": []}
     path.write_text(json.dumps({"tables": {"t": table | {"rows": [{"name": "x", "figures": [1, 2]}]}}}))
-    with pytest.raises(BadInput, match="x: 2 figures for 1 columns"):
+    with pytest.raises(BadInput, match="x: 2 values for 1 columns"):
         read_tables(path)
 
 

@@ -166,7 +166,7 @@ REFUSED = {
         lambda folder: write(folder, people=[{"name": "anna", "path": [{"at_m": [2, 1]}]}]),
         "must be empty",
     ),
-    "nobody": (lambda folder: write(folder, people=[]), "nobody walks"),
+    "nobody": (lambda folder: write(folder, people=[]), "no person walks"),
     "no floor": (lambda folder: own_mirror(folder, **FLAT), "sees no floor"),
 }
 
