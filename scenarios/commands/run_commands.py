@@ -69,6 +69,7 @@ def run(
     from peopleboy.scenarios.recording.recording_file import check_installed
     from peopleboy.scenarios.recording.viewer import live_viewer
 
+    _check_physics(given)
     is_suite = scenario in suite_names()
     if is_suite and given.seed is not None:
         raise BadInput(f"--seed {given.seed}: suite {scenario} has seeds of its own; leave it out")
@@ -103,6 +104,14 @@ def run(
         if live:
             options = replace(options, viewer=stack.enter_context(live_viewer(click.echo)))
         _run_one(loaded, options, output)
+
+
+def _check_physics(given: "GivenOptions[RunOptions]") -> None:
+    """Refuse physics that are not installed, before a scenario is loaded that falls back to others."""
+    from peopleboy.sim.physics.physics_engine import check_physics
+
+    if given.physics is not None:
+        check_physics(given.physics)
 
 
 def _others(scenario: "Scenario | None", given: "GivenOptions[RunOptions]") -> str:
@@ -212,6 +221,7 @@ def sweep(
     from peopleboy.scenarios.scores.evaluate_runs import ScoreOptions
     from peopleboy.scenarios.scores.show_scores import print_runs
 
+    _check_physics(given)
     options = given.make(seed=0, out=given.out or Path("runs"))
     if (scenario is None) is not random_worlds:
         raise BadInput("sweep: give a scenario, or --random-worlds, but not both")
@@ -272,6 +282,7 @@ def compare(
         show_comparison,
     )
 
+    _check_physics(given)
     scenarios = scenarios or ("single_follow",)
     chosen = [parse_controller(text) for text in controllers.split(",")]
     names = [load_scenario(scenario).name for scenario in scenarios]

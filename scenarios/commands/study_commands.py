@@ -197,8 +197,8 @@ def _command(model: str, target: str, help_text: str, specification: type[Any]) 
 def export_onnx(networks: tuple[str, ...], out: Path, output: Output) -> None:
     """Export the trackers' networks to ONNX, with a model card.
 
-    NETWORK is rescoring, box-refinement, places or foreground; without a name, all of them. Needs
-    pip install 'peopleboy[onnx]'.
+    NETWORK is rescoring, box-refinement, places, foreground, distance-room_long or distance-room_narrow;
+    without a name, all of them. Needs pip install 'peopleboy[onnx]'.
     """
     from peopleboy.studies.training.export_onnx import export_onnx as write
 

@@ -189,7 +189,7 @@ class Scenario:
             BadInput: there are no such physics.
         """
         if physics not in PHYSICS:
-            raise BadInput(f"physics {physics!r}: there is no such; choose from {', '.join(PHYSICS)}")
+            raise BadInput(f"unknown physics {physics!r}; choose from {', '.join(PHYSICS)}")
         return replace(self, spec=replace(self.spec, physics=physics))
 
     def make_behaviour(self) -> Behaviour:

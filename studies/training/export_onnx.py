@@ -15,6 +15,13 @@ from peopleboy.tracker.detector.rescoring import BoxRefinementNetwork, Rescoring
 from peopleboy.tracker.networks.inference import CHANNELS, CropNetwork, DenseNetwork
 from peopleboy.tracker.networks.mask_network import BLOCK, DILATIONS, INPUTS, MaskNetwork
 from peopleboy.tracker.networks.weights_archive import SHIPPED
+from peopleboy.tracker.panoramic.paper.distance_network import (
+    CUES,
+    HIGH,
+    LOW,
+    DistanceModel,
+    file_name,
+)
 from peopleboy.tracker.panoramic.people.place_model import PlaceModel
 from peopleboy.tracker.panoramic.people_foreground import FILE, ForegroundModel
 
@@ -164,6 +171,33 @@ def _foreground(model: ForegroundModel) -> OnnxExport:
     )
 
 
+def _distance(model: DistanceModel) -> OnnxExport:
+    network = model.network
+    least, span = network.cue_ranges[:, 0], np.diff(network.cue_ranges)[:, 0]
+    nearest, farthest = network.distance_range_m
+    gain_m = (farthest - nearest) / (HIGH - LOW)
+    # The scaling of the cues is a part of the first layer.
+    weights = network.hidden[:, :CUES] / span
+    bias = network.hidden[:, CUES] - weights @ least
+
+    def build(graph: _Graph) -> None:
+        def constant(array: NDArray[Any]) -> str:
+            return graph.constant(np.asarray(array, np.float32))
+
+        units = graph("Sigmoid", graph("Gemm", "cues", constant(weights.T), constant(bias)))
+        last = graph("Gemm", units, constant(network.output[:-1, None]), constant(network.output[-1:]))
+        scaled = graph("Mul", graph("Sigmoid", last), constant(np.array([gain_m])))
+        graph("Add", scaled, constant(np.array([nearest - LOW * gain_m])), to="distance")
+
+    return OnnxExport(
+        "Distance of a person from the shape in a panorama, for one mirror.",
+        {"cues": ((_BATCH, CUES), "width of the person, gap below the feet and area [px]")},
+        {"distance": ((_BATCH, 1), "distance of the person [m]")},
+        model.about,
+        build,
+    )
+
+
 NETWORKS: Final[Mapping[str, Callable[[], OnnxExport]]] = {
     "rescoring": lambda: _crop_network(
         RescoringNetwork.shipped(),
@@ -177,6 +211,8 @@ NETWORKS: Final[Mapping[str, Callable[[], OnnxExport]]] = {
     ),
     "places": lambda: _place_model(PlaceModel.load()),
     "foreground": lambda: _foreground(ForegroundModel.load(SHIPPED / FILE)),
+    "distance-room_long": lambda: _distance(DistanceModel.load(SHIPPED / file_name("room_long"))),
+    "distance-room_narrow": lambda: _distance(DistanceModel.load(SHIPPED / file_name("room_narrow"))),
 }
 """The networks that can be exported, by the name of their training command."""
 

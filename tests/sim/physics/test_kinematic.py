@@ -1,7 +1,9 @@
+import importlib.util
 import math
 import subprocess
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,11 +12,13 @@ from peopleboy.bad_input import BadInput
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.physics.kinematic import Kinematic
+from peopleboy.sim.physics.physics_engine import default_physics
 from peopleboy.sim.robot.peoplebot import PeopleBot
 from peopleboy.sim.robot.robot_body import NAME, URDF
 from peopleboy.sim.robot.robot_config import DriveConfig, RobotConfig
 from peopleboy.sim.shapes.shapes import UPRIGHT, Shape, ShapeKind
 from peopleboy.sim.world import World
+from tests.helpers.calls.command_line import refusal
 
 EXACT = RobotConfig(drive=DriveConfig(encoder_noise_m=0.0))
 WALL = Shape(kind=ShapeKind.BOX, size=(0.2, 6.0, 2.5), position=(0.1, 0.0, 1.2))
@@ -183,3 +187,16 @@ def test_physics_that_there_is_not_or_that_cannot_draw_is_refused() -> None:
         scenario.moved_by("magic")
     with pytest.raises(BadInput, match="choose raycast"):
         scenario.moved_by("kinematic").world(0, "bullet")
+
+
+@pytest.mark.parametrize("command", ["run", "sweep", "compare"])
+def test_missing_physics_are_refused_without_a_notice_of_others(
+    command: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    find = importlib.util.find_spec
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None if name == "pybullet" else find(name))
+    default_physics.cache_clear()
+    message = refusal(capsys, command, "crossing_2", "--physics", "bullet", "--out", tmp_path / "run")
+    default_physics.cache_clear()
+    assert message.startswith("peopleboy: PyBullet is not installed")
+    assert not (tmp_path / "run").exists()

@@ -12,6 +12,7 @@ from peopleboy.tracker.detector.rescoring import BoxRefinementNetwork, Rescoring
 from peopleboy.tracker.networks.inference import CropNetwork
 from peopleboy.tracker.networks.mask_network import INPUTS
 from peopleboy.tracker.networks.weights_archive import SHIPPED
+from peopleboy.tracker.panoramic.paper.distance_network import shipped_models
 from peopleboy.tracker.panoramic.people.place_model import PlaceModel
 from peopleboy.tracker.panoramic.people_foreground import FILE, ForegroundModel
 from tests.helpers.calls.command_line import refusal, run_cli
@@ -51,6 +52,17 @@ def test_networks_of_places_agree(folder: Path) -> None:
     np.testing.assert_allclose(presence, model.presence.predict(inputs), atol=1e-4)
     np.testing.assert_allclose(place, model.place.predict(inputs), atol=1e-4)
     np.testing.assert_allclose(doubt, model.doubt.predict(inputs), atol=1e-4)
+
+
+def test_networks_of_distances_agree_and_none_is_missing(folder: Path) -> None:
+    models = {path.stem: model for path, model in shipped_models().items()}
+    assert list(models) == [name for name in NETWORKS if name.startswith("distance-")]
+    for name, model in models.items():
+        ranges = model.network.cue_ranges
+        share = np.random.default_rng(0).uniform(-0.2, 1.2, (50, 3))  # also beyond those of training
+        cues = ranges[:, 0] + share * (ranges[:, 1] - ranges[:, 0])
+        (found,) = outputs(folder, name, cues=cues.astype(np.float32))
+        np.testing.assert_allclose(found[:, 0], model.network.predict(cues), atol=1e-4)
 
 
 def test_the_segmentation_agrees_also_over_the_seam(folder: Path) -> None:
