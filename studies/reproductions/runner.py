@@ -302,12 +302,12 @@ def contents_of(names: Sequence[str], films: Path) -> dict[str, Content]:
 
 
 def contents_to_json(ours: Mapping[str, Content]) -> dict[str, Any]:
-    """Return the contents of data sets, each beside that of the thesis."""
-    return {name: {"ours": asdict(one), "thesis": asdict(THESIS[name])} for name, one in ours.items()}
+    """Return the contents of the rendered data sets, each with that of the published one."""
+    return {name: {"rendered": asdict(one), "published": asdict(THESIS[name])} for name, one in ours.items()}
 
 
 def print_contents(ours: Mapping[str, Content]) -> None:
-    """Print the contents of data sets, each beside that of the thesis."""
+    """Print the contents of data sets, with those of the thesis in brackets."""
     rows = [
         (
             one.name.replace("_", " "),
