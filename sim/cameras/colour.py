@@ -1,4 +1,4 @@
-"""The colour image: diffuse shading, patterned surfaces, a light that can change or go out, sensor noise."""
+"""Formation of colour images: diffuse shading, patterned surfaces, variable light, sensor noise."""
 
 import numpy as np
 from numba import njit
@@ -21,14 +21,14 @@ from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.shapes.materials import TEXEL_STEP
 
-# The room's lamps hang above and a little to one side, so that walls and sides of people differ in shade.
+# Lamps are overhead and slightly to one side, so that walls and the sides of people differ in shade.
 LIGHT = np.array([0.35, 0.25, 0.90]) / np.linalg.norm([0.35, 0.25, 0.90])
 _AMBIENT = 0.55
 
-_GLASS = 0.04  # share of light that glass and varnish, of a refractive index of 1.5, mirror straight on
-_CHUNK = 640  # values that are coded together: all that can be done for several at a time is
-_CONTRAST = 0.06  # share of the light: fainter edges need no smoothing
-_ROOM = 0.4  # what is mirrored where nothing in particular is, share of the light
+_GLASS = 0.04  # reflectance of glass and varnish at normal incidence, for a refractive index of 1.5
+_CHUNK = 640  # values that are encoded together, for vectorisation
+_CONTRAST = 0.06  # share of the light; weaker edges are not smoothed
+_ROOM = 0.4  # reflected surroundings, as a share of the light
 
 
 @njit(cache=True, fastmath=True, forceinline=True)
@@ -40,7 +40,7 @@ def _is_second(
     matrices: NDArray[np.float64],
     materials: MaterialTable,
 ) -> bool:
-    """Whether the pattern of a part has its second colour at a pixel."""
+    """Return whether the pattern of a part has its second colour at a pixel."""
     x, y, z = surface_point(matrices, p, u, v, depths[u])
     kind, period = materials.kind[p, 1], materials.period[p, 1]
     return pattern_value(kind, period, x, y, z, materials.phase, p) == 1
@@ -58,7 +58,7 @@ def _cover_run(
     other: NDArray[np.float64],
     texels: NDArray[np.int16],
 ) -> None:
-    """Fill neighbouring pixels of a part with a finish, in its own (6,) and the finish's colour (3,)."""
+    """Fill neighbouring pixels of a part with a finish, in the part's colours (6,) and the finish's (3,)."""
     one, two, three, step = np.uint64(1), np.uint64(2), np.uint64(3), np.float32(TEXEL_STEP)
     other_red, other_green, other_blue = np.float32(other[0]), np.float32(other[1]), np.float32(other[2])
     for u in range(first, end):
@@ -89,7 +89,7 @@ def _light_row(
 ) -> None:
     """Fill a row (3 W,) in full detail, neighbouring pixels of one part together; normals are (3 W,), too.
 
-    So the compiler knows how far apart pixels lie, and takes several at a time.
+    With flat rows the compiler knows the stride of pixels, and vectorises the loop.
     """
     colour, kind, finish, texels = materials.colour, materials.kind, materials.finish, materials.texels
     paint, paint_texels = materials.paint, materials.paint_texels
@@ -141,9 +141,9 @@ def light_image(
     light: NDArray[np.float64],
     level: float,
 ) -> NDArray[np.float32]:
-    """Form the linear image (H, W, 3) of a `View`, whose parts look as a `MaterialTable` says.
+    """Form the linear image (H, W, 3) of a `View`, with the materials of a `MaterialTable`.
 
-    The matrices are those of `part_from_pixel`; the light comes from a direction (3,), at a level times the
+    The matrices are those of `part_from_pixel`. The light has a direction (3,), and a level times the
     camera's gain.
     """
     height, width = part.shape
@@ -158,8 +158,8 @@ def light_image(
                 light, level,
             )  # fmt: skip
         return image
-    # Plain detail shades in 64 bits and full detail in 32, several pixels at a time: the last bits differ, so
-    # one row kernel cannot serve both.
+    # Plain detail uses 64-bit arithmetic, and full detail 32-bit vectors: the last bits differ, so they need
+    # separate row kernels.
     shades = np.empty(width)
     rows, normals = image.reshape(height, 3 * width), normal.reshape(height, 3 * width)
     for v in range(height):
@@ -180,7 +180,7 @@ def _light_plain_row(
     light: NDArray[np.float64],
     level: float,
 ) -> None:
-    """Fill a row (3 W,) in plain detail, neighbouring pixels of one part together; `shades` is space."""
+    """Fill a row (3 W,) in plain detail, neighbouring pixels of one part together; `shades` is a buffer."""
     colour, kind = materials.colour, materials.kind
     width, end = len(part), 0
     one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
@@ -208,7 +208,7 @@ def _light_plain_row(
 
 @njit(cache=True, fastmath=True)
 def shade_of(normal: NDArray[np.float32], light: NDArray[np.float64], level: float) -> float:
-    """Return what a surface of this normal (3,) gets of a light of some level from this direction (3,)."""
+    """Return the irradiance of a surface with a normal (3,), for a light of a level from a direction (3,)."""
     facing = normal[0] * light[0] + normal[1] * light[1] + normal[2] * light[2]
     shade: float = level * (_AMBIENT + (1.0 - _AMBIENT) * max(facing, 0.0))
     return shade
@@ -225,9 +225,9 @@ GAMMA = _gamma_table()
 
 
 def colour_image(seen: CameraView, config: ColourConfig | DepthConfig) -> NDArray[np.float32]:
-    """Form the noise-free image (H, W, 3) in linear light, 1 being full scale, by a camera and its gain.
+    """Form the noise-free image (H, W, 3) in linear light with full scale 1, for a camera and its gain.
 
-    Full detail adds shadows where things touch the floor, what shiny surfaces mirror, and smooth edges.
+    Full detail adds contact shadows on the floor, reflections in shiny surfaces, and smooth edges.
     """
     level, camera, materials = seen.light_level * config.gain, config.camera, seen.materials
 
@@ -257,7 +257,7 @@ def encode(
     read: np.float32,
     shot: np.float32,
 ) -> NDArray[np.uint8]:
-    """Add read and shot noise to an (H, W, 3) linear image by normal draws, and code it by `GAMMA`."""
+    """Add read and shot noise to an (H, W, 3) linear image from normal draws, and encode it with `GAMMA`."""
     image, codes = np.empty(linear.shape, np.uint8), np.empty(_CHUNK, np.int32)
     source, random, target = linear.reshape(-1), noise.reshape(-1), image.reshape(-1)
     last = np.float32(gamma.shape[0] - 1)

@@ -1,4 +1,4 @@
-"""The kinds of cameras, the interface to the rest of the project."""
+"""Registry of camera kinds, the interface to the rest of the project."""
 
 import math
 import re
@@ -41,7 +41,7 @@ _KINECT: Final = DepthConfig(camera=Pinhole(width=320, height=240, vertical_fov_
 
 DEPTH_PRESETS: Final[dict[str, DepthConfig]] = {
     "tof": DepthConfig(
-        # After the SwissRanger SR4000 at 15 MHz.
+        # Modelled on the SwissRanger SR4000 at 15 MHz.
         camera=Pinhole(
             width=176, height=144, vertical_fov_rad=math.radians(34.6), pitch_rad=math.radians(12.0)
         ),
@@ -52,16 +52,16 @@ DEPTH_PRESETS: Final[dict[str, DepthConfig]] = {
         amplitude=True,
     ),
     "kinect": _KINECT,
-    # Four times the noise: 7 cm at 3.5 m and 55 cm at 10 m, as coarse as early users found a Kinect.
+    # Four times the noise: 7 cm at 3.5 m and 55 cm at 10 m, as early users reported for the Kinect.
     "kinect_rough": replace(_KINECT, scale=4.0),
 }
 
 
 # Real thermal cameras, by name.
 
-# As sold for cars and drones: a microbolometer behind a shutter and a fast lens, whose electronics reduce
-# temporal and spatial noise, fill in dead pixels and sharpen the rest; a low plateau and a limit on the slope
-# keep the gain from amplifying noise on walls.
+# Like cameras for cars and drones: a microbolometer behind a shutter and a fast lens, whose electronics
+# reduce temporal and spatial noise, replace dead pixels and sharpen the image. A low plateau and a slope limit
+# prevent the gain from amplifying noise on walls.
 _UNCOOLED: Final = ThermalConfig(
     blur_px=0.8,
     gain="plateau",
@@ -99,16 +99,16 @@ def _as_it_is(image: Image) -> Image:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Layer:
-    """One of the images that a camera gives per frame.
+    """One of the images of a camera per frame.
 
     Attributes:
         what: description of its content.
         suffix: suffix of its name, after the name of the camera.
         folder: suffix of the folder of its files, after the name of the camera.
-        encode: converts it without loss for a PNG file: (H, W) of 8 or 16 bits, or (H, W, 3) RGB.
-        show: converts it for display to people: (H, W) grey or (H, W, 3) RGB, of 8 bits.
-        source: suffix of the image that it is made from; None if the sensor gives it directly.
-        make: makes it from that image.
+        encode: lossless conversion for a PNG file: (H, W) of 8 or 16 bits, or (H, W, 3) RGB.
+        show: conversion for display: (H, W) grey or (H, W, 3) RGB, of 8 bits.
+        source: suffix of the image from which it is derived; None for a direct output of the sensor.
+        make: function that derives it from that image.
     """
 
     what: str = "8-bit, as the robot sees it"
@@ -130,7 +130,7 @@ def _thermal_images(config: ThermalConfig) -> tuple[Layer, ...]:
         Layer(what=what),
         Layer(what="16-bit, hundredths of a kelvin", suffix="_c", folder="16", encode=encode_16bit),
         Layer(
-            what="8-bit, for display: greys equalised over the whole scene, made from the temperatures",
+            what="8-bit, for display: greys equalised over the whole scene, derived from the temperatures",
             suffix=SCENE,
             folder=SCENE,
             source="_c",
@@ -140,7 +140,7 @@ def _thermal_images(config: ThermalConfig) -> tuple[Layer, ...]:
 
 
 def _round_image(config: PanoramaConfig) -> tuple[Layer, ...]:
-    what = "8-bit colour, the round image from which the panorama is unrolled"
+    what = "8-bit colour, the circular image from which the panorama is unrolled"
     return (Layer(what=what, suffix="_raw", folder="_raw"),) if config.raw else ()
 
 
@@ -213,7 +213,7 @@ KINDS: Final[dict[str, CameraKind]] = {
         what="colour, 360 degrees",
         sensor=PanoramaSensor,
         renderer=PanoramicRenderer(),
-        layers=(Layer(what="8-bit colour all round, from the robot's back by its left, front and right"),),
+        layers=(Layer(what="8-bit colour, 360 degrees, from the robot's back over left, front and right"),),
         more_layers=_round_image,
         channels=3,
     ),
@@ -272,7 +272,7 @@ def flat_geometry(cameras: Mapping[str, CameraConfig], name: str) -> Pinhole:
 
 
 def layers_of(config: CameraConfig) -> tuple[Layer, ...]:
-    """Return the layers of the images that a camera with these settings gives per frame."""
+    """Return the layers of the images per frame of a camera with given settings."""
     kind = kind_of(config)
     return (*kind.layers, *kind.more_layers(config))
 
@@ -285,7 +285,7 @@ def shown_to_people(images: Mapping[str, Image], name: str, config: CameraConfig
 
 
 def name_images(name: str, config: CameraConfig, taken: Sequence[Image]) -> Mapping[str, Image]:
-    """Return a sensor's images by name, with derived ones that are made on first access."""
+    """Return a sensor's images by name; derived images are computed on first access."""
     layers = {f"{name}{layer.suffix}": layer for layer in layers_of(config)}
     own = [image for image, layer in layers.items() if layer.source is None]
     given = dict(zip(own, taken, strict=True))
@@ -310,7 +310,7 @@ def with_boxes(cameras: Mapping[str, CameraConfig]) -> tuple[str, ...]:
 
 
 def check_rate(rate_hz: int | None, control_hz: int) -> None:
-    """Refuse a camera's rate that does not divide the control rate.
+    """Check that a camera's rate divides the control rate.
 
     Raises:
         BadInput: the rate does not divide the control rate; with the key rate_hz.
@@ -324,13 +324,13 @@ def check_rate(rate_hz: int | None, control_hz: int) -> None:
 
 
 def check_cameras(cameras: Mapping[str, CameraConfig]) -> None:
-    """Refuse cameras whose images or folders have the same names, and rigs without a thermal camera.
+    """Check that cameras have unique names of images and folders, and that there is a thermal camera.
 
     Raises:
         BadInput: a name is invalid or taken, or there is no thermal camera.
     """
     if not isinstance(cameras.get("thermal"), ThermalConfig):
-        raise BadInput("cameras: a camera of name and kind 'thermal' is required to count people")
+        raise BadInput("cameras: a camera with name and kind 'thermal' is required to count people")
     for name in cameras:
         if re.fullmatch("[a-z][a-z0-9_]{0,39}", name) is None:
             raise BadInput(f"camera {name!r}: invalid name; use small letters, digits and _, a letter first")
@@ -373,7 +373,7 @@ def affine_between(thermal: Pinhole, colour: Pinhole, depth_m: float) -> Matrix:
 
 # Positions of thermal pixels in the colour image.
 
-# [m] a track has no depth: its box is mapped for a person at this distance
+# [m] assumed distance of people, since a track has no depth
 _TYPICAL_DEPTH_M: Final = 4.0
 
 

@@ -1,4 +1,4 @@
-"""The panoramic image: colours round the robot, and the lens's round image that they are unrolled from."""
+"""Formation of panoramic images, and of the lens's circular image from which they are unrolled."""
 
 import math
 from functools import lru_cache
@@ -19,16 +19,16 @@ from peopleboy.sim.geometry.vectors import map_point
 
 Linear = NDArray[np.float32]
 
-_FINER = 2  # pixels of what the lens's image is made of for each of its own, in a row and in a column
+_FINER = 2  # oversampling of the lens's image in rows and columns
 
 
 def panorama_image(seen: CameraView, config: PanoramaConfig, camera: Panorama) -> Linear:
-    """Form the noise-free panorama (H, W, 3) in linear light, 1 being full scale.
+    """Form the noise-free panorama (H, W, 3) in linear light with full scale 1.
 
     Args:
-        seen: what each pixel sees, with depths as in `PanoramicRenderer`.
+        seen: rendered view, with depths as in `PanoramicRenderer`.
         config: exposure and gain.
-        camera: the panorama, or a finer one.
+        camera: the panorama, or one with higher resolution.
     """
     view, poses = seen.view, seen.world_from_part
     part_from_world = poses[:, :3, :3].transpose(0, 2, 1)
@@ -47,7 +47,7 @@ def panorama_image(seen: CameraView, config: PanoramaConfig, camera: Panorama) -
 
 @lru_cache(maxsize=16)
 def _lines(camera: Panorama) -> tuple[Matrix, Matrix]:
-    """(W, 2) where columns look, x and z of the optical frame; (H,) [m] how far a ray falls on 1 m."""
+    """Return the directions (W, 2) of columns, x and z of the optical frame, and the fall (H,) of rows per metre."""
     right = -camera.bearing(np.arange(camera.width))
     return np.stack([np.sin(right), np.cos(right)], axis=1), np.tan(
         camera.depression(np.arange(camera.height))
@@ -94,11 +94,11 @@ def _radiance_image(
 
 
 def shift_blur(image: Linear, sweep_px: float) -> Linear:
-    """Smear an (H, W, C) panorama by columns that sweep past while the robot turns.
+    """Apply motion blur to an (H, W, C) panorama, by the columns that pass while the robot turns.
 
     Returns:
-        An image of the same shape, each pixel the mean over its sweep, which is centred on the pixel; between
-        pixels the image is taken as linear, and it goes on over the seam.
+        An image of the same shape. Each pixel is the mean over an interval centred on it, with linear
+        interpolation between pixels and across the seam.
     """
     if sweep_px < 0.05:
         return image
@@ -112,21 +112,21 @@ def shift_blur(image: Linear, sweep_px: float) -> Linear:
 
 
 def finer(camera: Panorama) -> Panorama:
-    """The panorama that the lens's round image is made of: so fine that it shows all that that one can."""
+    """Return a panorama with sufficient resolution for the lens's circular image."""
     return Panorama(width=8 * _FINER * camera.height, height=_FINER * camera.height, mirror=camera.mirror)
 
 
 def roll_up(fine: Linear, camera: Panorama) -> Linear:
-    """Turn a panorama of `finer` pixels into the round image of the lens.
+    """Convert a panorama with `finer` resolution to the circular image of the lens.
 
-    It is as a camera that looks up has it whose image's top is to the robot's front: the robot's left is at
-    the right. Outside the rim, to which a pixel more belongs, it is black.
+    The image is that of a camera that looks up, with the robot's front at the top and the robot's left on the
+    right. It is black outside the rim, which includes one more pixel.
 
     Returns:
         (2 H, 2 H, 3), each pixel the mean over its area.
     """
     u, v, is_inside = _disc(camera)
-    # A column more at either side carries the image over the seam.
+    # One more column on each side, for interpolation across the seam.
     padded = np.concatenate([fine[:, -1:], fine, fine[:, :1]], axis=1)
     disc = cv2.remap(padded, u + 1.0, v, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     disc[~is_inside] = 0.0
@@ -135,7 +135,7 @@ def roll_up(fine: Linear, camera: Panorama) -> Linear:
 
 
 def unroll(raw: NDArray[np.uint8], camera: Panorama) -> NDArray[np.uint8]:
-    """Unroll the (2 H, 2 H, 3) round image of the lens: the (H, W, 3) panorama, linear between its pixels."""
+    """Unroll the circular image (2 H, 2 H, 3) to the panorama (H, W, 3), by linear interpolation."""
     radius = camera.height - 0.5 - np.arange(camera.height)[:, None]
     bearing, middle = camera.bearing(np.arange(camera.width)), camera.height - 0.5
     x = np.asarray(middle + radius * np.sin(bearing), np.float32)
@@ -145,7 +145,7 @@ def unroll(raw: NDArray[np.uint8], camera: Panorama) -> NDArray[np.uint8]:
 
 @lru_cache(maxsize=4)
 def _disc(camera: Panorama) -> tuple[Linear, Linear, NDArray[np.bool_]]:
-    """Columns and rows of the finer panorama that the pixels of a finer disc see, and which lie inside it."""
+    """Return columns and rows of the finer panorama for a finer disc's pixels, and which are inside."""
     source, size = finer(camera), 2 * _FINER * camera.height
     right = np.arange(size) - (size - 1) / 2.0
     bearing, radius = np.arctan2(right, -right[:, None]), np.hypot(right, right[:, None])

@@ -44,7 +44,7 @@ def shape_extents(fixture: Fixture) -> list[Extent]:
 
 
 def shape_extent(shape: Shape) -> Extent:
-    """The box around a shape in its own frame.
+    """Return the box around a shape in its own frame.
 
     Raises:
         BadInput: a plane has no extent, or a mesh cannot be read.
@@ -66,7 +66,7 @@ def shape_extent(shape: Shape) -> Extent:
 
 @cache
 def mesh_extent(path: Path) -> Extent:
-    """The box around a mesh file.
+    """Return the box around a mesh file.
 
     Raises:
         BadInput: the file cannot be read as a mesh.
@@ -90,11 +90,11 @@ def urdf_extent(path: Path) -> Extent:
 
 
 def _check_meshes(path: Path) -> None:
-    """Refuse meshes that lie outside the file's folder, or outside pybullet_data if the file is in it."""
+    """Check that meshes are in the file's folder, or in pybullet_data if the file is there."""
     home = data_folder() if is_in_data(path) else path.parent
     for name in mesh_files(path):
         if not (path.parent / name).resolve().is_relative_to(home.resolve()):
-            raise BadInput(f"{path}: mesh {name!r} lies outside the file's folder")
+            raise BadInput(f"{path}: mesh {name!r} is outside the file's folder")
 
 
 def _moved(extent: Extent, position: object, orientation: object) -> Extent:
@@ -110,7 +110,7 @@ def _around(points: NDArray[np.float64]) -> Extent:
     return np.array([points.min(axis=0), points.max(axis=0)])
 
 
-# Upright boxes, turned about the vertical: their overlap, and their distance to points.
+# Upright boxes, rotated about the vertical: overlap, and distance to points.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -128,7 +128,7 @@ class BoxSet:
     heading: Array
 
     def moved(self, stance: Stance) -> "BoxSet":
-        """Return boxes of a thing's frame, in the world, for a pose of the thing."""
+        """Transform boxes from a thing's frame to the world, for a pose of the thing."""
         return BoxSet(stance.place(self.centre), self.half, self.heading + stance.heading_rad)
 
     def between(self, low_m: float, high_m: float) -> "BoxSet":
@@ -149,8 +149,8 @@ def boxes_of(fixtures: Sequence[Fixture], origin: Stance | None = None) -> BoxSe
     """Return the boxes around all solid shapes of fixtures, in the world or in the frame of a thing.
 
     Args:
-        fixtures: fixtures that are upright, turned about the vertical only.
-        origin: the frame that all of them share; None for boxes in the world.
+        fixtures: upright fixtures, rotated about the vertical only.
+        origin: frame for the boxes; None for the world.
     """
     found = [
         (extent.mean(axis=0), (extent[1] - extent[0]) / 2.0, _stance_of(fixture))
@@ -164,9 +164,9 @@ def boxes_of(fixtures: Sequence[Fixture], origin: Stance | None = None) -> BoxSe
 
 
 def overlaps(a: BoxSet, b: BoxSet, by_m: float) -> NDArray[np.bool_]:
-    """(N, M) whether each box of one reaches farther into each of the other than by_m [m].
+    """Return (N, M) whether each box of one set penetrates each of the other by more than by_m [m].
 
-    Two boxes are apart where an axis of either keeps them apart (separating axis theorem).
+    Two boxes are separate if an axis of either separates them (separating axis theorem).
     """
     gap = b.centre[None] - a.centre[:, None]
     deep = a.half[:, None, 2] + b.half[None, :, 2] - np.abs(gap[..., 2]) > by_m
@@ -179,14 +179,14 @@ def overlaps(a: BoxSet, b: BoxSet, by_m: float) -> NDArray[np.bool_]:
 
 
 def _reach(boxes: BoxSet, angle: Array, shape: tuple[int, int]) -> Array:
-    """Return how far boxes extend from their centre in a direction."""
+    """Return the extent of boxes from their centre in a direction."""
     own = angle - boxes.heading.reshape(shape)
     x, y = boxes.half[:, 0].reshape(shape), boxes.half[:, 1].reshape(shape)
     return np.asarray(x * np.abs(np.cos(own)) + y * np.abs(np.sin(own)))
 
 
 def _own(offset: Array, heading: Array) -> Array:
-    """Return (N, 2) world offsets in frames of headings (N,)."""
+    """Transform world offsets to (N, 2) in frames with headings (N,)."""
     c, s = np.cos(heading), np.sin(heading)
     return np.stack([c * offset[:, 0] + s * offset[:, 1], c * offset[:, 1] - s * offset[:, 0]], axis=1)
 

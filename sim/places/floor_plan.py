@@ -118,7 +118,7 @@ class WallSide(Enum):
         return math.atan2(-self.value[1], -self.value[0])
 
     def strip(self, area: Rectangle, depth_m: float) -> Rectangle:
-        """The strip of that depth outside this side; north and south strips own the corners."""
+        """Return the strip of a depth outside this side; north and south strips include the corners."""
         if self is WallSide.EAST:
             return Rectangle(area.max_x, area.min_y, area.max_x + depth_m, area.max_y)
         if self is WallSide.WEST:
@@ -129,7 +129,7 @@ class WallSide(Enum):
         return Rectangle(left, area.min_y - depth_m, right, area.min_y)
 
     def at(self, area: Rectangle, along_m: float) -> tuple[float, float]:
-        """The point (x, y) [m] of this side of an area at a world coordinate along it."""
+        """Return the point (x, y) [m] of this side of an area at a world coordinate along it."""
         if self is WallSide.EAST:
             return area.max_x, along_m
         if self is WallSide.WEST:
@@ -137,7 +137,7 @@ class WallSide(Enum):
         return along_m, area.max_y if self is WallSide.NORTH else area.min_y
 
     def span(self, area: Rectangle) -> tuple[float, float]:
-        """Smallest and largest world coordinate along this side of an area."""
+        """Return the smallest and largest world coordinate along this side of an area."""
         if self in (WallSide.EAST, WallSide.WEST):
             return area.min_y, area.max_y
         return area.min_x, area.max_x
@@ -196,7 +196,7 @@ class FloorPlan:
     doors: tuple[Door, ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse doors that do not fit into their walls, or whose lobby would cut into the place.
+        """Check that doors fit into their walls, and that their lobbies do not overlap the place.
 
         Raises:
             BadInput: a door is wider than its wall, overlaps another one, or has no space behind it.
@@ -213,7 +213,7 @@ class FloorPlan:
         """Find a wall.
 
         Raises:
-            BadInput: there is no wall of that name.
+            BadInput: the wall is unknown.
         """
         found = {wall.name: wall for wall in self.walls()}
         if name not in found:
@@ -225,11 +225,11 @@ class FloorPlan:
         return _walls(self.areas)
 
     def opening(self, door: Door) -> Rectangle:
-        """The floor inside the thickness of the wall, from jamb to jamb."""
+        """Return the floor inside the thickness of the wall, from jamb to jamb."""
         return self._behind(door, 0.0, WALL_M, door.width_m / 2.0)
 
     def lobby(self, door: Door) -> Rectangle:
-        """The floor of the lobby behind an open door."""
+        """Return the floor of the lobby behind an open door."""
         return self._behind(door, WALL_M, WALL_M + door.lobby_m, door.width_m / 2.0 + LOBBY_MARGIN_M)
 
     def walkable(self) -> tuple[Rectangle, ...]:
@@ -302,7 +302,7 @@ class FloorPlan:
         )
 
     def _behind(self, door: Door, near_m: float, far_m: float, half_m: float) -> Rectangle:
-        """The rectangle from near_m to far_m behind a door's wall, half_m to either side of its middle."""
+        """Return the rectangle from near_m to far_m behind a door's wall, half_m to either side."""
         wall = self.wall(door.wall)
         x, y = wall.side.at(wall.area, door.along_m)
         nx, ny = wall.side.value

@@ -45,7 +45,7 @@ class Stance:
 
     @property
     def orientation(self) -> Quaternion:
-        """Quaternion world from thing: x, y, z, w."""
+        """Quaternion x, y, z, w, world from thing."""
         return (0.0, 0.0, math.sin(self.heading_rad / 2.0), math.cos(self.heading_rad / 2.0))
 
     def place(self, points: Array) -> Array:
@@ -74,8 +74,8 @@ class Action:
         at_s: [s] start.
         takes_s: [s] duration; 0 for `appear` and `vanish`.
         target: pose of the thing at the end.
-        hinge_m: (x, y) [m] of the upright axis that it turns about; None if it does not turn.
-        by: name of the person whose hand does it, or None.
+        hinge_m: (x, y) [m] position of the vertical axis of rotation; None without rotation.
+        by: name of the person who moves it by hand, or None.
     """
 
     kind: ActionKind
@@ -87,13 +87,13 @@ class Action:
 
     @property
     def ends_s(self) -> float:
-        """[s] end of the action."""
+        """End of the action [s]."""
         return self.at_s + self.takes_s
 
     def stance(self, start: Stance, time_s: float) -> Stance:
-        """Where a thing that was at `start` before is at a time while or after this happens.
+        """Return the pose at a time during or after the action, for a thing that was at `start` before.
 
-        It starts and stops gently: after a share u of the time it has covered 3 u^2 - 2 u^3 of the path.
+        The motion starts and stops smoothly: after a share u of the time, 3 u^2 - 2 u^3 of the path is covered.
         """
         if self.kind not in LASTING or time_s >= self.ends_s - _SAME_S:
             return self.target
@@ -142,11 +142,11 @@ class Mover:
     actions: tuple[Action, ...] = ()
 
     def corners(self) -> Array:
-        """(8, 3) [m] corners of the box around it, in its own frame."""
+        """Corners (8, 3) [m] of the box around it, in its own frame."""
         return np.array(list(product(*zip(self.low_m, self.high_m, strict=True))))
 
     def at(self, time_s: float) -> ThingState:
-        """Return the state of the thing at a time [s], on which alone it depends."""
+        """Return the state of the thing at a time [s]."""
         stance, is_there, by = self.start, not self.is_hidden_at_start, None
         for action in self.actions:
             if time_s < action.at_s - _SAME_S:
@@ -160,9 +160,9 @@ class Mover:
     def grip(self, action: Action, time_s: float, person: tuple[float, float]) -> Array:
         """Return the point at which a person holds the thing at a time: (3,) [m] in the world frame.
 
-        It is the edge farthest from the hinge if there is one, the front's middle of a sliding thing, and
-        otherwise the point nearest to the person, at the height of a hand. A thing that turns about an axis
-        away from it, such as the person who carries it, has no hinge.
+        It is the edge farthest from the hinge if there is one, the middle of the front for a sliding thing,
+        and otherwise the point nearest to the person, at hand height. An axis of rotation away from the thing,
+        such as the person who carries it, is not a hinge.
 
         Args:
             action: the action for which it is held.
@@ -191,7 +191,7 @@ def _handle(low: Array, high: Array, hinge: Array) -> Array:
 
 
 def ease(share: float) -> float:
-    """Return the share of a path covered after a share of the time, with gentle start and stop."""
+    """Return the share of a path covered after a share of the time, with smooth start and stop."""
     return share * share * (3.0 - 2.0 * share)
 
 

@@ -13,7 +13,7 @@ from peopleboy.sim.places.moving import Mover
 from peopleboy.sim.shapes.materials import Covering, Material
 from peopleboy.sim.shapes.shapes import UPRIGHT, Part, Quaternion, Vector
 
-# Objects lower than a step or higher than a head are no obstacles.
+# Objects lower than a step or above head height are not obstacles.
 STEP_M = 0.03
 HEAD_M = 2.0
 
@@ -56,12 +56,12 @@ class Sun:
 
     @property
     def azimuth_rad(self) -> float:
-        """[rad] azimuth, from +x towards +y."""
+        """Azimuth [rad], from +x towards +y."""
         return math.radians(self.azimuth_deg)
 
     @property
     def elevation_rad(self) -> float:
-        """[rad] elevation above the horizon."""
+        """Elevation above the horizon [rad]."""
         return math.radians(self.elevation_deg)
 
 
@@ -75,7 +75,7 @@ class Place:
             on the floor.
         obstacle_names: the K names of the obstacles, for messages.
         bounds: [m] min x, min y, max x, max y of the floor and the walls around it.
-        surroundings_c: [degC] temperature that surfaces of low emissivity mirror.
+        surroundings_c: [degC] temperature of the surroundings, which surfaces of low emissivity reflect.
         light: (time [s], level) steps of the room's light; level 1 is full, 0 is dark.
         movers: the moving things.
         sun: the sun, if there is any; visible only with `detail: full`.
@@ -101,7 +101,7 @@ class Place:
 
 
 def air_of(place: Place) -> float:
-    """Return the temperature [degC] of the air of a place, which people's surfaces follow."""
+    """Return the air temperature [degC] of a place, which people's surfaces follow."""
     return place.surroundings_c
 
 

@@ -16,12 +16,12 @@ Length = Annotated[float, Field(ge=1.5, le=100.0)]
 
 _LINTEL_M: Final = 0.1
 
-# Default surface temperatures less the given air temperature [K].
+# Default surface temperatures relative to the air temperature [K].
 _FROM_AIR: Final = {"floor_c": -1.0, "ceiling_c": 1.8, "walls_c": 0.5, "surroundings_c": 0.0}
 
 
 def _follow_air(given: Any) -> Any:
-    """Fill in the temperatures that follow the air; invalid values are refused later."""
+    """Fill in the temperatures that follow the air; invalid values are rejected later."""
     air = given.get("air_c") if isinstance(given, dict) else None
     if not isinstance(air, int | float) or not -40.0 <= air <= 60.0:
         return given
@@ -35,8 +35,8 @@ class Temperatures:
     air_c: Annotated[
         Celsius | None,
         Field(
-            description="of the air: floor, ceiling, walls, surroundings, and things that are not heated "
-            "follow it where they have no temperature of their own; if omitted, all is as at 21 degC"
+            description="temperature of the air: floor, ceiling, walls, surroundings, and unheated objects "
+            "follow it unless they have their own temperature; if omitted, all are as at 21 degC"
         ),
     ] = None
     floor_c: Annotated[Celsius, Field(description="temperature of the floor")] = 20.0
@@ -46,7 +46,9 @@ class Temperatures:
         dict[Word, Celsius],
         Field(description="temperatures of single walls by name, such as an outer wall in winter"),
     ] = field(default_factory=dict)
-    surroundings_c: Annotated[Celsius, Field(description="what surfaces of low emissivity mirror")] = 21.0
+    surroundings_c: Annotated[
+        Celsius, Field(description="temperature that surfaces of low emissivity reflect")
+    ] = 21.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -71,7 +71,7 @@ class Surfaces:
 
 
 def room_shell(plan: FloorPlan, height_m: float, materials: Surfaces) -> tuple[Fixture, ...]:
-    """Build the fixtures of rooms and corridors: a ray from any point inside meets a surface.
+    """Build the fixtures of rooms and corridors: a ray from any point inside hits a surface.
 
     No two visible faces are coplanar and overlap.
     """
@@ -98,7 +98,7 @@ def build_door(plan: FloorPlan, number: int, door: Door, height_m: float, materi
     wall, opening = plan.wall(door.wall), plan.opening(door)
     nx, ny = (abs(part) for part in wall.side.value)
     if door.is_open:
-        # Narrower than the wall and let into the jambs: its faces lie in no other face's plane.
+        # Narrower than the wall and recessed into the jambs, so that no faces are coplanar.
         inset, reach = 0.01, SINK_M / 2.0
         lintel = Rectangle(
             opening.min_x + nx * inset - ny * reach,
@@ -146,7 +146,7 @@ class StreetLook:
 
 
 def street_shell(plan: FloorPlan, look: StreetLook, surfaces: Surfaces) -> tuple[Fixture, ...]:
-    """Build the fixtures of a street: a ray from any point on it meets a surface."""
+    """Build the fixtures of a street: a ray from any point on it hits a surface."""
     far = plan.bounds().grown(_FAR_M)
     street = replace(surfaces.floor, covering=Covering.STREET, colour_pattern=Pattern(), shine=0.0)
     sky = Material(

@@ -55,9 +55,9 @@ class PatternKind(IntEnum):
     """Two-valued patterns that a surface may carry, in the frame of its part."""
 
     PLAIN = 0
-    STRIPES = 1  # horizontal bands across the part's z axis
-    CHECKS = 2  # cubes of two colours, a chessboard on each flat side
-    PATCH = 3  # an upright ellipse on the side that faces +x, like a print on a chest
+    STRIPES = 1  # horizontal bands, perpendicular to the part's z axis
+    CHECKS = 2  # cubes of two colours, a checkerboard on each flat side
+    PATCH = 3  # an upright ellipse on the +x side, like a print on the chest
     SPECKLE = 4  # irregular blotches
 
 
@@ -71,14 +71,14 @@ class Covering(IntEnum):
     STREET = 4  # pavement and road
     FACADE = 5  # storeys of windows
     SKY = 6
-    SKYLINE = 7  # far houses and trees before the sky
+    SKYLINE = 7  # distant houses and trees in front of the sky
     LEAVES = 8
-    GLASS = 9  # lets the sun in
+    GLASS = 9  # transparent to sunlight
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pattern:
-    """A pattern and its period: the width of a pair of stripes, or the height of a patch [m]."""
+    """A pattern and its size: the width of a pair of stripes, or the height of a patch [m]."""
 
     kind: PatternKind = PatternKind.PLAIN
     period_m: float = 0.1
@@ -90,22 +90,21 @@ class Material:
 
     Attributes:
         temperature_c: [degC] mean surface temperature.
-        emissivity: share of black-body radiance that the surface emits; the rest mirrors the surroundings.
+        emissivity: share of black-body radiance that the surface emits; the rest reflects the surroundings.
         variation_k: [K] amplitude of the smooth variation of temperature over the surface.
         variation_m: [m] wavelength of that variation.
-        contrast_k: [K] temperature of the pattern's second value above the first.
-        thermal_pattern: where the second temperature applies.
+        contrast_k: [K] temperature of the pattern's second value minus that of the first.
+        thermal_pattern: pattern of the two temperatures.
         rgb: linear reflectance 0..1 of the first colour.
         second_rgb: linear reflectance of the pattern's second colour.
-        colour_pattern: where the second colour applies.
-        glow: share of light that the surface gives out itself (a lamp or a monitor), whatever the room's
-            light; 0 for everything else.
+        colour_pattern: pattern of the two colours.
+        glow: share of light that the surface emits (a lamp or a monitor), independent of the room's light; 0
+            for all other surfaces.
         finish: details of the surface, or None.
-        shine: specular share of the reflection, 0..1: 0 is dull, 1 is glass.
-            Only images of full detail show it.
-        covering: what `detail: full` paints on it.
-        gradient_k_per_m: [K/m] how much warmer it is above than below, by `detail: full`.
-        uneven_k: [K] deviation of its temperature over all scales, by `detail: full`.
+        shine: specular share of the reflection, 0 (dull) to 1 (glass); visible with `detail: full` only.
+        covering: texture with `detail: full`.
+        gradient_k_per_m: [K/m] vertical temperature gradient, positive if warmer above, with `detail: full`.
+        uneven_k: [K] standard deviation of the temperature over all scales, with `detail: full`.
     """
 
     temperature_c: float
@@ -125,15 +124,15 @@ class Material:
     uneven_k: float = 0.0
 
 
-# What a surface has beyond its material: fine differences of temperature and brightness, on a grid.
+# Fine differences of temperature and brightness in addition to a material, on a grid.
 
 
 class Unrolling(IntEnum):
-    """How a painting lies on its part: which sums of the part's coordinates are its own."""
+    """Mapping of a texture to its part: sums of the part's coordinates that are its axes."""
 
     LEVEL = 0  # across is x, up is y: floors and ceilings
-    UPRIGHT = 1  # across is x + y, up is z: walls, and whatever stands on the floor
-    ASLANT = 2  # across is x + y, up is z + (x - y) / 2: what is round, which has no side without a pattern
+    UPRIGHT = 1  # across is x + y, up is z: walls, and objects on the floor
+    ASLANT = 2  # across is x + y, up is z + (x - y) / 2: round objects, so that no side lacks a pattern
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -141,11 +140,11 @@ class Painting:
     """Differences from a part's material over its surface, in the frame of the part.
 
     Attributes:
-        unrolling: how it lies on the part.
-        origin_m: [m] where the middle of the first texel is, across and up.
-        texel_m: [m] from texel to texel.
+        unrolling: mapping to the part.
+        origin_m: [m] centre of the first texel, across and up.
+        texel_m: [m] distance of texels.
         kelvin: (H, W) [K] added to the temperature; rows go up, columns across.
-        light: (H, W) factor on what the surface reflects and glows.
+        light: (H, W) factor on the reflected and emitted light.
     """
 
     unrolling: Unrolling
@@ -155,9 +154,9 @@ class Painting:
     light: NDArray[np.float32]
 
 
-# Colours by name, as settings take them.
+# Named colours for settings.
 
-# Linear reflectances, not sRGB values: light is added up before it is encoded.
+# Linear reflectances, not sRGB values, since light is summed before it is encoded.
 COLOURS: Final[Mapping[str, Rgb]] = {
     "white": (0.75, 0.75, 0.73),
     "light_grey": (0.45, 0.45, 0.46),
@@ -188,5 +187,5 @@ Colour = Annotated[
 
 
 def rgb_of(colour: str | Rgb) -> Rgb:
-    """Return the linear reflectances of a colour that is given by name or by themselves."""
+    """Return the linear reflectances of a colour, given by name or as reflectances."""
     return COLOURS[colour] if isinstance(colour, str) else colour

@@ -20,7 +20,7 @@ UPRIGHT: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 
 class ShapeKind(IntEnum):
-    """The primitive shapes that both renderers draw."""
+    """The primitive shapes that both renderers support."""
 
     SPHERE = 0
     CAPSULE = 1
@@ -35,7 +35,7 @@ class Shape:
     """One primitive, placed in the frame of its part.
 
     Attributes:
-        kind: which primitive.
+        kind: kind of primitive.
         size: [m] sphere (radius, 0, 0); capsule and cylinder (length along z, radius, 0), the capsule's
             length without its caps; box (x, y, z) full extents; plane (0, 0, 0), it is z = 0 and
             infinite, seen from above; mesh (x, y, z) scale, no unit.
@@ -57,8 +57,8 @@ class Part:
 
     Attributes:
         name: unique within its owner, such as "left_forearm".
-        shapes: what it is made of; they may overlap.
-        material: how both cameras see it.
+        shapes: shapes of the part; they may overlap.
+        material: material for all cameras.
     """
 
     name: str
@@ -73,31 +73,31 @@ class Part:
 def load_triangles(path: Path) -> NDArray[np.float64]:
     """Read an OBJ, STL or DAE file: (T, 3, 3) corners of its triangles, in the file's frame, read-only.
 
-    Like PyBullet, it heeds the unit of length of a DAE file and not which axis it calls up. Unlike PyBullet,
-    it heeds the rotations in a DAE file, so that TinyRenderer draws the few files with any in another way.
+    Like PyBullet, it applies the unit of length of a DAE file and ignores its up axis. Unlike PyBullet, it
+    applies the rotations in a DAE file, so TinyRenderer draws the few files with rotations differently.
 
     Raises:
-        BadInput: there is no such file, it cannot be read, it holds no triangle, or trimesh is
-            not installed.
+        BadInput: the file does not exist, cannot be read, or contains no triangles, or trimesh is not
+            installed.
     """
     try:
-        import trimesh  # here, as it takes a second to load, and most worlds have no meshes
+        import trimesh  # imported late: loading takes a second, and most worlds have no meshes
     except ImportError as error:
         raise BadInput(f"mesh {path}: reading it needs trimesh: pip install 'peopleboy[meshes]'") from error
     try:
         mesh: Any = trimesh.load(path, force="mesh", process=False, skip_materials=True)
         triangles = np.array(mesh.triangles, np.float64) * _unit_m(path)
-    # Each of the parsers behind trimesh fails in ways of its own.
+    # Each of the parsers of trimesh raises different errors.
     except Exception as error:
         reason = " ".join(str(error).split())
-        raise BadInput(f"mesh {path}: it cannot be read ({reason}); give an OBJ, STL or DAE file") from error
+        raise BadInput(f"mesh {path}: cannot be read ({reason}); use an OBJ, STL or DAE file") from error
     if len(triangles) == 0 or not np.isfinite(triangles).all():
-        raise BadInput(f"mesh {path}: it holds no triangles, or not finite ones")
+        raise BadInput(f"mesh {path}: contains no triangles, or coordinates that are not finite")
     triangles.setflags(write=False)
     return triangles
 
 
 def _unit_m(path: Path) -> float:
-    """Unit of length [m] of a mesh file; only DAE files name one."""
+    """Return the unit of length [m] of a mesh file; only DAE files specify one."""
     unit = ElementTree.parse(path).find("{*}asset/{*}unit") if path.suffix.lower() == ".dae" else None
     return 1.0 if unit is None else float(unit.get("meter", "1"))

@@ -1,6 +1,6 @@
-"""Where on a surface a pixel falls, and what pattern, finish or painting it finds there (numba kernels).
+"""Lookup of patterns, finishes and textures at the surface point of a pixel (numba kernels).
 
-Patterns live in the frame of their part, so they move with it; every value depends on the point alone.
+Patterns are defined in the frame of their part, so they move with it; every value depends only on the point.
 """
 
 import math
@@ -21,14 +21,14 @@ _LEVEL, _ASLANT = int(Unrolling.LEVEL), int(Unrolling.ASLANT)
 
 
 class PixelRun(NamedTuple):
-    """Neighbouring pixels of one row that see one part.
+    """Neighbouring pixels of one row that show the same part.
 
     Attributes:
         first, end: column of the first one, and that after the last one.
         part: number of the part.
         row: number of the row.
-        depths: (W,) [m] how far away what the row's pixels see is.
-        matrices: (P, 3, 4) as `part_from_pixel` gives them.
+        depths: (W,) [m] depths of the row's pixels.
+        matrices: (P, 3, 4) matrices of `part_from_pixel`.
     """
 
     first: int
@@ -43,9 +43,9 @@ class PixelRun(NamedTuple):
 def painted(
     paint: NDArray[np.float64], texels: NDArray[np.int16], part: int, x: float, y: float, z: float
 ) -> tuple[float, float]:
-    """Return what the painting of a part adds [K], and its factor on light, at a point [m] of the part.
+    """Return temperature offset [K] and factor on light of a part's texture at a point [m] of the part.
 
-    Between the middles of texels it is linear; beyond the edge the nearest texel counts.
+    Values are interpolated linearly; beyond the edge the nearest texel is used.
     """
     across, up = (x, y) if int(paint[part, 1]) == _LEVEL else (x + y, z)
     if int(paint[part, 1]) == _ASLANT:
@@ -73,16 +73,16 @@ def paint_run(
     texels: NDArray[np.int16],
     step: float,
 ) -> None:
-    """Find what a painting does to neighbouring pixels of one part, as `painted` says it of points.
+    """Look up the texture at neighbouring pixels of one part, like `painted` at points.
 
-    They share nearly all that is to be reckoned.
+    Most of the computation is shared by all pixels.
 
     Args:
-        line: (W,) gets kelvin or factors on light of the pixels.
-        run: which pixels.
-        paint: (P, 7) as `make_paint_table` gives them.
-        texels: (N,) one of both layers beside them.
-        step: what a unit of it means, `KELVIN_STEP` or `LIGHT_STEP`.
+        line: (W,) output, kelvin or factors on light of the pixels.
+        run: the pixels.
+        paint: (P, 7) table of `make_paint_table`.
+        texels: (N,) one of its two layers.
+        step: unit of the texels, `KELVIN_STEP` or `LIGHT_STEP`.
     """
     first, end, p, v, depths, matrices = run
     unit, none, one = np.float32(step), np.float32(0.0), np.uint32(1)
@@ -105,7 +105,7 @@ def paint_run(
         x = min(max((slope_u * np.float32(u) + start_u) * z + origin_u, none), most_u)
         y = min(max((slope_v * np.float32(u) + start_v) * z + origin_v, none), most_v)
         i, j = np.int32(x), np.int32(y)
-        # An unsigned place is not checked for being counted from the end.
+        # An unsigned index avoids the check for negative indices.
         a, at = x - np.float32(i), np.uint32(texel + j * columns + i)
         value = np.float32(texels[at])
         lower = value + a * (np.float32(texels[at + one]) - value)
@@ -115,7 +115,7 @@ def paint_run(
         line[u] = unit * (lower + (y - np.float32(j)) * (upper - lower))
 
 
-# Keeps the edges of patterns away from the faces of boxes, whose coordinates round either way.
+# Keeps the edges of patterns away from the faces of boxes, where rounding of coordinates may go either way.
 _OFFSET = 0.137
 
 # An odd polynomial fitted to atan(ratio) / 2 pi over 0..1.
@@ -145,7 +145,7 @@ def part_from_pixel(camera: Pinhole, world_from_camera: Matrix, world_from_part:
 
 @njit(cache=True, nogil=True)
 def combine(rays: Matrix, world_from_camera: Matrix, world_from_part: Matrix) -> Matrix:
-    """Do the same, by the camera's `rays_through`."""
+    """Do the same as `part_from_pixel`, with the camera's `rays_through`."""
     matrices, world_from_pixel = np.empty((len(world_from_part), 3, 4)), np.empty((3, 3))
     multiply(world_from_camera[:3, :3], rays, world_from_pixel)
     for part in range(len(world_from_part)):
@@ -163,7 +163,7 @@ def combine(rays: Matrix, world_from_camera: Matrix, world_from_part: Matrix) ->
 
 @lru_cache(maxsize=16)
 def rays_through(camera: Pinhole) -> Matrix:
-    """(3, 3): the ray through pixel (u, v) in the optical frame is this @ (u, v, 1)."""
+    """Return the matrix M (3, 3) of pixel rays in the optical frame, M @ (u, v, 1)."""
     rays = inverse(camera.intrinsics)
     rays.setflags(write=False)
     return rays
@@ -173,7 +173,7 @@ def rays_through(camera: Pinhole) -> Matrix:
 def surface_point(
     matrices: NDArray[np.float64], part: int, u: float | np.int32, v: float, z: float
 ) -> tuple[float, float, float]:
-    """Return the point [m] in the part's frame that pixel (u, v) sees at depth z."""
+    """Return the point [m] in the part's frame at pixel (u, v) and depth z."""
     m, a, b = matrices, u * z, v * z
     return (
         m[part, 0, 0] * a + m[part, 0, 1] * b + m[part, 0, 2] * z + m[part, 0, 3],
@@ -184,7 +184,7 @@ def surface_point(
 
 @njit(cache=True, fastmath=True)
 def _wave(at: float) -> float:
-    """Return a wave of period 1 within -1..1, made of parabolas: smooth as a sine to the eye, and quick."""
+    """Return a wave of period 1 in -1..1, made of parabolas: visually as smooth as a sine, and faster."""
     t = at - math.floor(at) - 0.5
     return 8.0 * t * (1.0 - 2.0 * abs(t))
 
@@ -193,7 +193,7 @@ def _wave(at: float) -> float:
 def smooth_variation(
     x: float, y: float, z: float, waves: float, phase: NDArray[np.float64], part: int
 ) -> float:
-    """Return a smooth function of a point [m] of a part, within -1..1: three crossed waves, so many a m."""
+    """Return a smooth function of a point [m] of a part, in -1..1: crossed waves of a frequency [1/m]."""
     a = _wave(waves * (x + 0.6 * z) + phase[part, 0])
     b = _wave(waves * (y - 0.8 * x) + phase[part, 1])
     c = _wave(waves * 0.7 * (z + 0.5 * y) + phase[part, 2])
@@ -222,7 +222,7 @@ def pattern_value(
 
 @njit(cache=True, fastmath=True)
 def turn_of(x: float, y: float) -> float:
-    """Return the direction of (x, y) from +x towards +y, in turns 0..1, to 0.00002 of a turn."""
+    """Return the direction of (x, y) from +x towards +y, in turns 0..1, accurate to 0.00002 turns."""
     across, along = abs(y), abs(x)
     ratio = min(across, along) / max(max(across, along), 1e-9)
     square = ratio * ratio
@@ -239,7 +239,7 @@ def finish_at(
 ) -> tuple[float, float, float]:
     """Return kelvin, light and cover of a part's finish at a point [m] of the part.
 
-    They are those of the nearest texel; only from nearer than 2 m is that larger than a pixel.
+    The nearest texel is used; it is larger than a pixel only at less than 2 m.
     """
     columns, rows = int(finish[part, 1]), int(finish[part, 2])
     column = int(turn_of(x, y) * columns + 0.5)
@@ -250,13 +250,13 @@ def finish_at(
 
 @njit(cache=True, fastmath=True, forceinline=True)
 def finish_run(places: NDArray[np.uint32], run: PixelRun, finish: NDArray[np.float64]) -> None:
-    """Find the texels of a finish on which neighbouring pixels of one part fall, as `finish_at` does it.
+    """Find the texels of a finish at neighbouring pixels of one part, like `finish_at` at points.
 
-    They are found several at a time, and looked up only when all are known: waiting for memory takes longest.
+    The indices are computed first, vectorised, and looked up afterwards, since memory access takes longest.
 
     Args:
-        places: (W,) gets the numbers of the pixels' texels.
-        run: which pixels.
+        places: (W,) output, numbers of the pixels' texels.
+        run: the pixels.
         finish: (P, 8) as in `MaterialTable`.
     """
     first, end, p, v, depths, matrices = run

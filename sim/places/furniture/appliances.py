@@ -27,7 +27,7 @@ ALONG_X: Quaternion = (0.0, math.sin(math.pi / 4.0), 0.0, math.cos(math.pi / 4.0
 
 
 def capsule(length: float, radius: float, position: Vector, orientation: Quaternion) -> Shape:
-    """A capsule by the length between its caps, radius and middle [m]."""
+    """Make a capsule from the length between its caps, radius and centre [m]."""
     return Shape(
         kind=ShapeKind.CAPSULE, size=(length, radius, 0.0), position=position, orientation=orientation
     )
@@ -42,7 +42,7 @@ def capsule(length: float, radius: float, position: Vector, orientation: Quatern
     is_heated=True,
 )
 def lit_shade(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A flat panel of light-emitting diodes under the ceiling, hardly warmer than a hand."""
+    """Build a flat LED panel under the ceiling, hardly warmer than a hand."""
     depth, width, height = size
     panel = standing_box(depth, width, 0.0, height + SINK_M)
     return (Piece("panel", (panel,), temperature, rgb, glow=1.0, uneven_k=0.8, is_solid=False),)
@@ -58,7 +58,7 @@ def lit_shade(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     is_heated=True,
 )
 def screen(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A large flat screen on a wall, warmest above."""
+    """Build a large flat screen on a wall, warmest at the top."""
     depth, width, height = size
     glass = standing_box(0.5 * depth, width - 0.03, 0.015, height - 0.015, x=0.75 * depth + 0.002)
     case = standing_box(0.8 * depth + SINK_M, width, 0.0, height, x=0.4 * depth - SINK_M / 2.0)
@@ -70,7 +70,7 @@ def screen(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("kettle", size_m=(0.25, 0.18, 0.26), temperature_c=70.0, rgb=STEEL, is_heated=True)
 def kettle(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A kettle that has boiled, on its base."""
+    """Build a kettle that has boiled, on its base."""
     depth, width, height = size
     radius, x = 0.5 * width, 0.5 * (width - depth)
     jug = tube(0.8 * height, 0.92 * radius, (x, 0.0, 0.55 * height))
@@ -86,7 +86,7 @@ def kettle(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("fridge", size_m=(0.62, 0.6, 1.8), temperature_c=20.0, rgb=WHITE)
 def fridge(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A fridge over a freezer: cool doors, cold seals, and warm air from below."""
+    """Build a fridge over a freezer: cool doors, cold seals, and warm air from below."""
     depth, width, height = size
     body = standing_box(depth - 0.02, width, 0.09, height, x=-0.01)
     seals = tuple(
@@ -107,7 +107,7 @@ def fridge(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("oven", size_m=(0.6, 0.6, 0.9), temperature_c=46.0, rgb=WHITE, is_heated=True)
 def oven(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A stove: a hot pane in front, and on top plates, one of them hot."""
+    """Build a stove with a hot pane in front, and hobs on top, one of them hot."""
     depth, width, height = size
     pane = standing_box(0.02, 0.7 * width, 0.28 * height, 0.68 * height, x=depth / 2.0 - 0.008)
     body = standing_box(depth - 0.02, width, -SINK_M, height - 0.02, x=-0.01)
@@ -128,7 +128,7 @@ def oven(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("counter", size_m=(0.6, 2.4, 0.9), temperature_c=21.2, rgb=WHITE)
 def counter(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A counter or kitchen unit: doors below a board."""
+    """Build a counter or kitchen unit: doors below a worktop."""
     depth, width, height = size
     doors = max(2, min(round(width / 0.6), 12))
     pitch = width / doors
@@ -149,7 +149,7 @@ def counter(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("shelf", size_m=(0.45, 1.2, 1.9), temperature_c=21.5, rgb=(0.45, 0.33, 0.2))
 def shelf_of_boxes(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A rack with boxes on its boards."""
+    """Build a rack with boxes on its shelves."""
     depth, width, height = size
     levels = 4
     boards = tuple(
@@ -177,7 +177,7 @@ def shelf_of_boxes(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, .
 
 @thing_kind("vending_machine", size_m=(0.8, 0.95, 1.85), temperature_c=24.5, rgb=(0.5, 0.05, 0.06))
 def vending_machine(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A vending machine: a lit cool pane, and below it warm air and a slot."""
+    """Build a vending machine: a lit cool pane, and below it warm air and a slot."""
     depth, width, height = size
     pane = standing_box(
         0.02, 0.62 * width, 0.34 * height, 0.93 * height, x=depth / 2.0 - 0.005, y=0.12 * width
@@ -207,7 +207,7 @@ def vending_machine(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, 
 
 @thing_kind("machine", size_m=(0.9, 2.0, 1.35), temperature_c=44.0, rgb=(0.12, 0.25, 0.2), is_heated=True)
 def machine(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A machine tool: a bed, a head stock, and a hot motor with ribs behind."""
+    """Build a machine tool: a bed, a headstock, and a hot ribbed motor behind."""
     depth, width, height = size
     bed = (
         standing_box(depth, 0.9 * width, 0.04, 0.5 * height),
@@ -232,7 +232,7 @@ def machine(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("glass_wall", size_m=(0.08, 2.4, 2.4), temperature_c=19.5, rgb=(0.45, 0.55, 0.55))
 def glass_wall(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A pane from floor to top in a frame of posts, which mirrors people who walk past."""
+    """Build a full-height pane in a frame of posts, which reflects people who walk past."""
     depth, width, height = size
     pane = standing_box(0.4 * depth, width - 0.02, 0.02, height - 0.02)
     count = max(round(width / 1.2), 1)
@@ -262,7 +262,7 @@ def glass_wall(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("dog", size_m=(0.75, 0.28, 0.6), temperature_c=28.5, rgb=(0.3, 0.18, 0.08), is_heated=True)
 def dog(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A standing dog: as warm as a person, and half as tall as a child."""
+    """Build a standing dog: as warm as a person, and half as tall as a child."""
     depth, width, height = size
     radius, back = 0.42 * width, 0.62 * height
     trunk = capsule(0.42 * depth, radius, (-0.04 * depth, 0.0, back), ALONG_X)
@@ -284,7 +284,7 @@ def dog(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("bench", size_m=(0.55, 1.6, 0.85), temperature_c=21.0, rgb=WOOD, is_seat=True)
 def bench(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A bench of boards with a back."""
+    """Build a bench of boards with a back."""
     depth, width, height = size
     pitch = (depth - 0.06) / 3.0
     boards = tuple(
@@ -309,7 +309,7 @@ def bench(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("railing", size_m=(0.04, 2.0, 1.05), temperature_c=19.5, rgb=STEEL)
 def railing(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A barrier of two rails and upright bars, which can be seen through."""
+    """Build a see-through barrier of two rails and upright bars."""
     depth, width, height = size
     radius = 0.5 * depth
     rails = tuple(tube(width, radius, (0.0, 0.0, at), ALONG_Y) for at in (0.15, height - radius))

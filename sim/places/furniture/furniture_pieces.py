@@ -1,4 +1,4 @@
-"""Things of rooms: furniture, and warm clutter that a tracker must not mistake for people.
+"""Things of rooms: furniture, and warm clutter that trackers may confuse with people.
 
 Source of the list of clutter: T fig. 4.1. Every builder takes depth, width, height [m] and the temperature
 [degC] and colour of the main piece, and returns the pieces, the main one first.
@@ -22,7 +22,7 @@ from peopleboy.sim.places.pieces import (
 from peopleboy.sim.shapes.materials import Covering, Rgb
 from peopleboy.sim.shapes.shapes import Vector
 
-_MOST_RIBS = 14  # with the panel they fit into one body of 16 shapes
+_MOST_RIBS = 14  # together with the panel they fit into one body of 16 shapes
 
 
 @thing_kind(
@@ -35,7 +35,7 @@ _MOST_RIBS = 14  # with the panel they fit into one body of 16 shapes
     is_heated=True,
 )
 def radiator(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A ribbed panel on a wall: two straight warm sides, as a standing person has."""
+    """Build a ribbed panel on a wall: two straight warm sides, like those of a standing person."""
     depth, width, height = size
     count = max(2, min(_MOST_RIBS, round(width / 0.09)))
     pitch = width / count
@@ -63,7 +63,7 @@ def radiator(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     is_heated=True,
 )
 def pipe(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A heating pipe that runs up a wall."""
+    """Build a heating pipe that runs up a wall."""
     depth, _, height = size
     shape = tube(height + 2.0 * SINK_M, depth / 2.0, (depth / 2.0 + 0.02, 0.0, height / 2.0))
     return (Piece("pipe", (shape,), temperature, rgb, variation_k=0.6),)
@@ -78,7 +78,7 @@ def pipe(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     is_heated=True,
 )
 def ceiling_lamp(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A bright tube under its housing."""
+    """Build a bright tube under its housing."""
     depth, width, height = size
     glass = tube(0.92 * width, 0.3 * height, (0.0, 0.0, 0.3 * height), ALONG_Y)
     housing = standing_box(depth, width, 0.55 * height, height + SINK_M)
@@ -90,7 +90,7 @@ def ceiling_lamp(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...
 
 @thing_kind("floor_lamp", size_m=(0.36, 0.36, 1.6), temperature_c=75.0, rgb=(1.0, 0.95, 0.8), is_heated=True)
 def floor_lamp(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A hot bulb in a warm shade on a pole."""
+    """Build a hot bulb in a warm shade on a pole."""
     depth, _, height = size
     radius = depth / 2.0
     bulb = ball(0.05, (0.0, 0.0, height - 0.04))
@@ -106,7 +106,7 @@ def floor_lamp(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("monitor", size_m=(0.2, 0.55, 0.46), temperature_c=35.0, rgb=(0.35, 0.5, 0.75), is_heated=True)
 def monitor(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A flat screen on a foot, warm all over in front."""
+    """Build a flat screen on a foot, with a warm front."""
     depth, width, height = size
     bottom = 0.28 * height
     middle = (bottom + height) / 2.0
@@ -123,7 +123,7 @@ def monitor(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("robot", size_m=(0.47, 0.38, 1.12), temperature_c=27.0, rgb=(0.5, 0.04, 0.05), is_heated=True)
 def robot(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A robot like the PeopleBot: base, column with warm electronics, and a deck with a camera."""
+    """Build a robot like the PeopleBot: base, column with warm electronics, and a deck with a camera."""
     depth, width, height = size
     base = (standing_box(depth, width, 0.05, 0.27), ball(0.04, (-0.4 * depth, 0.0, 0.04 - SINK_M)))
     wheels = tuple(
@@ -145,7 +145,7 @@ def robot(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 # Furniture at room temperature, pillars, and things on walls.
 
-# Middle of each ball of leaves, in radii sideways and as a share of the height, and its share of the radius.
+# Centre of each ball of leaves, sideways in radii and as a share of the height, and its share of the radius.
 _LEAVES = ((0.0, 0.0, 1.0, 1.0), (0.7, 0.4, 0.6, 0.9), (-0.6, 0.6, 0.5, 0.8), (0.0, -0.8, 0.55, 0.9))
 
 
@@ -153,13 +153,13 @@ _LEAVES = ((0.0, 0.0, 1.0, 1.0), (0.7, 0.4, 0.6, 0.9), (-0.6, 0.6, 0.5, 0.8), (0
     "window", size_m=(0.05, 1.4, 1.2), temperature_c=16.0, rgb=(0.55, 0.65, 0.75), base_m=0.95, is_hung=True
 )
 def window(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A cold pane in a frame with a middle post, on a wall."""
+    """Build a cold pane in a frame with a middle post, on a wall."""
     depth, width, height = size
     rail = 0.07
     pane = standing_box(
         depth / 2.0 + SINK_M, width - rail, 0.5 * rail, height - 0.5 * rail, x=(depth / 2.0 - SINK_M) / 2.0
     )
-    side = (width - rail) / 2.0 - 0.002  # no face of a post lies in a rail's
+    side = (width - rail) / 2.0 - 0.002  # no faces of posts and rails are coplanar
     deep, middle = depth + SINK_M, (depth - SINK_M) / 2.0
     frame = (
         standing_box(deep, width, 0.0, rail, x=middle),
@@ -181,7 +181,7 @@ def window(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     "poster", size_m=(0.01, 0.6, 0.9), temperature_c=21.5, rgb=(0.7, 0.2, 0.15), base_m=1.0, is_hung=True
 )
 def poster(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A sheet on a wall."""
+    """Build a sheet on a wall."""
     depth, width, height = size
     sheet = standing_box(depth + SINK_M, width, 0.0, height, x=(depth - SINK_M) / 2.0)
     return (Piece("poster", (sheet,), temperature, rgb),)
@@ -189,7 +189,7 @@ def poster(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("table", size_m=(0.75, 1.4, 0.74), temperature_c=21.5, rgb=WOOD)
 def table(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A board on four legs."""
+    """Build a board on four legs."""
     depth, width, height = size
     top = standing_box(depth, width, height - 0.035, height)
     legs = corner_legs(0.05, height - 0.01, depth / 2.0 - 0.06, width / 2.0 - 0.06)
@@ -198,7 +198,7 @@ def table(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("chair", size_m=(0.45, 0.45, 0.9), temperature_c=21.8, rgb=(0.08, 0.1, 0.25), is_seat=True)
 def chair(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A seat with a back on four legs."""
+    """Build a seat with a back on four legs."""
     depth, width, height = size
     seat = standing_box(depth, width, 0.42, 0.46)
     back = standing_box(0.03, width - 0.02, 0.45, height, x=-depth / 2.0 + 0.025)
@@ -213,7 +213,7 @@ def chair(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 @thing_kind("block", size_m=(0.5, 0.5, 0.5), temperature_c=21.5, rgb=(0.5, 0.5, 0.5))
 @thing_kind("cabinet", size_m=(0.42, 0.8, 1.9), temperature_c=21.3, rgb=(0.5, 0.42, 0.32))
 def block(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A plain block: a cabinet, a pillar, a box."""
+    """Build a plain block: a cabinet, a pillar, a box."""
     depth, width, height = size
     shape = standing_box(depth, width, -SINK_M, height)
     return (Piece("block", (shape,), temperature, rgb),)
@@ -223,7 +223,7 @@ def block(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
     "round_pillar", size_m=(0.4, 0.4, 2.7), temperature_c=21.5, rgb=(0.6, 0.58, 0.54), is_to_ceiling=True
 )
 def column(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A round pillar as thick as it is deep."""
+    """Build a round pillar as thick as it is deep."""
     depth, _, height = size
     shape = tube(height + SINK_M, depth / 2.0, (0.0, 0.0, (height - SINK_M) / 2.0))
     return (Piece("column", (shape,), temperature, rgb),)
@@ -231,7 +231,7 @@ def column(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("plant", size_m=(0.6, 0.6, 1.4), temperature_c=20.5, rgb=(0.05, 0.22, 0.06))
 def plant(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """Balls of leaves on a stem, in a pot."""
+    """Build balls of leaves on a stem, in a pot."""
     depth, width, height = size
     pot = tube(0.3 + SINK_M, 0.3 * depth, (0.0, 0.0, (0.3 - SINK_M) / 2.0))
     stem = tube(height - 0.3, 0.03, (0.0, 0.0, 0.3 + (height - 0.3) / 2.0))

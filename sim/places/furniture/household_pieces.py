@@ -15,7 +15,7 @@ _SHELF_EVERY_M = 0.45
 
 @thing_kind("bear", size_m=(0.42, 0.42, 0.5), temperature_c=21.5, rgb=(0.32, 0.17, 0.07))
 def bear(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A teddy bear that sits, made of balls."""
+    """Build a sitting teddy bear, made of balls."""
     depth, width, height = size
     belly, head = 0.28 * height, 0.24 * height
     x, top = -0.12 * depth, height - 0.26 * height
@@ -38,7 +38,7 @@ def bear(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("can", size_m=(0.6, 0.26, 0.4), temperature_c=20.5, rgb=(0.05, 0.18, 0.35))
 def can(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A watering can: a round body with a spout to the front and a bow behind."""
+    """Build a watering can: a round body with a spout in front and a handle behind."""
     depth, width, height = size
     radius, body = 0.5 * width, 0.72 * height
     x, rise = radius - 0.5 * depth, 0.62 * height
@@ -56,7 +56,7 @@ def can(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("flower", size_m=(0.5, 0.5, 1.0), temperature_c=20.5, rgb=(0.05, 0.22, 0.06))
 def flower(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A bush on a stem, in a pot that can be carried."""
+    """Build a bush on a stem, in a portable pot."""
     _, width, height = size
     radius, pot = 0.3 * width, 0.26 * height
     bush = (
@@ -76,7 +76,7 @@ def flower(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("door_leaf", size_m=(0.04, 0.93, 2.03), temperature_c=21.0, rgb=(0.45, 0.3, 0.16))
 def door_leaf(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A leaf of a door, with a handle on both sides near the edge that is on the left, looking along x."""
+    """Build a door leaf, with a handle on both sides near the left edge, seen along x."""
     depth, width, height = size
     leaf = standing_box(depth, width, -SINK_M, height)
     at = min(1.0, 0.5 * height)
@@ -91,7 +91,7 @@ def door_leaf(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("cupboard", size_m=(0.45, 0.9, 1.8), temperature_c=21.2, rgb=(0.55, 0.45, 0.33))
 def cupboard(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A cupboard with shelves, open to the front."""
+    """Build a cupboard with shelves, open to the front."""
     depth, width, height = size
     side, inner = width / 2.0 - _BOARD_M / 2.0, width - 2.0 * _BOARD_M + 0.004
     shelves = max(round(height / _SHELF_EVERY_M), 2)
@@ -108,7 +108,7 @@ def cupboard(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("drawer", size_m=(0.42, 0.8, 0.2), temperature_c=21.2, rgb=(0.6, 0.5, 0.38))
 def drawer(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A drawer: a box without a lid behind a front with a knob."""
+    """Build a drawer: an open box behind a front with a knob."""
     depth, width, height = size
     front = standing_box(_BOARD_M, width, -SINK_M, height, x=(depth - _BOARD_M) / 2.0)
     low, inside, middle = 0.75 * height, depth - _BOARD_M, -_BOARD_M / 2.0

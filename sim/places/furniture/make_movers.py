@@ -1,4 +1,4 @@
-"""Make movers from the actions of things; impossible actions are refused."""
+"""Make movers from the actions of things; impossible actions are rejected."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -107,7 +107,7 @@ def _check_keys(action: ActionConfig) -> None:
     kind = ActionKind(action.kind)
     for key in ("to_m", "base_m", "facing_deg", "takes_s", "hinge_m"):
         if getattr(action, key) is not None and key not in _TAKES[kind]:
-            raise BadInput(f"action '{kind}' does not use it; leave it out", key=(key,))
+            raise BadInput(f"action '{kind}' does not use it; remove it", key=(key,))
     for key in _WANTS.get(kind, ()):
         if getattr(action, key) is None:
             raise BadInput(f"missing key {key!r}, which action '{kind}' needs")

@@ -153,7 +153,7 @@ class Furnishing:
         """Build all things at their positions.
 
         Raises:
-            BadInput: a wall or thing is unknown, there is not one position, or a URDF is unusable.
+            BadInput: a wall or thing is unknown, the position is missing or ambiguous, or a URDF is unusable.
         """
         for index, (name, thing) in enumerate(zip(name_things(things), things, strict=True)):
             with found_in("things", index):
@@ -190,7 +190,7 @@ class Furnishing:
         if thing.wall is not None:
             return self._at_wall(thing, extent)
         if thing.along_m is not None:
-            raise BadInput("it needs the key 'wall'", key=("along_m",))
+            raise BadInput("missing key 'wall', which this kind requires", key=("along_m",))
         if thing.at_m is not None:
             return *thing.at_m, facing
         if thing.on_top_of is not None:
@@ -244,7 +244,7 @@ class Furnishing:
 
 
 def extent_of(fixtures: Sequence[Fixture]) -> Extent:
-    """The box around all fixtures of a thing."""
+    """Return the box around all fixtures of a thing."""
     extents = np.array([fixture_extent(fixture) for fixture in fixtures])
     return np.array([extents[:, 0].min(axis=0), extents[:, 1].max(axis=0)])
 
@@ -255,7 +255,7 @@ def _urdf_extent(urdf: str) -> Extent:
 
 
 def _find_urdf(thing: ThingConfig, folder: Path) -> str | None:
-    """Return the name by which PyBullet finds the file, in pybullet_data or in the scenario's folder."""
+    """Return the path for PyBullet of a file in pybullet_data or in the scenario's folder."""
     if thing.kind != "urdf":
         if thing.urdf is not None:
             raise BadInput("only a thing of kind 'urdf' uses it", key=("urdf",))

@@ -23,7 +23,7 @@ from peopleboy.sim.places.pieces import (
 from peopleboy.sim.shapes.materials import Covering, Rgb
 from peopleboy.sim.shapes.shapes import Quaternion, Shape, Vector
 
-# Where each ball of a crown touches the outline, as a direction, and its radius as a share of the crown's.
+# Direction in which each ball of a crown touches the outline, and its radius as a share of the crown's.
 _CROWN = (
     (0.0, 0.0, 1.0, 0.5),
     (1.0, 0.0, 0.0, 0.5),
@@ -46,7 +46,7 @@ _CROWN = (
 
 @thing_kind("car", size_m=(4.2, 1.75, 1.45), temperature_c=36.0, rgb=(0.08, 0.12, 0.3), is_heated=True)
 def car(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A car that has been driven: warm bonnet, grille, tyres and exhaust, cool panes and roof."""
+    """Build a car that has been driven: warm bonnet, grille, tyres and exhaust, cool panes and roof."""
     depth, width, height = size
     low, waist = 0.17 * height, 0.6 * height
     lower = standing_box(0.985 * depth, width, low, waist)
@@ -95,7 +95,7 @@ def car(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 @thing_kind("bicycle", size_m=(1.75, 0.55, 1.05), temperature_c=20.0, rgb=(0.05, 0.25, 0.12))
 def bicycle(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A bicycle on its stand: two rings and a frame, cooler than the air under a clear sky."""
+    """Build a bicycle on its stand: two rings and a frame, cooler than the air under a clear sky."""
     depth, width, height = size
     radius = 0.19 * depth
     hubs = (-0.5 * depth + radius, 0.5 * depth - radius)
@@ -118,7 +118,7 @@ def bicycle(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
 
 
 def _chord(x: float, radius: float, index: int) -> Shape:
-    """One of eight pieces of a tyre that touches the floor."""
+    """Build one of eight pieces of a tyre that touches the floor."""
     first, second = (math.tau * (k + 0.5) / 8.0 for k in (index, index + 1))
     inner = (radius - 0.02) / math.cos(math.pi / 8.0)
     ends = [(x + inner * math.cos(a), radius - SINK_M / 2.0 + inner * math.sin(a)) for a in (first, second)]
@@ -126,7 +126,7 @@ def _chord(x: float, radius: float, index: int) -> Shape:
 
 
 def _strut(start: tuple[float, float], end: tuple[float, float], radius: float = 0.02) -> Shape:
-    """A rod between two points (x, z) in the plane of the wheels."""
+    """Build a rod between two points (x, z) in the plane of the wheels."""
     across, up = end[0] - start[0], end[1] - start[1]
     half = 0.5 * math.atan2(across, up)
     turn: Quaternion = (0.0, math.sin(half), 0.0, math.cos(half))
@@ -136,7 +136,7 @@ def _strut(start: tuple[float, float], end: tuple[float, float], radius: float =
 
 @thing_kind("tree", size_m=(3.2, 3.2, 5.5), temperature_c=21.0, rgb=(0.06, 0.2, 0.05))
 def tree(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A trunk and a crown of leaves, as warm as the air."""
+    """Build a tree: a trunk and a crown of leaves, as warm as the air."""
     _, width, height = size
     radius = width / 2.0
     middle = height - 0.925 * radius
@@ -162,7 +162,7 @@ def _beside(height: float, x: float, y: float, z: float, away_m: float) -> Vecto
     "street_lamp", size_m=(0.45, 0.45, 4.2), temperature_c=33.0, rgb=(0.08, 0.1, 0.09), is_heated=True
 )
 def street_lamp(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A lamp on a pole with a wide foot."""
+    """Build a lamp on a pole with a wide foot."""
     depth, _, height = size
     foot = tube(0.8 + SINK_M, 0.42 * depth, (0.0, 0.0, 0.5 * (0.8 - SINK_M)))
     base = tube(0.12 + SINK_M, 0.5 * depth, (0.0, 0.0, 0.5 * (0.12 - SINK_M)))
@@ -177,7 +177,7 @@ def street_lamp(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]
 
 @thing_kind("market_stall", size_m=(1.6, 2.6, 2.5), temperature_c=62.0, rgb=(0.55, 0.1, 0.08), is_heated=True)
 def market_stall(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A stall under an awning, with a hot plate, goods and a counter."""
+    """Build a stall under an awning, with a hot plate, goods and a counter."""
     depth, width, height = size
     plate = standing_box(0.35 * depth, 0.3 * width, 0.93, 1.0, x=0.05 * depth, y=0.25 * width)
     table = standing_box(0.6 * depth, 0.92 * width, -SINK_M, 0.94, x=0.03 * depth)
@@ -200,7 +200,7 @@ def market_stall(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...
 
 @thing_kind("bin", size_m=(0.5, 0.5, 0.95), temperature_c=20.5, rgb=BLACK)
 def bin_(size: Vector, temperature: float, rgb: Rgb) -> tuple[Piece, ...]:
-    """A litter bin with a lid."""
+    """Build a litter bin with a lid."""
     depth, _, height = size
     drum = tube(height - 0.1 + SINK_M, 0.46 * depth, (0.0, 0.0, 0.5 * (height - 0.1 - SINK_M)))
     lid = tube(0.14, 0.5 * depth, (0.0, 0.0, height - 0.07))

@@ -121,8 +121,8 @@ class ThingConfig:
     shine: Annotated[
         Share | None,
         Field(
-            description="how much of what its main surface reflects it mirrors, from 0, dull, to 1, glass; "
-            "seen with `detail: full` in flat sides; if omitted, the kind's own"
+            description="specular share of the main surface's reflection, from 0, dull, to 1, glass; "
+            "visible with `detail: full` on flat sides; default by kind"
         ),
     ] = None
     colour: Annotated[Colour | None, Field(description="colour of the main surface; default by kind")] = None

@@ -1,7 +1,7 @@
 """Thermal textures of walls, floors, streets, facades, leaves and the sky for `detail: full`.
 
-A clear sky looks far colder overhead than the air and hardly colder at the horizon; glass mirrors it, and
-stone that had sun by day stays warm in the evening.
+The apparent temperature of a clear sky is far below the air's overhead, and close to it at the horizon. Glass
+reflects the sky, and stone that was in the sun stays warm in the evening.
 """
 
 import numpy as np
@@ -9,11 +9,11 @@ import numpy as np
 from peopleboy.sim.places.textures.surface_texture import Array, SurfaceTexture
 
 _STOREY_M = 3.1
-_SKY_K = 15.0  # how much colder the sky seems overhead than at the horizon
+_SKY_K = 15.0  # apparent temperature of the sky at the horizon minus overhead
 
 
 def paint_street(texture: SurfaceTexture) -> None:
-    """A road between two pavements along x: slabs, kerbs, patches, tyre tracks, marks, and manholes."""
+    """Texture a road between two pavements along x: slabs, kerbs, patches, tracks, markings, manholes."""
     rng, (_, width) = texture.rng, texture.size
     off = np.abs(texture.world[..., 1])
     road_m = min(3.5, 0.16 * width)
@@ -38,7 +38,7 @@ def paint_street(texture: SurfaceTexture) -> None:
 
 
 def _mend(texture: SurfaceTexture, road_m: float) -> None:
-    """A patch of newer asphalt."""
+    """Add a patch of newer asphalt."""
     rng = texture.rng
     x, y = rng.uniform(texture.world[..., 0].min(), texture.world[..., 0].max()), rng.uniform(-road_m, road_m)
     across, up = rng.uniform(0.4, 2.5, 2)
@@ -50,7 +50,7 @@ def _mend(texture: SurfaceTexture, road_m: float) -> None:
 
 
 def _manhole(texture: SurfaceTexture, road_m: float) -> None:
-    """A lid over a warm sewer."""
+    """Add a lid over a warm sewer."""
     rng = texture.rng
     x, y = rng.uniform(texture.world[..., 0].min(), texture.world[..., 0].max()), rng.uniform(-road_m, road_m)
     lid = texture.strip(np.hypot(texture.world[..., 0] - x, texture.world[..., 1] - y), 0.3, 0.03)
@@ -59,7 +59,7 @@ def _manhole(texture: SurfaceTexture, road_m: float) -> None:
 
 
 def paint_facade(texture: SurfaceTexture) -> None:
-    """Storeys of windows that mirror the cold sky, some of lit rooms; shop windows below; stone between."""
+    """Texture a facade: storeys of windows that reflect the cold sky, some lit; shop windows; stone."""
     rng, width = texture.rng, texture.size[0]
     pitch = width / max(round(width / rng.uniform(1.9, 3.2)), 1)
     storey = np.floor(texture.up / _STOREY_M)
@@ -92,13 +92,13 @@ def paint_facade(texture: SurfaceTexture) -> None:
 
 
 def paint_sky(texture: SurfaceTexture) -> None:
-    """The sky overhead, colder the steeper one looks, with clouds."""
+    """Texture the sky overhead, colder with elevation, with clouds."""
     away = np.hypot(texture.world[..., 0] - texture.world[..., 0].mean(), texture.world[..., 1])
     _sky(texture, np.arctan2(texture.world[..., 2], np.maximum(away, 1e-3)), 9.0)
 
 
 def paint_skyline(texture: SurfaceTexture) -> None:
-    """The sky near the horizon, behind far houses and trees."""
+    """Texture the sky near the horizon, behind distant houses and trees."""
     rng, (width, _) = texture.rng, texture.size
     _sky(texture, np.arctan2(texture.world[..., 2], 35.0), 6.0)
     texture.light *= 1.05
@@ -116,7 +116,7 @@ def paint_skyline(texture: SurfaceTexture) -> None:
 
 
 def _house(texture: SurfaceTexture, left: float, wide: float, tall: float) -> None:
-    """A far house with windows and a roof that is cold as it faces the sky."""
+    """Add a distant house with windows, and a roof that is cold as it faces the sky."""
     rng = texture.rng
     middle = np.abs(texture.across - left - 0.5 * wide)
     roof = tall + np.maximum(0.6 * (0.5 * wide - middle), 0.0) * (rng.random() < 0.5)
@@ -133,13 +133,13 @@ def _house(texture: SurfaceTexture, left: float, wide: float, tall: float) -> No
 
 
 def paint_leaves(texture: SurfaceTexture) -> None:
-    """Leaves and twigs, with gaps through which other leaves show."""
+    """Texture leaves and twigs, with gaps through which other leaves show."""
     texture.kelvin += 0.9 * texture.cloudy(0.5) + 0.9 * texture.cloudy(0.12)
     texture.light *= np.clip(1.0 + 0.35 * texture.cloudy(0.15), 0.2, 2.0)
 
 
 def _sky(texture: SurfaceTexture, elevation: Array, clouds_k: float) -> None:
-    """Colder with elevation [rad] (by the path through the air); clouds send as the air up there."""
+    """Return the sky's temperature by elevation [rad], from the path length through the air, with clouds."""
     texture.kelvin -= _SKY_K * np.sin(np.clip(elevation, 0.0, None)) ** 0.55
     cover = np.clip(texture.cloudy(14.0) - texture.rng.uniform(-0.3, 0.8), 0.0, 1.2)
     texture.kelvin += clouds_k * cover
@@ -147,23 +147,22 @@ def _sky(texture: SurfaceTexture, elevation: Array, clouds_k: float) -> None:
 
 
 def _ridge(texture: SurfaceTexture, metres: float) -> Array:
-    """(1, W) noise along the horizon."""
+    """Return noise (1, W) along the horizon."""
     return texture.cloudy(metres)[:1]
 
 
 # Walls, floors and ceilings of buildings in thermal images.
 #
-# Air is warmer above than below, corners and edges lose heat, studs carry it through, wires and pipes in
-# the wall bring some, and nothing is even. Sizes of these effects: textbook cases of building
-# thermography.
+# Air is warmer above than below, corners and edges lose heat, studs conduct it, wires and pipes in the wall
+# add some, and no surface is even. The sizes of these effects are textbook cases of building thermography.
 
 _STUDS_M, _SKIRTING_M = 0.6, 0.08
-_STUDDED = 0.35  # of walls are boards on studs, the others stone
-_LAYERED = 2.5  # blotches are so many times as wide as high, as air lies in layers of one warmth
+_STUDDED = 0.35  # share of walls with boards on studs; the others are stone
+_LAYERED = 2.5  # ratio of width to height of blotches, since air is stratified by temperature
 
 
 def paint_plaster(texture: SurfaceTexture) -> None:
-    """A plastered wall on studs, with skirting, wires, pipes, sockets and stains."""
+    """Texture a plastered wall on studs, with skirting, wires, pipes, sockets and stains."""
     rng, width = texture.rng, texture.size[0]
     texture.kelvin += rng.uniform(0.5, 1.1) * (texture.up - 1.2)
     texture.kelvin -= _edges(texture, rng.uniform(1.2, 3.0), 0.22)
@@ -187,7 +186,7 @@ def paint_plaster(texture: SurfaceTexture) -> None:
 
 
 def paint_flooring(texture: SurfaceTexture) -> None:
-    """A floor in slabs, cold along the walls, warm under sun, heating or feet."""
+    """Texture a floor of slabs, cold along the walls, warm from sun, heating or feet."""
     rng = texture.rng
     texture.kelvin -= _edges(texture, rng.uniform(0.5, 1.6), 0.35)
     texture.kelvin += rng.uniform(0.3, 0.6) * texture.cloudy(2.5) + 0.2 * texture.cloudy(0.3)
@@ -199,7 +198,7 @@ def paint_flooring(texture: SurfaceTexture) -> None:
 
 
 def paint_ceiling(texture: SurfaceTexture) -> None:
-    """Ceiling tiles, some of them grilles of warm or cold air."""
+    """Texture ceiling tiles, some of them grilles of warm or cold air."""
     rng, pitch = texture.rng, 0.6
     joints, tiles = _joints(texture, pitch, pitch, 0.02), texture.cells(pitch, pitch)
     texture.kelvin -= _edges(texture, rng.uniform(0.4, 1.4), 0.3)
@@ -212,13 +211,13 @@ def paint_ceiling(texture: SurfaceTexture) -> None:
 
 
 def _studs(texture: SurfaceTexture) -> None:
-    """Studs behind boards, whose heat spreads in the boards."""
+    """Add studs behind boards, whose heat spreads in the boards."""
     off = (texture.across + texture.rng.uniform(0.0, _STUDS_M)) % _STUDS_M - 0.5 * _STUDS_M
     texture.kelvin -= texture.rng.uniform(0.2, 0.7) * np.exp(-((off / 0.04) ** 2))
 
 
 def _courses(texture: SurfaceTexture) -> None:
-    """Blocks and their joints behind plaster, which spreads their heat."""
+    """Add blocks and joints behind plaster, which spreads their heat."""
     rng, high = texture.rng, texture.rng.uniform(0.2, 0.33)
     off = (texture.up + rng.uniform(0.0, high)) % high - 0.5 * high
     texture.kelvin -= (
@@ -227,7 +226,7 @@ def _courses(texture: SurfaceTexture) -> None:
 
 
 def _stain(texture: SurfaceTexture) -> None:
-    """A damp, warm, leaned-on or badly insulated patch."""
+    """Add a damp, warm, touched or badly insulated patch."""
     rng, (width, height) = texture.rng, texture.size
     u, v = rng.uniform(0.0, width), rng.uniform(0.1, height)
     wide, high = rng.uniform(0.12, 0.6, 2)
@@ -238,7 +237,7 @@ def _stain(texture: SurfaceTexture) -> None:
 
 
 def _wire(texture: SurfaceTexture) -> None:
-    """A wire in the wall from a socket or switch up to the ceiling; the socket is as warm again."""
+    """Add a wire in the wall from a socket or switch to the ceiling; the socket is twice as warm."""
     rng, width = texture.rng, texture.size[0]
     u, v, warm = rng.uniform(0.2, max(width - 0.2, 0.21)), rng.choice([0.35, 1.1]), rng.uniform(0.2, 0.8)
     texture.kelvin += warm * texture.strip(texture.across - u, 0.008, 0.03) * (texture.up > v)
@@ -248,7 +247,7 @@ def _wire(texture: SurfaceTexture) -> None:
 
 
 def _pipe(texture: SurfaceTexture) -> None:
-    """A pipe of warm or cold water behind the plaster."""
+    """Add a pipe with warm or cold water behind the plaster."""
     rng, width = texture.rng, texture.size[0]
     at_u, at_v = rng.uniform(0.0, width), rng.uniform(0.15, 0.5)
     bent = np.where(texture.up > at_v, texture.across - at_u, texture.up - at_v)
@@ -263,14 +262,14 @@ def _joints(texture: SurfaceTexture, across_m: float, up_m: float, width_m: floa
 
 
 def _to_edge(texture: SurfaceTexture) -> Array:
-    """(H, W) [m] to the nearest edge."""
+    """Return the distance (H, W) [m] to the nearest edge."""
     width, height = texture.size
     across = np.minimum(texture.across, width - texture.across)
     return np.minimum(across, np.minimum(texture.up, height - texture.up))
 
 
 def _edges(texture: SurfaceTexture, kelvin: float, metres: float) -> Array:
-    """Return the cooling of edges and, twice as much, of corners [K]."""
+    """Return the cooling of edges, and twice as much of corners [K]."""
     width, height = texture.size
     across = np.exp(-np.minimum(texture.across, width - texture.across) / metres)
     return kelvin * (across + np.exp(-np.minimum(texture.up, height - texture.up) / metres))

@@ -13,8 +13,8 @@ from peopleboy.sim.places.textures.surface_texture import Array, SurfaceTexture
 from peopleboy.sim.shapes.materials import Unrolling
 
 _SOFT_TEXELS = 2
-_INSIDE_M = 0.12  # a ray has left the room when it is so far behind the plane of a pane
-_LEAST_M = 0.02  # what is nearer to a point than that is the point's own
+_INSIDE_M = 0.12  # distance behind the plane of a pane at which a ray has left the room
+_LEAST_M = 0.02  # nearer obstacles belong to the surface itself
 
 
 def shine_on(texture: SurfaceTexture, sun: Sun, panes: Sequence[Extent], blocking: Sequence[Extent]) -> None:
@@ -22,9 +22,9 @@ def shine_on(texture: SurfaceTexture, sun: Sun, panes: Sequence[Extent], blockin
 
     Args:
         texture: a floor, a wall or a road.
-        sun: where it stands, and what it does.
-        panes: windows through which it gets into a building; none where it is all open.
-        blocking: what casts shadows.
+        sun: position and effects of the sun.
+        panes: windows through which it enters a building; none outdoors.
+        blocking: boxes that cast shadows.
     """
     way = _towards(sun)
     lit = np.ones(texture.kelvin.shape, bool) if not panes else _through(texture.world, way, panes)
@@ -37,7 +37,7 @@ def shine_on(texture: SurfaceTexture, sun: Sun, panes: Sequence[Extent], blockin
 
 
 def _towards(sun: Sun) -> Array:
-    """(3,) from a surface to the sun."""
+    """Return the direction (3,) to the sun."""
     return np.array(
         [
             math.cos(sun.elevation_rad) * math.cos(sun.azimuth_rad),
@@ -48,7 +48,7 @@ def _towards(sun: Sun) -> Array:
 
 
 def _through(points: Array, way: Array, panes: Sequence[Extent]) -> NDArray[np.bool_]:
-    """(H, W) whether the ray to the sun leaves through a pane."""
+    """Return (H, W) whether the ray to the sun leaves through a pane."""
     lit = np.zeros(points.shape[:2], bool)
     for extent in panes:
         axis = int(np.argmin((extent[1] - extent[0])[:2]))
@@ -66,7 +66,7 @@ def _through(points: Array, way: Array, panes: Sequence[Extent]) -> NDArray[np.b
 
 @njit(cache=True)
 def _shade(lit: NDArray[np.bool_], points: Array, way: Array, blocking: Array) -> None:
-    """Take the light (H, W) from points (H, W, 3) whose rays meet a box of some (B, 2, 3) (slab method)."""
+    """Remove the light (H, W) of points (H, W, 3) whose rays hit a box of (B, 2, 3) (slab method)."""
     for v in range(lit.shape[0]):
         for u in range(lit.shape[1]):
             for k in range(len(blocking)):
@@ -81,7 +81,7 @@ def _shade(lit: NDArray[np.bool_], points: Array, way: Array, blocking: Array) -
 
 
 def _softened(share: Array, texels: int) -> Array:
-    """The mean over a square of texels about each, which a camera's edge and the sun's width ask for."""
+    """Return the mean over a square of texels, for the penumbra of the sun."""
     padded = np.pad(share, texels, mode="edge")
     for axis in (0, 1):
         total = np.cumsum(padded, axis=axis)
@@ -94,20 +94,20 @@ def _softened(share: Array, texels: int) -> Array:
     return padded
 
 
-# Effects of warm and cold things on nearby surfaces.
+# Effects of warm and cold objects on nearby surfaces.
 
-_LEAST_K = 2.0  # a thing that differs less from a surface leaves no trace
+_LEAST_K = 2.0  # smaller temperature differences from a surface have no effect
 _REACH_M, _NEAR_M = 0.6, 0.14
 _FRAME_M, _DRAUGHT_K = 0.08, 2.0
-_STEP = 8  # texels between those by which a thing's neighbourhood is found
+_STEP = 8  # step in texels for finding the neighbourhood of an object
 _PLUME_SHARE, _TOUCH_SHARE, _PLUME_M = 0.13, 0.12, 0.9
 
 
 def warm_by(texture: SurfaceTexture, surface_c: float, things: Sequence[tuple[Extent, float]]) -> None:
-    """Add the effects of things of known extents [m] and temperatures [degC] to a surface.
+    """Add the effects of objects with given extents [m] and temperatures [degC] to a surface.
 
-    Near it, a surface takes a share of the difference that falls off with the distance. Above a warm thing
-    rises a plume along the wall, which widens and fades; below a cold pane cold air falls.
+    A nearby surface takes on a share of the temperature difference, which decreases with distance. Above a
+    warm object a plume rises along the wall, widening and fading; below a cold pane cold air falls.
     """
     for extent, temperature in things:
         difference = temperature - surface_c
@@ -116,7 +116,7 @@ def warm_by(texture: SurfaceTexture, surface_c: float, things: Sequence[tuple[Ex
 
 
 def frame_doors(texture: SurfaceTexture, doorways: Sequence[Extent]) -> None:
-    """Put frames about doors, darker than walls, and let cold air in below them."""
+    """Add frames around doors, darker than walls, and cold air below them."""
     for extent in doorways:
         gap = np.maximum(np.maximum(extent[0] - texture.world, texture.world - extent[1]), 0.0)
         away = np.linalg.norm(gap, axis=-1)
@@ -144,7 +144,7 @@ def _touch(texture: SurfaceTexture, extent: Extent, difference: float) -> None:
 
 
 def _near(world: Array, extent: Extent) -> tuple[Array, Array]:
-    """Which rows and columns of a texture come near a thing, or lie above or below it."""
+    """Return the rows and columns of a texture that are near, above or below an object."""
     coarse = world[::_STEP, ::_STEP]
     near = np.all(
         (coarse[..., :2] > extent[0, :2] - _REACH_M) & (coarse[..., :2] < extent[1, :2] + _REACH_M), axis=-1

@@ -1,4 +1,4 @@
-"""The flat grids that surfaces are painted on."""
+"""Textures of surfaces, as grids of temperature and brightness."""
 
 from dataclasses import dataclass
 
@@ -12,21 +12,21 @@ from peopleboy.sim.shapes.materials import Painting, Unrolling
 
 Array = NDArray[np.float64]
 
-# Clouds: smooth noise that has structure at all scales, as stains, drafts and moisture have.
+# Clouds: smooth noise with structure at all scales, like stains, drafts and moisture.
 
 _SIDE = 512
-_SLOPE = 2.0  # amplitude falls with frequency to this power: conduction evens out what is small; 1 is grainy
-_COARSEST = 4  # blotches a side: none larger, or a wall could be all one of them
+_SLOPE = 2.0  # exponent of frequency in the amplitude: conduction smooths details; 1 is grainy
+_COARSEST = 4  # blotches per side: limits their size, so that a wall has several
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Clouds:
-    """A square of noise of deviation 1 that repeats seamlessly."""
+    """A square of noise with standard deviation 1 that repeats seamlessly."""
 
     square: Array
 
     def at(self, across: Array, up: Array, metres: float) -> Array:
-        """(H, W) noise at points (1, W) and (H, 1) [m], linear between samples, its blotches so wide [m]."""
+        """Return interpolated noise (H, W) at points (1, W) and (H, 1) [m], with a blotch width [m]."""
         scale = _SIDE / (_COARSEST * metres)
         left, right, a = _between(across[0] * scale)
         low, high, b = _between(up[:, 0] * scale)
@@ -36,14 +36,14 @@ class Clouds:
 
 
 def _between(at: Array) -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:
-    """The samples (N,) before and after each place, and how far it is from the first to the second."""
+    """Return the samples (N,) before and after each position, and the interpolation weight."""
     whole = np.floor(at)
     before = whole.astype(np.int64) % _SIDE
     return before, (before + 1) % _SIDE, at - whole
 
 
 def draw_clouds(rng: np.random.Generator) -> Clouds:
-    """Draw noise whose amplitude falls with frequency (spectral synthesis)."""
+    """Draw noise with an amplitude that falls with frequency (spectral synthesis)."""
     frequency = np.hypot(np.fft.fftfreq(_SIDE)[:, None], np.fft.rfftfreq(_SIDE)[None, :]) * _SIDE
     amplitude = np.where(frequency >= _COARSEST, np.maximum(frequency, 1.0) ** -_SLOPE, 0.0)
     spectrum = amplitude * np.fft.rfft2(rng.standard_normal((_SIDE, _SIDE)))
@@ -57,20 +57,21 @@ _FINEST_OF_THINGS_M, _TEXELS_OF_THINGS = 0.01, 20_000
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class SurfaceTexture:
-    """A surface to be painted, of H rows upward and W columns across, with what was painted so far.
+    """A texture under construction, with H rows upward and W columns across.
 
     Attributes:
-        unrolling: how it lies on the part.
-        origin_m: [m] of the first texel, in the part's frame.
-        texel_m: [m].
+        unrolling: mapping to the part.
+        origin_m: [m] position of the first texel, in the part's frame.
+        texel_m: [m] size of a texel.
         across: (1, W) [m] from the left edge to the right one.
         up: (H, 1) [m] from the lower edge to the upper one.
         size: (W, H) of the surface [m].
-        world: (H, W, 3) [m] points in the world; of what has several sides, of a plane through its middle.
-        clouds: noise to draw from.
-        rng: of all else that is drawn.
-        air_k: [K] how much warmer the air is than the surface.
-        kelvin, light: (H, W) so far.
+        world: (H, W, 3) [m] points in the world; for objects with several sides, those of a plane through the
+            middle.
+        clouds: noise samples.
+        rng: random generator for everything else.
+        air_k: [K] air temperature minus that of the surface.
+        kelvin, light: (H, W) current values.
     """
 
     unrolling: Unrolling
@@ -87,30 +88,30 @@ class SurfaceTexture:
     light: Array
 
     def cloudy(self, metres: float, flatter: float = 1.0) -> Array:
-        """(H, W) noise of deviation 1, its largest blotches so many metres wide, from a place of its own.
+        """Return noise (H, W) with standard deviation 1 and a width of the largest blotches [m].
 
-        They are as high as wide, or so many times flatter.
+        Each call uses another part of the noise. Blotches are as high as wide, or flatter by a factor.
         """
         x, y = self.rng.uniform(0.0, 100.0, 2)
         return self.clouds.at(self.across + x, flatter * self.up + y, metres)
 
     def strip(self, distance: Array, half_m: float | Array, soft_m: float) -> Array:
-        """1 where a distance [m] is below a half width, 0 beyond; between them over a soft edge."""
+        """Return 1 where a distance [m] is below a half width, and 0 beyond, with a soft edge."""
         return np.clip((half_m + soft_m - np.abs(distance)) / (soft_m + 0.5 * self.texel_m), 0.0, 1.0)
 
     def lines(self, along: Array, pitch_m: float, width_m: float) -> Array:
-        """1 on lines that repeat every so often [m] along a coordinate, else 0."""
+        """Return 1 on lines that repeat with a period [m] along a coordinate, else 0."""
         off = np.abs((along + 0.5 * pitch_m) % pitch_m - 0.5 * pitch_m)
         return self.strip(off, 0.5 * width_m, 0.6 * self.texel_m)
 
     def cells(self, across_m: float, up_m: float) -> Array:
-        """(H, W) a number of deviation 1 for each cell of a grid, the same all over the cell."""
+        """Return (H, W) one number per cell of a grid, with standard deviation 1."""
         column, row = np.floor(self.across / across_m).astype(int), np.floor(self.up / up_m).astype(int)
         drawn = self.rng.standard_normal((row.max() + 1, column.max() + 1))
         return np.asarray(drawn[row, column])
 
     def painting(self) -> Painting:
-        """What was painted."""
+        """Return the finished texture."""
         kelvin, light = self.kelvin.astype(np.float32), self.light.astype(np.float32)
         return Painting(
             unrolling=self.unrolling, origin_m=self.origin_m, texel_m=self.texel_m, kelvin=kelvin, light=light
@@ -126,7 +127,7 @@ def begin(
     is_leafy: bool,
     air_k: float,
 ) -> SurfaceTexture:
-    """Begin a texture on a fixture; floors and ceilings lie, leaves are all round, and all else stands."""
+    """Start a texture on a fixture: level for floors and ceilings, slanted for leaves, else upright."""
     extents = np.array(shape_extents(fixture))
     low, high = extents[:, 0].min(axis=0), extents[:, 1].max(axis=0)
     is_level = is_shell and high[2] - low[2] < 0.5 * min(high[0] - low[0], high[1] - low[1])
@@ -153,7 +154,7 @@ def begin(
 
 
 def _span(low: Array, high: Array, unrolling: Unrolling) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Where the surface starts, and its size, both across and up [m]."""
+    """Return origin and size of the surface, across and up [m]."""
     if unrolling is Unrolling.LEVEL:
         return (low[0], low[1]), (high[0] - low[0], high[1] - low[1])
     across, up = (low[0] + low[1], high[0] + high[1]), (low[2], high[2])
@@ -170,7 +171,7 @@ def _texel(size: tuple[float, float], *, is_shell: bool) -> float:
 def _world(
     fixture: Fixture, extent: Extent | tuple[Array, Array], u: Array, v: Array, *, is_level: bool
 ) -> Array:
-    """(H, W, 3) points of the surface: of a floor its top, of a ceiling its underside, else the middle."""
+    """Return points (H, W, 3) of the surface: a floor's top, a ceiling's underside, else the middle."""
     low, high = extent
     own = np.zeros((len(v), len(u), 3))
     if is_level:

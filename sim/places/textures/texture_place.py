@@ -1,4 +1,4 @@
-"""Paint a whole place: every surface by its covering, then the effects of things and the sun."""
+"""Texture a whole place: every surface by its covering, then the effects of objects and the sun."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -21,11 +21,11 @@ from peopleboy.sim.places.textures.sunlight import frame_doors, shine_on, warm_b
 from peopleboy.sim.places.textures.surface_texture import Clouds, SurfaceTexture, begin, draw_clouds
 from peopleboy.sim.shapes.materials import Covering, Material, Painting
 
-# How things stand out from their temperature: warmer above than below, uneven, worn.
+# Temperature structure of objects: warmer above than below, and uneven.
 
 
 def paint_thing(texture: SurfaceTexture, material: Material) -> None:
-    """Paint the gradient and the unevenness of a thing."""
+    """Add the gradient and the unevenness of an object."""
     texture.kelvin += material.gradient_k_per_m * (texture.up - 0.5 * texture.size[1])
     scale = min(max(0.3 * max(texture.size), 0.1), 1.5)
     texture.kelvin += max(material.uneven_k, 0.25) * texture.cloudy(scale)
@@ -42,16 +42,16 @@ _PAINTERS: Mapping[Covering, Callable[[SurfaceTexture], None]] = {
     Covering.SKYLINE: paint_skyline,
     Covering.LEAVES: paint_leaves,
 }
-_VARIATION = 0.4  # deviation of the smooth variation of a material, of amplitude 1
-_OFFSET_K = 0.9  # deviation of whole surfaces: another wall behind, another load, another make
+_VARIATION = 0.4  # standard deviation of the smooth variation of a material with amplitude 1
+_OFFSET_K = 0.9  # standard deviation of the mean temperature of a surface, by construction and use
 _SHELL = (Covering.PLASTER, Covering.FLOORING, Covering.CEILING, Covering.STREET, Covering.FACADE)
 _FLAT = (*_SHELL, Covering.SKY, Covering.SKYLINE)
 
 
 def paint_place(place: Place, seed: int) -> dict[str, Painting]:
-    """Paint every fixture of a place that has parts; paintings by the fixture's name.
+    """Return the textures of all fixtures of a place that have parts, by the fixture's name.
 
-    Each draws from a stream of its own, so that another thing in the room changes no wall.
+    Each has a separate random stream, so that adding an object does not change the walls.
     """
     clouds = draw_clouds(stream(seed, "painting.clouds"))
     parts = [(f, f.part.material) for f in place.fixtures if f.part is not None]
@@ -101,7 +101,7 @@ def _paint(
 
 
 def _doorways(place: Place) -> list[Extent]:
-    """The boxes of all doors, from the floor up to where their leaf ends or their lintel begins."""
+    """Return the boxes of all doors, from the floor to the top of the leaf or the opening."""
     found = []
     for fixture in place.fixtures:
         if fixture.name.endswith(("/leaf", "/lintel")) and fixture.name.startswith("door_"):
@@ -112,7 +112,7 @@ def _doorways(place: Place) -> list[Extent]:
 
 
 def _sun_ways(place: Place, things: Sequence[tuple[Fixture, Material]]) -> tuple[list[Extent], list[Extent]]:
-    """Return the panes that let the sun in, and the boxes that block it."""
+    """Return the panes through which the sun shines, and the boxes that block it."""
     panes = [
         fixture_extent(f) for f, m in things if m.covering is Covering.GLASS and f.name.endswith("/pane")
     ]
