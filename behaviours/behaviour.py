@@ -20,7 +20,7 @@ class Command:
     Attributes:
         linear_m_s: [m/s] forward speed, negative drives backwards.
         angular_rad_s: [rad/s] turn rate, positive turns left.
-        is_emergency: whether the robot is to stop as fast as it can.
+        is_emergency: whether the robot must stop as fast as possible.
 
     Raises:
         BadInput: a value is not finite.
@@ -31,7 +31,7 @@ class Command:
     is_emergency: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse values that are not finite."""
+        """Check that values are finite."""
         if not (math.isfinite(self.linear_m_s) and math.isfinite(self.angular_rad_s)):
             raise BadInput(
                 f"command must be finite, got {self.linear_m_s} m/s and {self.angular_rad_s} rad/s"
@@ -48,7 +48,7 @@ class Behaviour(Protocol):
 
     Attributes:
         mode: current activity, one word for event log and curves: "search", "follow", "wait", "stand", ...
-        reason: why the mode was chosen, for the event log; empty if there is no choice.
+        reason: reason for the mode, for the event log; may be empty.
         following: id of the followed track; None if there is none.
     """
 
@@ -68,15 +68,15 @@ class Behaviour(Protocol):
         ...
 
     def command(self, percept: Percept) -> Command:
-        """Return the command for a percept; called once for every image, in order of time."""
+        """Return the command for a percept; called once per image, in order of time."""
         ...
 
 
-# A wrapper that validates a user's behaviour, so that mistakes are reported where they are made.
+# A wrapper that validates a user's behaviour, so that errors are reported where they occur.
 
 
 class CheckedBehaviour:
-    """Returns a behaviour's output after validating it.
+    """Wrapper that validates a behaviour's output.
 
     Args:
         behaviour: the wrapped behaviour.
@@ -86,7 +86,7 @@ class CheckedBehaviour:
     def __init__(self, behaviour: Behaviour, who: str) -> None:
         self._behaviour = behaviour
         self._who = who
-        self._tracks: set[int] = set()  # ids that have occurred
+        self._tracks: set[int] = set()  # ids of all tracks so far
         self.mode, self.reason, self.following = behaviour.mode, behaviour.reason, behaviour.following
 
     def command(self, percept: Percept) -> Command:
@@ -94,7 +94,7 @@ class CheckedBehaviour:
 
         Raises:
             BadInput: one of them is invalid.
-            OwnCodeFailed: it raised an error.
+            OwnCodeFailed: the behaviour raised an error.
         """
         with blamed(self._who):
             command = self._behaviour.command(percept)
@@ -107,32 +107,34 @@ class CheckedBehaviour:
 
 
 def checked_behaviour(behaviour: object, name: str) -> CheckedBehaviour:
-    """Check that an object is a behaviour, and validate each of its outputs from then on.
+    """Check that an object is a behaviour, and wrap it so that its outputs are validated.
 
     Args:
-        behaviour: made by a class from outside.
+        behaviour: instance of a user's class.
         name: for messages, such as "behaviour 'my_module:MyBehaviour'".
 
     Raises:
-        BadInput: it is not a behaviour.
+        BadInput: the object is not a behaviour.
         OwnCodeFailed: its mode, reason or following raised an error.
     """
     with blamed(name):
         if not isinstance(behaviour, Behaviour):
-            raise BadInput("is no behaviour; give it `command(percept)`, `mode`, `reason` and `following`")
+            raise BadInput(
+                "is not a behaviour; it needs `command(percept)`, `mode`, `reason` and `following`"
+            )
         return CheckedBehaviour(behaviour, name)
 
 
 def _faults(
     command: object, mode: object, reason: object, following: object, tracks: Set[int]
 ) -> Iterator[str]:
-    """Yield what is wrong with a behaviour's output for these tracks, and what would be right."""
+    """Yield errors in a behaviour's output for these tracks, with the valid values."""
     if not isinstance(command, Command):
-        yield f"command(percept) must give a Command, got {command!r}"
+        yield f"command(percept) must return a Command, got {command!r}"
     if not (isinstance(mode, str) and mode and mode.isprintable()):
         yield f"mode must be a word, got {mode!r}"
     if not (isinstance(reason, str) and reason.isprintable()):
-        yield f"reason must be text, on one line, got {reason!r}"
+        yield f"reason must be text on one line, got {reason!r}"
     if not (following is None or (isinstance(following, Integral) and following in tracks)):
         known = ", ".join(map(str, sorted(tracks))) or "none"
         yield f"following must be None or the id of a track that there was, {known}, got {following!r}"

@@ -1,4 +1,4 @@
-"""Motion of the robot between two instants, by its wheels: an arc at constant speeds."""
+"""Motion of the robot between two instants from wheel odometry: an arc at constant speeds."""
 
 import math
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class RobotMotion:
 
     @classmethod
     def of(cls, percept: Percept, step_s: float) -> Self:
-        """Make it from the wheels' current speeds, assumed constant over the last step_s [s]."""
+        """Return the motion for the wheels' current speeds, assumed constant over the last step_s [s]."""
         return cls(percept.linear_m_s, percept.angular_rad_s, step_s)
 
     @property

@@ -1,4 +1,4 @@
-"""The behaviours by name; each is wrapped by the safety guard, which limits its commands by the sonars."""
+"""Registry of behaviours; each is wrapped by the safety guard, which limits its commands by the sonars."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
@@ -22,7 +22,7 @@ BEHAVIOURS: Final = Registry("behaviour", "peopleboy.behaviours")
 A behaviour is registered by decorating the function below that makes it.
 """
 SCRIPTED: Final = "scripted"
-"""The behaviour that is only available in scenario files, as they hold the commands."""
+"""The behaviour that is only available in scenario files, since they contain the commands."""
 
 _CALL: Final = "without an argument"
 
@@ -32,9 +32,9 @@ class BehaviourSettings:
     """Settings of the behaviour in a scenario.
 
     Attributes:
-        script: pairs of a time [s] and the command from then on.
+        script: pairs of a start time [s] and a command.
         follow: gains and limits of person following; None for the defaults.
-        corridor: sense, gains and limits of corridor following; None for the defaults.
+        corridor: sensor, gains and limits of corridor following; None for the defaults.
     """
 
     script: "Sequence[tuple[float, Command]]" = ()
@@ -42,7 +42,7 @@ class BehaviourSettings:
     corridor: "FollowCorridorConfig | None" = None
 
 
-@BEHAVIOURS.register("stand", summary="keeps the robot where it is")
+@BEHAVIOURS.register("stand", summary="stands still")
 def _stand(settings: BehaviourSettings) -> "Behaviour":  # noqa: ARG001
     from peopleboy.behaviours.scripted import Stand
 
@@ -51,8 +51,8 @@ def _stand(settings: BehaviourSettings) -> "Behaviour":  # noqa: ARG001
 
 @BEHAVIOURS.register(
     "follow_person",
-    summary="finds a person and follows, up to the distance at which the person is `keep_height` tall in the "
-    "image",
+    summary="searches for a person and follows at the distance at which the person is `keep_height` tall in "
+    "the image",
 )
 def _follow_person(settings: BehaviourSettings) -> "Behaviour":
     from peopleboy.behaviours.following.follow_person import FollowPerson
@@ -62,7 +62,7 @@ def _follow_person(settings: BehaviourSettings) -> "Behaviour":
 
 @BEHAVIOURS.register(
     "follow_corridor",
-    summary="keeps to the middle of a corridor, turns at its end, and waits for people in the way",
+    summary="drives in the middle of a corridor, turns at its end, and waits for people in the way",
 )
 def _follow_corridor(settings: BehaviourSettings) -> "Behaviour":
     from peopleboy.behaviours.corridor.follow_corridor import FollowCorridor
@@ -72,7 +72,7 @@ def _follow_corridor(settings: BehaviourSettings) -> "Behaviour":
 
 @BEHAVIOURS.register(
     "patrol",
-    summary="follows a corridor until a person turns up, follows that person for a while, and returns",
+    summary="follows a corridor until it detects a person, follows that person for a while, and returns",
 )
 def _patrol(settings: BehaviourSettings) -> "Behaviour":
     from peopleboy.behaviours.corridor.follow_corridor import FollowCorridor
@@ -89,7 +89,7 @@ def _scripted(settings: BehaviourSettings) -> "Behaviour":
 
 
 def is_own(name: str) -> bool:
-    """Whether a name is that of an external behaviour: "module:Class", or one of another package."""
+    """Return whether a name is that of an external behaviour: "module:Class", or of another package."""
     return ":" in name or BEHAVIOURS.is_plugged_in(name)
 
 
@@ -104,10 +104,10 @@ def make_behaviour(
     """Make a behaviour by its name, limited by the safety guard.
 
     Args:
-        name: one of `BEHAVIOURS`; or "module:Class", a class of your own that is called without arguments.
-        script: for "scripted", pairs of a time [s] and the command from then on.
+        name: one of `BEHAVIOURS`; or "module:Class", your own class, which is called without arguments.
+        script: for "scripted", pairs of a start time [s] and a command.
         follow: for "follow_person", its gains and limits.
-        corridor: for "follow_corridor", its sense, gains and limits.
+        corridor: for "follow_corridor", its sensor, gains and limits.
         safety: the robot's limits and outline.
 
     Raises:
@@ -121,7 +121,7 @@ def make_behaviour(
         return Guarded(checked_behaviour(own, f"behaviour {name!r}"), safety)
     if name not in BEHAVIOURS:
         known = ", ".join(sorted(BEHAVIOURS))
-        raise BadInput(f"behaviour: unknown name '{name}'; there are {known}, and your own as module:Class")
+        raise BadInput(f"behaviour: unknown name '{name}'; choose from {known}, or your own as module:Class")
     if is_own(name):
         made = guarded("behaviour", name, _CALL, BEHAVIOURS[name])()
         return Guarded(checked_behaviour(made, f"behaviour {name!r}"), safety)

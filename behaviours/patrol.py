@@ -10,13 +10,13 @@ from peopleboy.behaviours.percept import Percept, SeenPerson
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PatrolConfig:
-    """When the robot interrupts its patrol for a person, and when it returns.
+    """Conditions for interrupting the patrol for a person, and for returning.
 
     Attributes:
         notice_height: [image heights] people at least as tall are noticed: 0.25 is 8.7 m for 1.75 m ...
-        notice_s: [s] ... when they have been seen for this long.
+        notice_s: [s] ... when they have been visible for this long.
         follow_s: [s] longest time for which a person is followed.
-        lost_s: [s] a person who is not seen for this long is given up.
+        lost_s: [s] time without observation after which the robot gives up on a person.
         min_confidence: people of lower confidence are ignored.
         return_rad: [rad] greatest remaining angle to the old heading at the end of the return.
         return_gain: [1/s] turn rate per angle on the way back.
@@ -36,7 +36,7 @@ class PatrolConfig:
 
 
 class Patrol:
-    """Combines a patrolling behaviour, such as corridor following, with person following."""
+    """Combination of a patrolling behaviour, such as corridor following, with person following."""
 
     def __init__(
         self, round_: Behaviour, follow: FollowConfig | None = None, config: PatrolConfig | None = None
@@ -63,7 +63,7 @@ class Patrol:
 
     @property
     def reason(self) -> str:
-        """Why the robot interrupts or resumes the patrol, or the reason of the active behaviour."""
+        """Why the robot interrupts or resumes the patrol, or the active behaviour's reason."""
         if self._follower is not None:
             return self._follower.reason
         return self._round.reason if self._returning_s is None else self._why

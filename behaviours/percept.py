@@ -36,7 +36,7 @@ class SeenPerson:
 
     @property
     def is_sound(self) -> bool:
-        """Whether every number is finite and the height positive."""
+        """Whether all numbers are finite and the height is positive."""
         numbers = (self.x, self.height, self.top, self.bottom, self.confidence)
         return all(map(math.isfinite, numbers)) and self.height > 0.0
 
@@ -46,17 +46,16 @@ class Percept:
     """Input of a behaviour at one control step.
 
     Attributes:
-        time_s: [s] of the image.
+        time_s: [s] time of the image.
         people: the tracker's people.
         sonar_m: (N,) [m] range in front of each sonar.
         sonar_angle_rad: (N,) [rad] direction of each sonar in the robot frame, positive to the left.
         linear_m_s: [m/s] forward speed from the wheels.
         angular_rad_s: [rad/s] turn rate from the wheels, positive to the left.
-        images: of the cameras with a new image, by name, such as `colour`, (H, W, 3) uint8 sRGB; each may be
-            rendered on demand.
-        image_age_s: [s] since the newest image; `people` are those of that image.
-        knows_again: whether returning people get their old id, however long they were absent, so that a new
-            id is always another person.
+        images: new images by camera name, such as `colour`, (H, W, 3) uint8 sRGB; may be rendered on demand.
+        image_age_s: [s] age of the newest image; `people` are those of that image.
+        knows_again: whether returning people get their previous id after any absence, so that a new id is
+            always another person.
         fault: why people cannot be detected now, such as a tracker's error; empty if all is well.
 
     Raises:

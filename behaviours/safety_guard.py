@@ -16,12 +16,12 @@ from peopleboy.behaviours.sonar_echoes import (
     remember,
 )
 
-# Detection of sonar failure: all sonars report free space at full range, although there must be an obstacle.
+# Detection of sonar failure: all sonars report full range although there must be an obstacle.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SonarFailureConfig:
-    """Conditions under which a silent ring of sonars has failed.
+    """Conditions under which a ring of sonars without echoes has failed.
 
     Attributes:
         sure_m: [m] an obstacle nearer than this cannot leave the range of all sonars between two frames.
@@ -35,14 +35,14 @@ class SonarFailureConfig:
 
 
 class SonarFailure:
-    """Detects the failure of all sonars.
+    """Detector of a failure of all sonars.
 
     A ring without echoes reports its full range for all sonars. That is normal in a large hall, but not
     directly after a near echo, nor with a person in front.
 
     Attributes:
-        has_heard: whether there was ever an echo. A ring without any may have failed from the start, or be in
-            the middle of a hall; the two cannot be distinguished.
+        has_heard: whether there has been an echo. Before the first echo, a failed ring cannot be
+            distinguished from one in the middle of a hall.
     """
 
     def __init__(self, config: SonarFailureConfig | None = None) -> None:
@@ -64,7 +64,7 @@ class SonarFailure:
         return self._is_deaf
 
     def _is_person_near(self, percept: Percept) -> bool:
-        """Return whether a person is so near in front that there must be an echo."""
+        """Return whether a person in front is so near that there must be an echo."""
         return any(
             person.is_visible
             and person.height >= self._config.sure_height
@@ -73,12 +73,12 @@ class SonarFailure:
         )
 
 
-# Time in which an object passes from one beam through the gap to the next; people have moved on by then.
+# Time in which an object passes from one beam through the gap to the next; people move on within it.
 PASSING = EchoMemoryConfig(keep_s=2.0, within_m=1.1)
 
 
 class Guarded:
-    """A wrapper that gives a behaviour sonar ranges without drop-outs, and limits its commands by them.
+    """Wrapper that passes sonar ranges without drop-outs to a behaviour, and limits its commands by them.
 
     The robot stops at once when images are missing, people cannot be detected in them, or the sonars have
     failed; the behaviour is not called then, and resumes afterwards. Until the first echo, the robot creeps.
@@ -104,7 +104,7 @@ class Guarded:
 
     @property
     def reason(self) -> str:
-        """Reason of the mode, or of the stop."""
+        """Reason for the mode, or for the stop."""
         return self._fault or self._behaviour.reason
 
     @property
@@ -121,7 +121,7 @@ class Guarded:
         self._recent.append(percept.sonar_m)
         steady = replace(percept, sonar_m=fill_drop_outs(list(self._recent)))
         if self._deafness.listen(steady):
-            self._fault, self.is_limited = "the sonars hear nothing any more", True
+            self._fault, self.is_limited = "the sonars have failed: no echoes", True
             return EMERGENCY_STOP
         wanted = self._behaviour.command(steady)
         self._memory = remember(self._memory, steady, EchoMemoryConfig())

@@ -1,4 +1,4 @@
-"""Limits of commands: the drive's limits, and obstacles seen by the sonars."""
+"""Limits of commands: the drive's limits, and obstacles measured by the sonars."""
 
 import math
 from dataclasses import dataclass
@@ -11,8 +11,8 @@ from peopleboy.behaviours.sonar_echoes import BESIDE_RAD, echoes
 
 NOTHING_REMEMBERED: Points = np.zeros((0, 2))
 NOTHING_REMEMBERED.setflags(write=False)
-_NEAR_M = 1.6  # [m] obstacles farther from the robot's origin cannot enter the margin before it stops
-_ARC_M = np.arange(1, 19) * 0.05  # checked arc lengths; from 0.8 m/s it stops in 0.84 m
+_NEAR_M = 1.6  # [m] obstacles farther from the robot's origin cannot enter the margin before the robot stops
+_ARC_M = np.arange(1, 19) * 0.05  # checked arc lengths; the braking distance from 0.8 m/s is 0.84 m
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,7 +25,7 @@ class SafetyConfig:
         max_linear_m_s: [m/s] forward speed limit, also backwards.
         max_angular_rad_s: [rad/s] turn rate limit.
         unproven_m_s: [m/s] forward speed limit until the first echo: slow enough for a harmless collision
-            with a wall, and fast enough to leave a hall without echoes in time.
+            with a wall, and fast enough to leave a hall without echoes.
         braking_m_s2: [m/s2] assumed deceleration; lower than the drive's 0.6, as a reserve.
         reaction_s: [s] from an echo until the brakes act: a frame of latency, and a drive that still
             accelerates.
@@ -41,7 +41,7 @@ class SafetyConfig:
         corner_m: [m] from the origin to the farthest corner of the hull, which swings out in a turn.
         free_turn_m: [m] obstacles farther from the origin than this do not limit turning.
         tight_turn_rad_s: [rad/s] turn rate with an obstacle at the corner's distance.
-        latest_image_s: [s] without a new image after which the robot stops: at 15 Hz the first missing
+        latest_image_s: [s] time without a new image after which the robot stops: at 15 Hz the first missing
             image.
     """
 
@@ -78,8 +78,8 @@ def limit(
     the robot; a sonar range of NaN counts as an obstacle at the sonar itself.
 
     Args:
-        command: of a behaviour.
-        percept: with the sonars' ranges.
+        command: command of a behaviour.
+        percept: percept with the sonars' ranges.
         config: limits and outline.
         remembered: (N, 2) [m] further obstacles, robot frame, which limit turning: a corner of the hull
             swings through the gaps between the sonars' cones.
@@ -119,9 +119,9 @@ def _free_way(points: Points, config: SafetyConfig) -> tuple[float, float]:
 
 
 def _free_arc(command: Command, points: Points, config: SafetyConfig) -> float:
-    """Return the distance [m] along the commanded arc until the hull comes too near to an obstacle, or inf.
+    """Return the distance [m] along the commanded arc until the hull is too near an obstacle, or inf.
 
-    Too near is nearer than the margin, and nearer than now.
+    Too near is nearer than the margin, and nearer than at the current position.
     """
     if command.linear_m_s == 0.0:
         return math.inf
@@ -145,7 +145,7 @@ def _side_margin(points: Points, config: SafetyConfig) -> float:
     """Return the margin [m]; in a narrow passage ahead, such as a door, half of the remaining width."""
     x, y = points[points[:, 0] > -config.rear_m].T
     if np.any((x > 0.0) & (np.abs(y) < config.half_width_m)):
-        return config.margin_m  # no path leads through
+        return config.margin_m  # there is no passage
     left = np.min(y[y > 0.0], initial=math.inf)
     right = np.min(-y[y < 0.0], initial=math.inf)
     middle = float(left + right) / 2.0 - config.hull_m

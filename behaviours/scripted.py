@@ -1,4 +1,4 @@
-"""Predefined commands, each valid from a time on."""
+"""Behaviours that ignore all sensors: predefined commands, and standing still."""
 
 import bisect
 import math
@@ -10,7 +10,7 @@ from peopleboy.behaviours.percept import Percept
 
 
 class Scripted:
-    """Drives by the clock and ignores all sensors.
+    """Behaviour with commands by time.
 
     Raises:
         BadInput: the times are not finite or not increasing.
@@ -25,16 +25,16 @@ class Scripted:
         self._commands = [command for _, command in script]
         pairs = zip(self._from_s, self._from_s[1:], strict=False)
         if not (all(map(math.isfinite, self._from_s)) and all(a < b for a, b in pairs)):
-            raise BadInput(f"script: times must be finite and rise, got {self._from_s}")
+            raise BadInput(f"script: times must be finite and increasing, got {self._from_s}")
 
     def command(self, percept: Percept) -> Command:
-        """Return the current command; before the first one the robot stands."""
+        """Return the current command; before the first one, the stop command."""
         index = bisect.bisect_right(self._from_s, percept.time_s)
         return self._commands[index - 1] if index else STOP
 
 
 class Stand:
-    """Stays where it is."""
+    """Behaviour of a standing robot."""
 
     mode = "stand"
     reason = ""

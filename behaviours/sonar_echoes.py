@@ -39,13 +39,13 @@ def fill_drop_outs(ranges: list[Points]) -> Points:
     A lost echo reads as free space, so the nearest of a few readings is the most reliable. NaN stays NaN.
 
     Args:
-        ranges: (N,) [m] each, newest last, at least one; those of another length are ignored.
+        ranges: (N,) [m] each, newest last, at least one; arrays of another length are ignored.
     """
     nearest: Points = np.min([r for r in ranges if r.shape == ranges[-1].shape], axis=0)
     return nearest
 
 
-# Near echoes are stored for a while, as a door post can vanish in the gaps between the sonars' cones.
+# Near echoes are stored for a while, since a door post can vanish in the gaps between the sonars' cones.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,7 +53,7 @@ class EchoMemoryConfig:
     """Settings of the memory of echoes.
 
     Attributes:
-        keep_s: [s] time after which an echo is forgotten; people move on, posts do not.
+        keep_s: [s] time after which an echo is deleted, since people move on.
         within_m: [m] echoes farther from the robot's origin are not stored.
     """
 
@@ -66,8 +66,8 @@ class EchoMemory:
     """Echoes of the last seconds, in the moving robot's frame.
 
     Attributes:
-        time_s: [s] of the last percept.
-        points: (N, 2) [m] robot frame at that time.
+        time_s: [s] time of the last percept.
+        points: (N, 2) [m] positions in the robot frame at that time.
         heard_s: (N,) [s] time of each echo.
     """
 
@@ -79,7 +79,7 @@ class EchoMemory:
 def remember(
     memory: EchoMemory, percept: Percept, config: EchoMemoryConfig, spread_rad: float = 0.0
 ) -> EchoMemory:
-    """Move the echoes by the wheels' motion, remove old and far ones, and add new ones.
+    """Move the echoes by wheel odometry, remove old and far ones, and add new ones.
 
     Invalid input leaves the memory unchanged. Echoes are placed spread_rad [rad] off the beams' axes.
     """

@@ -35,7 +35,7 @@ class ImageCorridorConfig:
         dark: mean grey level below which nothing is measured.
         shortest: [image heights] shorter lines are ignored.
         level_rad, upright_rad: [rad] lines this close to horizontal, or to vertical, are ignored.
-        below: [image heights] lines within this distance of the horizon are ignored: all meet there.
+        below: [image heights] lines within this distance of the horizon are ignored, since all meet there.
         agree: [image widths] lines that cross the horizon within this distance of the vanishing point agree.
         least: [image heights] least total length of lines for a vanishing point.
         share: least share of the lines' total length that must agree.
@@ -172,8 +172,8 @@ def _floor_lines(
 def _wall(floor: Sequence[Points], side: int, height: int, config: ImageCorridorConfig) -> float | None:
     """Return the distance [m] of the wall-floor line of one side from the camera, or None.
 
-    The tiles of a floor alternate along their edge, so that their contributions cancel; the line at a wall's
-    foot has the same sign everywhere, in light and in paint.
+    Floor tiles alternate along their edges, so their contributions cancel. The line at the foot of a wall has
+    the same sign everywhere, in brightness and in colour.
     """
     away = side * np.concatenate([lines[:, 0] for lines in floor])
     tried = away[away > 0.0]
@@ -206,12 +206,12 @@ def _corridor(
     if left is None or right is None:
         return Unknown("no line between wall and floor")
     if not config.width_m[0] <= left + right <= config.width_m[1]:
-        return Unknown(f"walls {left + right:.1f} m apart make no corridor")
+        return Unknown(f"walls {left + right:.1f} m apart are not a corridor")
     ahead_m, aside_m, _ = camera.position_m
     offset = (right - left) / 2.0 - ahead_m * math.sin(heading) - aside_m * math.cos(heading)
     seen = Corridor(offset_m=offset, heading_rad=heading, width_m=left + right)
     if expected is not None and _is_far_off(seen, expected, config):
-        return Unknown("the lines do not fit where the robot was")
+        return Unknown("the lines do not match the predicted pose")
     return seen
 
 

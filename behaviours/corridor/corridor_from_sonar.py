@@ -1,4 +1,4 @@
-"""Localisation in a corridor by sonar: the heading at which the echoes of each side agree on one wall."""
+"""Localisation in a corridor by sonar: at the right heading, the echoes of each side agree on one wall."""
 
 import math
 from dataclasses import dataclass, field
@@ -20,9 +20,9 @@ class BeamConfig:
     """A sonar's beam.
 
     Attributes:
-        half_cone_rad: [rad] half its opening; the echo comes from the wall's nearest point in the cone.
-        reach_m: [m] a range beyond this is no echo.
-        slant_rad: [rad] a beam that meets a wall more obliquely than this is useless.
+        half_cone_rad: [rad] half the beam angle; the echo comes from the wall's nearest point in the cone.
+        reach_m: [m] a longer range is not an echo.
+        slant_rad: [rad] a beam that hits a wall at a larger angle of incidence is not used.
     """
 
     half_cone_rad: float = math.radians(7.5)
@@ -86,9 +86,10 @@ class SonarCorridorConfig:
         beam: model of a beam.
         search_rad: [rad] range of candidate headings to either side without a prediction ...
         near_rad: [rad] ... and around a predicted heading.
-        step_rad: [rad] between candidate headings.
+        step_rad: [rad] step of candidate headings.
         agree_m: [m] limit of an echo's deviation from the wall of the others.
-        expected_m: [m] an echo this far off the expected wall is from a person, a door or a side corridor.
+        expected_m: [m] an echo at least this far from the expected wall belongs to a person, a door or a side
+            corridor.
         least_echoes: least number of echoes of a wall.
         worst_m: [m] greatest mean deviation of a wall's echoes.
         width_m: [m] least and largest width of a corridor.
@@ -140,10 +141,10 @@ def corridor_from_sonar(
     has_left, has_right = np.isfinite(left.distance_m), np.isfinite(right.distance_m)
     enough = has_left & has_right if expected is None else has_left | has_right
     if not enough.any():
-        return Unknown("the sonars hear no walls along the way")
+        return Unknown("the sonars detect no corridor walls")
     count = has_left.astype(np.float64) + has_right
     spread = np.where(has_left, left.spread_m, 0.0) + np.where(has_right, right.spread_m, 0.0)
-    # An undetected wall costs as much as the worst one, so that no heading wins by losing echoes.
+    # An undetected wall costs as much as the worst one, so that a heading cannot win by losing echoes.
     cost = np.where(enough, spread + (2.0 - count) * config.worst_m, np.inf)
     best = int(np.argmin(cost))
     width = None if expected is None else expected.width_m
@@ -200,13 +201,13 @@ def _corridor(
     if width is not None and math.isnan(right):
         right = width - left
     if not config.width_m[0] <= left + right <= config.width_m[1]:
-        return Unknown(f"walls {left + right:.1f} m apart make no corridor")
+        return Unknown(f"walls {left + right:.1f} m apart are not a corridor")
     return Corridor(offset_m=(right - left) / 2.0, heading_rad=heading, width_m=left + right)
 
 
 # Positions of the sonars on the robot.
 
-# The PeopleBot's sideways units are this far in front of and behind the ellipse of all others.
+# Distance of the PeopleBot's sideways units in front of and behind the ellipse of all others.
 SIDEWAYS_M = 0.113
 
 
@@ -237,7 +238,7 @@ class EndConfig:
         side_beam: the same for the side walls, whose echoes do not belong to an end wall.
         farthest_m: [m] greatest distance of an end wall.
         agree_m: [m] the echoes of one wall lie within this distance of their median.
-        least_echoes: of the four sonars ahead; a person is heard by two.
+        least_echoes: least number of echoes of the four sonars ahead; a person gives two.
         open_m: [m] a side is open if the sideways sonars have no echo up to this far behind its wall.
         sideways_rad: [rad] greatest angle of those sonars to the side's direction.
     """

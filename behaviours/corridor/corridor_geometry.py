@@ -1,4 +1,4 @@
-"""Pose of the robot in a corridor, or the reason why it is unknown."""
+"""Pose of the robot in a corridor, and choice of a lane past people."""
 
 import math
 from dataclasses import dataclass, replace
@@ -54,7 +54,7 @@ def blend(expected: Corridor, seen: Corridor, share: float) -> Corridor:
     )
 
 
-# Choice of a lane in the corridor, past people who stand in it.
+# Choice of a lane in the corridor, past people in it.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,12 +64,12 @@ class LaneConfig:
     Attributes:
         ahead_m: [m] range ahead in which people are avoided.
         behind_m: [m] the same behind.
-        wish_m: [m] wished distance between the robot's middle and the nearest echo of a person.
+        wish_m: [m] preferred distance between the robot's centre and the nearest echo of a person.
         least_m: [m] least such distance; a lane with less is blocked ...
-        squeeze_m: [m] ... but while already passing on it, only with less than this: beams are wide, and
-            echoes of a nearby person spread.
-        wall_m: [m] least distance between the robot's middle and a wall.
-        step_m: [m] between lanes.
+        squeeze_m: [m] ... or, while the robot is already passing on it, with less than this: beams are wide,
+            and echoes of a nearby person spread.
+        wall_m: [m] least distance between the robot's centre and a wall.
+        step_m: [m] distance of lanes.
     """
 
     ahead_m: float = 2.2
@@ -116,7 +116,7 @@ def middle_lane(people: Points) -> Lane:
 
 
 def best_lane(people: Points, corridor: Corridor, config: LaneConfig, side: int = 0) -> Lane:
-    """Return the lane nearest to the centre line with the wished clearance, or else the clearest one.
+    """Return the lane nearest to the centre line with the preferred clearance, or else the clearest one.
 
     Args:
         people: (M, 2) [m] ahead of the robot, and left of the centre line.

@@ -1,4 +1,4 @@
-"""Corridor following: along the middle, round corners, back from dead ends, past people."""
+"""Corridor following: drive in the middle, turn at corners and dead ends, and pass people."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -45,7 +45,7 @@ class FollowCorridorConfig:
     """Gains and limits of corridor following.
 
     Attributes:
-        sense: whether walls are measured by the sonars, or by the colour image where it shows them.
+        sense: sensor for measuring walls: the sonars, or the colour image with the sonars as a fallback.
         camera: the colour camera; only used with the image.
         cruise_m_s: [m/s] speed along a free corridor.
         pass_m_s: [m/s] speed past people.
@@ -53,22 +53,23 @@ class FollowCorridorConfig:
         steepest_rad: [rad] largest heading correction.
         heading_gain: [1/s] turn rate per heading error.
         max_turn_rad_s: [rad/s] highest turn rate.
-        turn_only_rad: [rad] heading error from which the robot only turns.
+        turn_only_rad: [rad] heading error from which on the robot only turns.
         believe: weight of a measurement in the correction.
-        lost_s: [s] without walls after which the corridor is searched for anew.
-        image_s: [s] without a corridor in the image after which the mode shows that sonars have taken over.
-        stop_m: [m] distance from the robot's middle to the echo of a person at which it stops.
-        near_m: [m] the same in a narrow corridor where nobody was seen for unseen_s: it may be the end.
-        narrow_m: [m] width up to which all but two sonars see the sides nearer than the end when the robot
-            stops, so that the end resembles a person.
+        lost_s: [s] time without walls after which the robot searches for the corridor again.
+        image_s: [s] time without a corridor in the image after which the mode is "sonar".
+        stop_m: [m] distance from the robot's centre to a person's echo at which it stops.
+        near_m: [m] the same in a narrow corridor without a visible person for unseen_s, where the echo may be
+            the end.
+        narrow_m: [m] width up to which all sonars except two measure the sides nearer than the end when the
+            robot stops, so that the end resembles a person.
         unseen_s: [s] time without a person in the image.
         patience_s: [s] waiting time for people to move on.
         turn_at_m: [m] least distance to a wall ahead at which the robot turns; otherwise half the width.
-        brake_gain: [1/s] speed per metre to such a place.
-        sure_frames: images in which a side must be open to count as an opening.
-        dead_end_s: [s] after which the robot turns back at a wall without an opening.
+        brake_gain: [1/s] speed per distance to the turning point.
+        sure_frames: number of images in which a side must be open to count as an opening.
+        dead_end_s: [s] time after which the robot turns back at a wall without an opening.
         search_rad_s: [rad/s] turn rate without a recognised corridor.
-        wall_tolerance_m: [m] echoes this little in front of a wall belong to it.
+        wall_tolerance_m: [m] echoes within this distance in front of a wall belong to it.
     """
 
     sense: Sense = "sonar"
@@ -108,17 +109,17 @@ class CorridorState:
     Attributes:
         mode: "corridor", "sonar" (the same without usable image), "wait", "pass", "turn", "search" or "blind"
             (no new, valid input).
-        reason: of the mode.
-        time_s: [s] of the last valid percept.
+        reason: reason for the mode.
+        time_s: [s] time of the last valid percept.
         corridor: pose in the corridor, or in the one to turn into; None while unknown.
-        seen_s: [s] when walls were last measured by any sense ...
-        image_s: [s] ... and when by the image.
+        seen_s: [s] time of the last measurement of walls by any sensor ...
+        image_s: [s] ... and by the image.
         image_fault: why the image was unusable; empty if it was usable.
-        people_s: [s] when a person was last in the image.
-        blocked_s: [s] since when people have been in the middle lane; None without people.
-        side: +1 while it passes people on their left, -1 on their right, 0 otherwise.
-        ended_s: [s] since when the robot has stood at a wall; None otherwise.
-        open_frames: images in which the left and the right side were open, since a wall was measured ahead.
+        people_s: [s] time when a person was last in the image.
+        blocked_s: [s] time since when people are in the middle lane; None without people.
+        side: +1 while the robot passes people on their left, -1 on their right, 0 otherwise.
+        ended_s: [s] time since when the robot is at a wall; None otherwise.
+        open_frames: numbers of images with an open left and right side, since a wall was measured ahead.
         people: echoes that do not belong to walls.
     """
 
@@ -169,7 +170,7 @@ def follow_corridor(
 
     The robot stops on invalid input or when time does not increase.
 
-    Source: thesis, section 3.2, only names corridor following from sonar readings; the rest is ours.
+    Source: thesis, section 3.2, mentions corridor following from sonar readings, without details.
     """
     step_s = percept.time_s - state.time_s
     if not (percept.is_sound and step_s > 0.0):
@@ -196,11 +197,11 @@ def follow_corridor(
 def _locate(
     state: CorridorState, percept: Percept, step_s: float, config: FollowCorridorConfig
 ) -> CorridorState:
-    """Predict the pose by the wheels, and correct it by the measured walls."""
+    """Predict the pose by wheel odometry, and correct it by the measured walls."""
     expected = state.corridor if percept.time_s - state.seen_s <= config.lost_s else None
     if expected is not None:
         expected = drive_on(expected, RobotMotion.of(percept, step_s))
-        if abs(expected.heading_rad) > config.turn_only_rad:  # turning: the walls are not in view yet
+        if abs(expected.heading_rad) > config.turn_only_rad:  # turning: the walls are not visible yet
             return replace(state, corridor=expected, seen_s=percept.time_s)
     by_image: Corridor | Unknown = Unknown("")
     if config.sense == "image" and config.camera is not None:
@@ -230,7 +231,7 @@ def _remember_people(
     if ahead_m is not None:
         walls = np.concatenate([walls, [(-corridor.heading_rad, ahead_m)]])
     others = without_walls(percept, walls, config.wall_tolerance_m, config.sonar.beam)
-    # Ranges at full scale lie outside of the memory.
+    # Ranges at full scale are outside the range of the memory.
     heard = replace(percept, sonar_m=np.minimum(others, 2.0 * config.sonar.beam.reach_m))
     return remember(state.people, heard, config.memory)
 
@@ -238,7 +239,7 @@ def _remember_people(
 def _look_aside(
     state: CorridorState, corridor: Corridor, percept: Percept, ahead_m: float, config: FollowCorridorConfig
 ) -> CorridorState:
-    """Count the images in which the sides are open, near the wall ahead."""
+    """Count the images with open sides near the wall ahead."""
     if ahead_m > 0.8 * corridor.width_m:
         return state
     room = open_room(percept, corridor, config.end)
@@ -254,7 +255,7 @@ def _turning_place(corridor: Corridor, config: FollowCorridorConfig) -> float:
 def _end(
     state: CorridorState, corridor: Corridor, percept: Percept, ahead_m: float, config: FollowCorridorConfig
 ) -> tuple[CorridorState, Command]:
-    """At a wall: turn to the wider of the open sides, or turn back."""
+    """Turn at a wall to the wider open side, or turn back."""
     since_s = percept.time_s if state.ended_s is None else state.ended_s
     is_open = [count >= config.sure_frames for count in state.open_frames]
     room = open_room(percept, corridor, config.end)
@@ -286,7 +287,7 @@ def _turn(corridor: Corridor, config: FollowCorridorConfig) -> Command:
 def _go_along(
     state: CorridorState, corridor: Corridor, ahead_m: float | None, config: FollowCorridorConfig
 ) -> tuple[CorridorState, Command]:
-    """Drive in the middle, wait for people who stand there, and finally drive past them."""
+    """Drive in the middle, wait for people there, and pass them if they stay."""
     people = beside(in_corridor(state.people.points, corridor), corridor, config.lane)
     ahead = people[people[:, 0] > 0.0]
     if middle_lane(ahead).clearance_m >= config.lane.least_m:
@@ -298,7 +299,7 @@ def _go_along(
     is_free = lane.clearance_m >= (config.lane.squeeze_m if state.side else config.lane.least_m)
     if is_free and (state.side or state.time_s - since_s > config.patience_s):
         side = state.side or (1 if lane.offset_m > 0.0 else -1)
-        state = replace(state, mode="pass", reason="somebody stays in the way", side=side)
+        state = replace(state, mode="pass", reason="passing a person who stays in the way", side=side)
         return state, _steer(corridor, lane, config.pass_m_s, ahead_m, config)
     return _wait(state, corridor, float(np.min(ahead[:, 0])), ahead_m, is_free, config)
 
@@ -314,10 +315,10 @@ def _wait(
     """Stop in front of people; in a narrow corridor approach an echo without a visible person slowly."""
     is_unseen = state.time_s - state.people_s > config.unseen_s
     if is_unseen and not is_free and corridor.width_m < config.narrow_m:
-        reason = "something unseen is across the way"
+        reason = "an obstacle blocks the corridor, without a visible person"
         stop_m, fastest_m_s = config.near_m, config.pass_m_s
     else:
-        reason = "somebody is in the way" if is_free else "people stand across the way"
+        reason = "a person is in the way" if is_free else "people block the corridor"
         stop_m, fastest_m_s = config.stop_m, config.cruise_m_s
     speed = min(config.brake_gain * max(nearest_m - stop_m, 0.0), fastest_m_s)
     here = Lane(offset_m=corridor.offset_m, clearance_m=0.0)
@@ -326,18 +327,18 @@ def _wait(
 
 
 def _driving(state: CorridorState, config: FollowCorridorConfig) -> CorridorState:
-    """Return mode and reason of normal driving, by the active sense."""
+    """Return mode and reason of normal driving, by the active sensor."""
     state = replace(state, blocked_s=None, side=0)
     if config.sense == "image" and state.time_s - state.image_s > config.image_s:
-        reason = f"the image does not tell: {state.image_fault}"
+        reason = f"no corridor in the image: {state.image_fault}"
         return replace(state, mode="sonar", reason=reason)
-    return replace(state, mode="corridor", reason=f"walls told by the {config.sense}")
+    return replace(state, mode="corridor", reason=f"walls measured by {config.sense}")
 
 
 def _steer(
     corridor: Corridor, lane: Lane, speed_m_s: float, ahead_m: float | None, config: FollowCorridorConfig
 ) -> Command:
-    """Head for the lane, slower the more the robot must turn, and in front of a wall."""
+    """Steer to the lane; slow down in turns, and in front of a wall."""
     beside_m = lane.offset_m - corridor.offset_m
     heading = _clip(config.offset_gain * beside_m, config.steepest_rad)
     error = heading - corridor.heading_rad

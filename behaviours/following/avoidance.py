@@ -7,8 +7,8 @@ import numpy as np
 
 from peopleboy.behaviours.percept import Points
 
-# Tested shares of the largest swerve, the least first; and the weight of a missing radian against a swerved
-# one.
+# Tested shares of the largest swerve in ascending order, and the weight of a radian of violation relative to
+# one of swerve.
 _AIMS = np.array(sorted(np.linspace(-1.0, 1.0, 101), key=abs))
 _INSIST = 3.0
 
@@ -18,7 +18,7 @@ class AvoidConfig:
     """Size and range of the swerve.
 
     Attributes:
-        half_width_m: [m] half of the free lane: half the hull, and the guard's lateral clearance.
+        half_width_m: [m] half width of the free lane: half the hull, plus the guard's lateral clearance.
         reach_m: [m] obstacles farther from the robot's origin are ignored.
         fade_m: [m] part of the reach over which the swerve grows to its full size.
         widest_rad: [rad] largest swerve; the camera should keep the followed person in view.
@@ -58,7 +58,7 @@ def swerve(bearing_rad: float, points: Points, config: AvoidConfig) -> float:
     return float(aims[np.argmin(cost)])
 
 
-# Making room for a returning person: not in the way, and not too near for the cameras to identify the person.
+# Making room for a returning person, out of the way and far enough for the cameras to identify the person.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,11 +69,11 @@ class ClearanceConfig:
         ahead_m: [m] free distance ahead required for a person who was near when last seen ...
         close_m: [m] ... and for any lost person ...
         half_width_m: [m] ... so far to either side.
-        longest_s: [s] since the last observation, after which the robot continues otherwise.
-        speed_m_s: [m/s] of backing off, and of leaving a narrow place.
-        cramped_m: [m] from the origin within which an obstacle makes a place narrow ...
-        close_by_m: [m] ... and after farthest_m: a person may move along with the robot.
-        free_m: [m] free distance ahead that leads out of it.
+        longest_s: [s] time since the last observation after which the robot stops making room.
+        speed_m_s: [m/s] speed of backing off, and of leaving a narrow place.
+        cramped_m: [m] distance from the origin within which an obstacle makes a place narrow ...
+        close_by_m: [m] ... and the same after farthest_m, since a person may move along with the robot.
+        free_m: [m] free distance ahead that leads out of a narrow place.
         farthest_m: [m] driven distance, see above.
     """
 

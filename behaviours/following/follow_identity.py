@@ -14,10 +14,10 @@ class FollowIdentityConfig:
     Attributes:
         min_confidence: people of lower confidence are not followed.
         off_rad: [rad] greatest distance from the predicted bearing ...
-        off_rad_s: [rad/s] ... and its growth while the person is out of sight.
+        off_rad_s: [rad/s] ... and its growth while the person is not visible.
         size: greatest ratio of the apparent heights, as its logarithm ...
         size_1_s: [1/s] ... and its growth.
-        place_s: [s] out of sight after which a person may return anywhere.
+        place_s: [s] time without observation after which a person may return anywhere.
     """
 
     min_confidence: float = 0.5
@@ -40,17 +40,17 @@ def recognise(
 ) -> SeenPerson | None:
     """Return the followed person among those in the image; None if not visible.
 
-    Without a target it is the person who seems nearest (tallest). A tracked person, even if occluded now, is
-    not exchanged for another; and nobody who was seen together with the person is ever taken for it.
+    Without a target, the tallest person is chosen. A tracked person is not exchanged for another one, even
+    during occlusion. People who were visible together with the target are never chosen.
 
     Args:
         people: the tracker's people.
         target: the followed person with the bearing predicted for this image; None to choose one.
-        others: tracks that were seen together with the target.
-        gap_s: [s] since the target was last seen.
+        others: tracks that were visible together with the target.
+        gap_s: [s] time since the target was last visible.
         config: tolerances for a track with another id.
         view: bearings of image columns.
-        knows_again: whether a returning person has the old id.
+        knows_again: whether a returning person gets the previous id.
     """
     seen = [p for p in people if p.is_sound and p.is_visible and p.confidence >= config.min_confidence]
     if target is None:
@@ -66,9 +66,10 @@ def recognise(
 
 
 def company(people: tuple[SeenPerson, ...], target: int, others: frozenset[int]) -> frozenset[int]:
-    """Add all other visible people to those who are not the followed person.
+    """Add other visible people to the tracks that are not the followed person.
 
-    This holds next to the person, and soon after the loss for people where the person cannot be.
+    People count while the followed person is visible, and shortly after a loss if they are at positions that
+    the person cannot have reached.
     """
     return (others | {person.id for person in people if person.is_visible}) - {target}
 

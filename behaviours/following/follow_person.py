@@ -1,4 +1,4 @@
-"""Person following: search, approach and hold the distance, by position and height in the image."""
+"""Person following by position and height in the image: search, approach, and keep the distance."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -42,10 +42,10 @@ class FollowConfig:
     """Gains and limits of person following.
 
     Speeds depend on the distance error keep_height / height - 1: 0 at the wanted distance, 1 at twice that
-    distance, whatever the person's size in metres.
+    distance, independent of the person's size in metres.
 
     Attributes:
-        keep_height: [image heights] apparent height to hold; 0.58 is 3.7 m for a person of 1.75 m. A level
+        keep_height: [image heights] apparent height to keep; 0.58 is 3.7 m for a person of 1.75 m. A level
             camera at 1.2 m shows whole people from 3 m on; the rest is a margin for those who turn back.
         stop_height: [image heights] from this height on the robot does not drive forwards.
         near_height: [image heights] from this height on the robot backs off.
@@ -60,27 +60,27 @@ class FollowConfig:
         full_speed_rad: [rad] up to this bearing the robot drives at full speed ...
         turn_only_rad: [rad] ... and from this one on it only turns.
         swerve_from_m_s: [m/s] forward speed from which the robot swerves fully around obstacles.
-        search_rad_s: [rad/s] turn rate while nobody is seen.
+        search_rad_s: [rad/s] turn rate while no person is visible.
         stalled_s: [s] without rotation after which a search changes its direction.
         wait_turn_rad_s: [rad/s] highest turn rate while waiting for a lost person.
         max_age_s: [s] greatest age of a track that is followed.
         wait_s: [s] from the last observation of a person who left the image until the search begins.
         patience_s: [s] waiting time for a person who is occluded by another one.
-        gone_s: [s] the same for one lost in the middle of the image with nobody in front, by a wall or a
-            missed detection; then the robot drives to the last position.
+        gone_s: [s] the same for a person lost in the middle of the image without an occluder, behind a wall
+            or by a missed detection; then the robot drives to the last position.
         recover_1_s: [1/s] speed per distance on the way there.
-        give_up_s: [s] out of sight after which a person is given up; the robot then follows anybody ...
+        give_up_s: [s] time without observation after which the robot may follow another person ...
         give_up_known_s: [s] ... and the same with a tracker that re-identifies people.
         leaving_rad: [rad] bearing, measured or predicted, from which a person has left the image.
         target: smoothing of measurements.
-        identity: which person is taken for the followed one.
-        hidden: which people can occlude it.
-        place: where a person was last seen.
-        avoid: steering along walls.
+        identity: conditions for identifying the followed person.
+        hidden: conditions for people who can occlude the followed person.
+        place: settings of the drive to the last position.
+        avoid: obstacle avoidance.
         avoid_alone: the same on the way to the last position, without a person to keep in view.
-        heard: memory of echoes for that: an edge vanishes in the gaps between the sonars' cones.
-        room: made for a person lost by being too near, with a tracker that re-identifies people; the robot
-            would block the door through which the person returns.
+        heard: memory of echoes for that, since an edge vanishes in the gaps between the sonars' cones.
+        room: settings of making room for a person lost by being too near, with a tracker that re-identifies
+            people; otherwise the robot would block the door through which the person returns.
     """
 
     keep_height: float = 0.58
@@ -125,14 +125,14 @@ class FollowState:
     Attributes:
         mode: "search", "follow", "wait" (just lost the person), "recover" (driving to the last position) or
             "blind" (no new, valid input).
-        reason: of the mode.
-        time_s: [s] of the last valid percept.
+        reason: reason for the mode.
+        time_s: [s] time of the last valid percept.
         target: the followed person; None before the first one and after giving up.
-        others: tracks that were seen together with the followed person, and so are other people.
+        others: tracks that were visible together with the followed person, and so are other people.
         walking_m_s: [m/s] estimated speed at which the person walks away.
-        side: +1 (left) or -1, direction of the search: where the person was last moving.
+        side: +1 (left) or -1, direction of the search: the person's last direction of motion.
         has_left: whether the person was leaving the image sideways when last seen.
-        place: where the person was last seen; None once the robot has been there.
+        place: last position of the person; None once the robot has been there.
         searched_rad: [rad] rotation of the search.
         stalled_s: [s] time without rotation: an obstacle blocks it.
         cleared_m: [m] distance driven in the search to make room.
@@ -140,7 +140,7 @@ class FollowState:
     """
 
     mode: str = "search"
-    reason: str = "nobody seen yet"
+    reason: str = "no person detected yet"
     time_s: float = -math.inf
     target: Target | None = None
     others: frozenset[int] = frozenset()
@@ -189,12 +189,12 @@ def follow(state: FollowState, percept: Percept, config: FollowConfig) -> tuple[
     The robot follows a person only while the track is younger than max_age_s, and stops on invalid input or
     when time does not increase.
 
-    Source: thesis, section 3.2: search by rotating, approach, hold distance; the estimated walking speed, the
-    drift, the wait and the way round corners are ours.
+    Source: thesis, section 3.2: search by rotating, approach, keep the distance. The estimated walking speed,
+    the drift, waiting and driving around corners are additions.
     """
     step_s = percept.time_s - state.time_s
     if not (percept.is_sound and step_s > 0.0):
-        return replace(state, mode="blind", reason="senseless or old input"), STOP
+        return replace(state, mode="blind", reason="invalid or old input"), STOP
     heard = remember(state.heard, percept, config.heard)
     state = replace(_update_target(state, percept, step_s, config), time_s=percept.time_s, heard=heard)
     if state.target is None:
@@ -258,7 +258,7 @@ def _update_target(state: FollowState, percept: Percept, step_s: float, config: 
 def _seen_at(
     state: FollowState, seen: Target, person: SeenPerson, percept: Percept, config: FollowConfig
 ) -> FollowState:
-    """Store what is needed if this is the last observation of the person."""
+    """Store the state that is needed if this is the last observation of the person."""
     soon = seen.bearing_rad + seen.drift_rad_s * config.max_age_s
     later = seen.bearing_rad + seen.drift_rad_s * config.wait_s
     return replace(
@@ -281,8 +281,8 @@ def _patience(
         return f"track {target.id} left the image", config.wait_s
     front = hider(percept.people, target, config.hidden, config.target)
     if front is not None:
-        return f"track {target.id} is hidden behind track {front.id}", config.patience_s
-    return f"track {target.id} is out of sight", config.gone_s
+        return f"track {target.id} is occluded by track {front.id}", config.patience_s
+    return f"track {target.id} is not visible", config.gone_s
 
 
 def _search(
@@ -296,7 +296,7 @@ def _search(
     turn = state.side * config.search_rad_s
     turned = state.searched_rad + abs(percept.angular_rad_s) * min(step_s, config.max_age_s)
     if state.mode in ("follow", "wait", "blind"):
-        state = replace(state, reason="nobody came back")
+        state = replace(state, reason="the person has not returned")
     state = replace(state, mode="search", walking_m_s=0.0, stalled_s=stalled_s, searched_rad=turned)
     if percept.knows_again and turned > math.tau:
         gone_m = state.cleared_m + max(percept.linear_m_s, 0.0) * min(step_s, config.max_age_s)
@@ -321,14 +321,14 @@ def _is_too_near(target: Target, gap_s: float, percept: Percept, config: FollowC
 def _make_room(state: FollowState, target: Target, config: FollowConfig) -> tuple[FollowState, Command]:
     """Back off, facing the person."""
     turn = _clip(_facing_turn(target, config), config.wait_turn_rad_s)
-    state = replace(state, mode="wait", reason=f"track {target.id} is too near to be seen")
+    state = replace(state, mode="wait", reason=f"track {target.id} is too near for the camera")
     return state, Command(linear_m_s=-config.room.speed_m_s, angular_rad_s=turn)
 
 
 def _recover(
     state: FollowState, place: LastPlace, percept: Percept, step_s: float, config: FollowConfig
 ) -> tuple[FollowState, Command]:
-    """Drive to the person's last position; there, search to the side of the person's motion."""
+    """Drive to the person's last position, and search there in the person's direction of motion."""
     place = on_the_way(place, percept, step_s)
     end = end_of_way(place, echoes(percept), config.place)
     if end:
@@ -337,7 +337,7 @@ def _recover(
     aim = place.bearing_rad + swerve(place.bearing_rad, state.heard.points, config.avoid_alone)
     speed = min(config.recover_1_s * place.distance_m, config.max_linear_m_s)
     speed, turn = _facing_share(aim, config) * speed, config.facing_gain * aim
-    state = replace(state, mode="recover", reason="to where the person was seen last", place=place)
+    state = replace(state, mode="recover", reason="driving to the person's last position", place=place)
     return state, Command(linear_m_s=speed, angular_rad_s=_clip(turn, config.max_turn_rad_s))
 
 
@@ -348,7 +348,7 @@ def _go_after(
     walking = _learn_walking(state.walking_m_s, target, percept, step_s, config)
     speed = _speed(target, walking, config)
     turn = _clip(_turn(target, speed, percept, config), config.max_turn_rad_s)
-    why = f"track {target.id} is seen"
+    why = f"track {target.id} is visible"
     state = replace(state, mode="follow", reason=why, walking_m_s=walking)
     return state, Command(linear_m_s=speed, angular_rad_s=turn)
 
@@ -388,8 +388,8 @@ def _learn_walking(
 ) -> float:
     """Integrate the distance error into the person's walking speed [m/s], 0 .. max_linear_m_s.
 
-    Only while the robot drives about as fast as commanded: held up by a wall, a turn or its own inertia, it
-    would estimate too high a speed.
+    The estimate is updated only while the robot drives about as fast as commanded. Otherwise, when held up by
+    a wall, a turn or inertia, it would be too high.
     """
     error = distance_error(target.height, config)
     wanted = config.approach_gain * error + walking_m_s

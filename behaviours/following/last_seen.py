@@ -1,4 +1,4 @@
-"""Last position of a person, updated by the wheels' motion while the robot drives there."""
+"""Last position of a person, updated by wheel odometry while the robot drives there."""
 
 import math
 from dataclasses import dataclass, replace
@@ -19,10 +19,10 @@ class PlaceConfig:
         camera_m: [m] distance of the camera in front of the robot's origin.
         arrive_m: [m] distance at which the robot has arrived.
         blocked_s: [s] without progress after which the robot stops trying.
-        longest_s: [s] longest drive.
-        narrow_m: [m] least width of a passage that the robot enters, as it could not turn in a narrower one.
+        longest_s: [s] longest duration of the drive.
+        narrow_m: [m] least width of a passage that the robot enters, since it cannot turn in a narrower one.
         narrow_from_m, narrow_to_m: [m] range ahead in which passages are detected.
-        lane_m: [m] half of the lane ahead that must be free.
+        lane_m: [m] half width of the lane ahead that must be free.
     """
 
     whole_m: float = 1.75 / (2.0 * math.tan(math.radians(22.0)))
@@ -63,7 +63,7 @@ class LastPlace:
 
 
 def place_of(target: Target, config: PlaceConfig) -> LastPlace:
-    """Estimate the position of a person of usual height from the height in the image."""
+    """Estimate the position of a person from the height in the image, for average body height."""
     far = config.camera_m + config.whole_m / target.height
     return LastPlace(x_m=far * math.cos(target.bearing_rad), y_m=far * math.sin(target.bearing_rad))
 
@@ -93,14 +93,12 @@ def end_of_way(place: LastPlace, around: Points, config: PlaceConfig) -> str:
         config: conditions.
     """
     if place.distance_m < config.arrive_m:
-        return "nobody where the person was seen last"
+        return "no person at the last position"
     if _is_narrow(around, config):
-        return "the way to where the person was seen last is too narrow to turn in"
+        return "the passage to the last position is too narrow to turn"
     if place.blocked_s > config.blocked_s:
-        return "the way to where the person was seen last is blocked"
-    return (
-        "the way to where the person was seen last is too long" if place.driven_s > config.longest_s else ""
-    )
+        return "the path to the last position is blocked"
+    return "the drive to the last position takes too long" if place.driven_s > config.longest_s else ""
 
 
 def _is_narrow(around: Points, config: PlaceConfig) -> bool:

@@ -1,4 +1,4 @@
-"""State of the followed person between images: bearing, drift and apparent height."""
+"""State of the followed person: bearing, drift and apparent height."""
 
 import math
 from collections.abc import Iterable
@@ -13,7 +13,7 @@ class TargetConfig:
     """Smoothing of the measurements of the followed person.
 
     Attributes:
-        half_view_rad: [rad] bearing of the image's left border; the thermal camera's 320 x 240 at 44 degrees.
+        half_view_rad: [rad] bearing of the image's left border, for the thermal camera at 44 degrees.
         bearing_gain: weight of the innovation in the bearing.
         drift_gain: [1/frame] weight of the innovation in the drift.
         height_s: [s] time constant over which the apparent height is averaged.
@@ -29,7 +29,7 @@ class TargetConfig:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Target:
-    """One person as seen from the robot, without a metric position.
+    """One person relative to the robot, without a metric position.
 
     Attributes:
         id: track id.
@@ -109,7 +109,7 @@ class OccluderConfig:
 def hider(
     people: Iterable[SeenPerson], target: Target, config: OccluderConfig, view: TargetConfig
 ) -> SeenPerson | None:
-    """Return a person who is nearer than the followed one and at about its predicted bearing, or None."""
+    """Return a person who is nearer than the followed one and near its predicted bearing, or None."""
     in_front = [
         (abs(bearing(other.x, view) - target.bearing_rad), other)
         for other in people
@@ -125,7 +125,7 @@ def hider(
 def keep_behind(
     target: Target, people: Iterable[SeenPerson], config: OccluderConfig, view: TargetConfig
 ) -> Target:
-    """Move the person along with the occluder: anybody who steps out from behind another one is seen."""
+    """Move an occluded person along with the occluder, since a person who steps out would be visible."""
     other = hider(people, target, config, view)
     if other is None:
         return target

@@ -60,8 +60,8 @@ DEPTH_PRESETS: Final[dict[str, DepthConfig]] = {
 # Real thermal cameras, by name.
 
 # Like cameras for cars and drones: a microbolometer behind a shutter and a fast lens, whose electronics
-# reduce temporal and spatial noise, replace dead pixels and sharpen the image. A low plateau and a slope limit
-# prevent the gain from amplifying noise on walls.
+# reduce temporal and spatial noise, replace dead pixels and sharpen the image. A low plateau and a slope
+# limit prevent the gain from amplifying noise on walls.
 _UNCOOLED: Final = ThermalConfig(
     blur_px=0.8,
     gain="plateau",

@@ -47,7 +47,7 @@ def panorama_image(seen: CameraView, config: PanoramaConfig, camera: Panorama) -
 
 @lru_cache(maxsize=16)
 def _lines(camera: Panorama) -> tuple[Matrix, Matrix]:
-    """Return the directions (W, 2) of columns, x and z of the optical frame, and the fall (H,) of rows per metre."""
+    """Return the directions (W, 2) of columns, optical x and z, and the fall (H,) of rows per metre."""
     right = -camera.bearing(np.arange(camera.width))
     return np.stack([np.sin(right), np.cos(right)], axis=1), np.tan(
         camera.depression(np.arange(camera.height))

@@ -93,7 +93,7 @@ class Action:
     def stance(self, start: Stance, time_s: float) -> Stance:
         """Return the pose at a time during or after the action, for a thing that was at `start` before.
 
-        The motion starts and stops smoothly: after a share u of the time, 3 u^2 - 2 u^3 of the path is covered.
+        The motion starts and stops smoothly: after a share u of the time it is at 3 u^2 - 2 u^3 of the path.
         """
         if self.kind not in LASTING or time_s >= self.ends_s - _SAME_S:
             return self.target
@@ -161,8 +161,8 @@ class Mover:
         """Return the point at which a person holds the thing at a time: (3,) [m] in the world frame.
 
         It is the edge farthest from the hinge if there is one, the middle of the front for a sliding thing,
-        and otherwise the point nearest to the person, at hand height. An axis of rotation away from the thing,
-        such as the person who carries it, is not a hinge.
+        and otherwise the point nearest to the person, at hand height. An axis of rotation outside the
+        thing, such as the person who carries it, is not a hinge.
 
         Args:
             action: the action for which it is held.

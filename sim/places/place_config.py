@@ -46,9 +46,7 @@ class Temperatures:
         dict[Word, Celsius],
         Field(description="temperatures of single walls by name, such as an outer wall in winter"),
     ] = field(default_factory=dict)
-    surroundings_c: Annotated[
-        Celsius, Field(description="temperature that surfaces of low emissivity reflect")
-    ] = 21.0
+    surroundings_c: Annotated[Celsius, Field(description="reflected by surfaces of low emissivity")] = 21.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -50,4 +50,4 @@ def test_lines_that_run_anyhow_do_not_agree():
 def test_lines_far_from_where_the_robot_was_are_not_believed():
     expected = Corridor(offset_m=-0.9, heading_rad=0.0, width_m=3.0)
     found = corridor_from_image(drawn_corridor(0.3, 0.0, 3.0), CAMERA, expected)
-    assert found == Unknown("the lines do not fit where the robot was")
+    assert found == Unknown("the lines do not match the predicted pose")

@@ -67,7 +67,7 @@ def test_people_beside_the_robot_are_not_taken_for_a_wall_that_is_expected_elsew
 @pytest.mark.parametrize("reading", [5.0, math.nan])
 def test_where_nothing_is_heard_no_corridor_is_told_and_why(reading):
     found = corridor_from_sonar(percept_of(np.full(16, reading)))
-    assert found == Unknown("the sonars hear no walls along the way")
+    assert found == Unknown("the sonars detect no corridor walls")
 
 
 def test_dead_reckoning_follows_the_arc_and_blending_goes_a_share_of_the_way():

@@ -70,7 +70,7 @@ def test_a_percept_with_a_senseless_number_stops_the_robot_and_is_forgotten(name
     state, _ = follow_frames([person()])
     after, command = follow(state, dataclasses.replace(percept(1.0, person()), **{name: math.nan}), CONFIG)
     assert command == STOP
-    assert after == dataclasses.replace(state, mode="blind", reason="senseless or old input")
+    assert after == dataclasses.replace(state, mode="blind", reason="invalid or old input")
 
 
 def test_an_image_seen_before_stops_the_robot():
