@@ -119,9 +119,7 @@ def checked_behaviour(behaviour: object, name: str) -> CheckedBehaviour:
     """
     with blamed(name):
         if not isinstance(behaviour, Behaviour):
-            raise BadInput(
-                "is not a behaviour; it needs `command(percept)`, `mode`, `reason` and `following`"
-            )
+            raise BadInput("is not a behaviour; it needs `command(percept)`, `mode`, `reason`, `following`")
         return CheckedBehaviour(behaviour, name)
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class Tracker(Protocol):
-    """Turns frames into tracks."""
+    """Interface of trackers: frames in, tracks out."""
 
     @property
     def cameras(self) -> tuple[str, ...]:
@@ -50,7 +50,7 @@ class ChecksCameras(Protocol):
     """A tracker that has requirements on the cameras it gets."""
 
     def check_cameras(self, calibrations: "Mapping[str, Calibration]") -> None:
-        """Refuse unsuitable cameras, by name, before the first frame.
+        """Check cameras, by name, before the first frame.
 
         Raises:
             BadInput: a camera is unsuitable.
@@ -75,7 +75,7 @@ BY_CONTRAST: Final = frozenset({DETECTION_TRACKER})
 def explanation_of(tracker: Tracker) -> object:
     """Return a tracker's `explanation`, the state behind its tracks; None if it has none.
 
-    An isinstance check of a protocol would evaluate it twice, and cost more than many a tracker.
+    An isinstance check of a protocol would evaluate it twice, and would be slower than some trackers.
     """
     return getattr(tracker, "explanation", None)
 
@@ -241,7 +241,7 @@ def _rgbd(rng: "np.random.Generator") -> Tracker:
 @TRACKERS.register(
     "rgbd-printed",
     scope="the situation-awareness thesis, chapter 4",
-    summary="`rgbd` with the values that the thesis prints, where it prints any.",
+    summary="`rgbd` with the settings given in the thesis, where it gives any.",
 )
 def _rgbd_printed(rng: "np.random.Generator") -> Tracker:
     from peopleboy.tracker.rgbd.rgbd_config import PRINTED
@@ -300,7 +300,7 @@ def _attentive_fused(rng: "np.random.Generator") -> Tracker:
 
 
 def is_own(name: str) -> bool:
-    """Whether a name is that of an external tracker: "module:Class", or one of another package."""
+    """Return whether a name is that of an external tracker: "module:Class", or of another package."""
     return ":" in name or TRACKERS.is_plugged_in(name)
 
 

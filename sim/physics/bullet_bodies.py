@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.poses import pose_matrices
-from peopleboy.sim.physics.physics_engine import ByName
+from peopleboy.sim.physics.physics_engine import BodiesByName
 from peopleboy.sim.physics.solid_shapes import Array, PartKey, PlacedBodies, cast, entered_at
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, Vector
 
@@ -86,7 +86,7 @@ class BulletBodies:
 
     def __init__(self, parts: list[PartKey]) -> None:
         self.parts = parts
-        self.by_name = ByName[BulletBody]()
+        self.by_name = BodiesByName[BulletBody]()
         self.moving: list[BulletBody] = []
         self._body_of_id: dict[int, BulletBody] = {}
         self._part_of_link: dict[tuple[int, int], int] = {}

@@ -13,7 +13,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.sim.geometry.pinhole import Matrix
 from peopleboy.sim.geometry.poses import pose_matrices
 from peopleboy.sim.geometry.vectors import multiply
-from peopleboy.sim.physics.physics_engine import ByName, Physics
+from peopleboy.sim.physics.physics_engine import BodiesByName, Physics
 from peopleboy.sim.physics.solid_shapes import PartKey, PlacedBodies, cast
 from peopleboy.sim.physics.urdf import find_model, read_links
 from peopleboy.sim.physics.vehicle import (
@@ -64,7 +64,7 @@ class Kinematic(Physics):
     def __init__(self, *, physics_hz: int = 240) -> None:
         super().__init__()
         self._dt_s = 1.0 / physics_hz
-        self.numbers = ByName[int]()
+        self.numbers = BodiesByName[int]()
         self._bodies = PlacedBodies()
         self._visible: list[VisualShape] = []
         self._touched = np.zeros(0, np.bool_)

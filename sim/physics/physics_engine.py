@@ -26,11 +26,11 @@ PHYSICS: Final[tuple[PhysicsName, ...]] = get_args(PhysicsName)
 B = TypeVar("B")
 
 
-class ByName(dict[str, B]):
+class BodiesByName(dict[str, B]):
     """Bodies by name.
 
     Raises:
-        BadInput: none has a name that is looked up.
+        BadInput: the name is unknown.
     """
 
     def __missing__(self, name: str) -> B:
@@ -38,7 +38,7 @@ class ByName(dict[str, B]):
         raise BadInput(f"unknown body {name!r}; known bodies: {known}")
 
     def check_new(self, name: str) -> None:
-        """Refuse a name that is taken.
+        """Check that a name is not taken.
 
         Raises:
             BadInput: it is.

@@ -113,7 +113,7 @@ def test_it_is_compared_with_others_by_the_scenario_s_own_task(
 @pytest.mark.parametrize(
     ("answer", "says"),
     [
-        ("None", ("must give a Command", "None")),
+        ("None", ("must return a Command", "None")),
         ("Command(linear_m_s=float('nan'), angular_rad_s=0.0)", ("finite", "nan")),
         (
             "setattr(self, 'following', 'anna') or Command(linear_m_s=0.0, angular_rad_s=0.0)",
