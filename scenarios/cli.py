@@ -34,7 +34,7 @@ SECTIONS: Final[Mapping[str, tuple[click.Command, ...]]] = {
     "Data": (track, render, export, scene_model, schema),
     "Research": (datasets, reproduce, tune, train, export_onnx, sim_to_real),
 }
-"""The commands, by the headings of the help."""
+"""Commands, grouped by the headings of the help."""
 
 COMMANDS: Final = tuple(command for commands in SECTIONS.values() for command in commands)
 
@@ -43,7 +43,7 @@ class _Sections(click.Group):
     """A group whose help lists the commands by section."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
-        """Name the commands in the order of the sections."""
+        """List the names of the commands in the order of the sections."""
         return list(self.commands)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
@@ -78,7 +78,7 @@ for command in COMMANDS:
 
 
 def main(arguments: Sequence[str] | None = None) -> Any:
-    """Run the command line; wrong input gives one line on standard error and exit code 2."""
+    """Run the command line; invalid input prints one line on standard error and exits with code 2."""
     try:
         code = cli.main(args=arguments, prog_name="peopleboy", standalone_mode=False)
     except click.exceptions.NoArgsIsHelpError as error:
@@ -98,7 +98,7 @@ def main(arguments: Sequence[str] | None = None) -> Any:
         if error.errno not in _FULL:
             raise
         click.echo(
-            f"peopleboy: the disk is full: {error}; free some space and give the command again", err=True
+            f"peopleboy: the disk is full: {error}; free some space and run the command again", err=True
         )
         code = FAILED
     sys.exit(code if isinstance(code, int) else 0)

@@ -1,4 +1,4 @@
-"""What is printed while kernels are compiled, which happens once on a machine."""
+"""Announce that numba compiles kernels, which happens once per machine."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,7 +8,7 @@ from rich.console import Console
 
 
 class _FirstOne(event.Listener):
-    """Says which kernel is the first to be compiled, and nothing of the others."""
+    """Print a line when the first kernel is compiled, and nothing for the others."""
 
     def __init__(self, console: Console) -> None:
         self._console = console
@@ -19,7 +19,7 @@ class _FirstOne(event.Listener):
             self._has_announced = True
             room = event.data["dispatcher"].__module__.removeprefix("peopleboy.")
             self._console.print(
-                f"compiling kernels of {room} and others for this processor: once, for up to a minute"
+                f"compiling kernels of {room} and others for this processor, once; it takes up to a minute"
             )
 
     def on_end(self, event: event.Event) -> None:
@@ -28,7 +28,7 @@ class _FirstOne(event.Listener):
 
 @contextmanager
 def announced_compiling(console: Console) -> Iterator[None]:
-    """Tell on a terminal if a kernel is compiled in the block."""
+    """Print a line on a terminal if a kernel is compiled inside the block."""
     if console.quiet or not console.is_terminal:
         yield
         return

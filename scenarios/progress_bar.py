@@ -13,16 +13,16 @@ _IS_HIDDEN: ContextVar[bool] = ContextVar("is_hidden", default=False)
 
 
 class Show(Protocol):
-    """Moves a bar."""
+    """Function that moves a progress bar."""
 
     def __call__(self, finished: int, total: int, note: str = "") -> None:
-        """Return how much is finished, of how much, and what is going on."""
+        """Show that `finished` of `total` units are done, with a note on the current state."""
         ...
 
 
 @contextmanager
 def no_progress() -> Iterator[None]:
-    """Show no bar in the block."""
+    """Hide progress bars inside the block."""
     before = _IS_HIDDEN.set(True)
     try:
         yield
@@ -31,25 +31,27 @@ def no_progress() -> Iterator[None]:
 
 
 def progress_console() -> Console:
-    """Return the console on which progress is shown; it is silent where nobody reads it."""
+    """Return the console that shows progress; it is quiet inside `no_progress`."""
     return _console(_IS_HIDDEN.get())
 
 
 @cache
 def _console(is_hidden: bool) -> Console:
-    # One for all, as lines of another one would run into what moves on this.
+    # All progress shares one console: lines printed by a second one would break into the moving bar.
     return Console(stderr=True, quiet=is_hidden)
 
 
 @contextmanager
 def progress_bar(title: str, unit: str | None = None) -> Iterator[Show]:
-    """Have a bar on a terminal; it appears when first moved, so that a mistake found before stands alone.
+    """Yield a function that moves a progress bar on a terminal.
+
+    The bar appears when it is first moved, so that an error raised before that stands on a clean line.
 
     Args:
-        title: stands before the bar.
-        unit: what is counted, if the bar is to tell how many a second.
+        title: label of the bar.
+        unit: unit of the count, to show a rate per second; None shows no rate.
     """
-    from peopleboy.scenarios.compiling import announced_compiling  # numba takes a while
+    from peopleboy.scenarios.compiling import announced_compiling  # here, as importing numba is slow
 
     console = progress_console()
     columns = (

@@ -1,1 +1,1 @@
-"""The commands of `peopleboy`, one file for each kind of work; each loads what it needs when it is called."""
+"""The commands of `peopleboy`, one file for each kind of work; each imports its dependencies when called."""

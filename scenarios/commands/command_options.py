@@ -1,8 +1,8 @@
-"""Options of commands, from the fields of the dataclasses that the commands pass on.
+"""Derive the options of commands from the fields of dataclasses.
 
-A field with a description becomes an option of its name: a flag if it is a truth value, a choice if it has
-few values, and else a number, a path or a word, with the limits and the default of the field. `options_of`
-gives a command such options; it takes the values as one `GivenOptions`, from which the dataclass is made.
+Each field with a description becomes an option with the field's name, limits and default: a flag for a
+boolean, a choice for a few fixed values, otherwise a number, a path or a string. `options_of` adds the
+options to a command and passes their values to it as one `GivenOptions`, which makes the dataclass.
 """
 
 import json
@@ -28,7 +28,7 @@ from peopleboy.scenarios.commands.completion import (
 if TYPE_CHECKING:
     from peopleboy.settings import Setting
 
-SEED = "Seed of all random numbers.  [default: 0, or that of the run whose scenario.yaml is given]"
+SEED = "Seed of all random numbers.  [default: 0, or the run's seed if you give a run's scenario.yaml]"
 TRACKERS = f"{', '.join(TRACKER_NAMES)}; truth for the ground truth; or module:Class for your own"
 TRACKER = f"Tracker: {TRACKERS}.  [default: the scenario's, or detection]"
 BEHAVIOURS = f"{', '.join(BEHAVIOUR_NAMES)}; or module:Class for your own"
@@ -41,10 +41,10 @@ Command = TypeVar("Command", bound=Callable[..., None])
 
 
 class WholeNumber(click.IntRange):
-    """A whole number within limits, refused with what would be right."""
+    """A whole number within limits; an invalid value raises an error that states the limits."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> int:
-        """Read it."""
+        """Convert a value to an int."""
         try:
             return int(super().convert(value, param, ctx))
         except click.BadParameter:
@@ -52,10 +52,10 @@ class WholeNumber(click.IntRange):
 
 
 class Number(click.FloatRange):
-    """A number within limits, refused with what would be right."""
+    """A number within limits; an invalid value raises an error that states the limits."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Read it."""
+        """Convert a value to a float."""
         try:
             number = float(super().convert(value, param, ctx))
         except click.BadParameter:
@@ -73,30 +73,30 @@ def _limits(number: WholeNumber | Number) -> str:
 
 @dataclass(frozen=True, slots=True)
 class GivenOptions(Generic[C]):
-    """What the user gave on the command line for the fields of a dataclass.
+    """Values that the user gave on the command line for the fields of a dataclass.
 
     Attributes:
         config: the dataclass.
-        values: by field, where the user gave one.
+        values: the given values, by field.
     """
 
     config: type[C]
     values: Mapping[str, Any]
 
     def __getattr__(self, field: str) -> Any:
-        """Return the value of a field; None if the user gave none."""
+        """Return the value of a field, or None if the user did not give it."""
         return self.values.get(field)
 
     def make(self, **derived: Any) -> C:
-        """Make the dataclass, with defaults for the rest, and with what a command derives."""
+        """Make the dataclass from the given values and `derived`; all other fields get their defaults."""
         return self.config(**{**self.values, **derived})
 
 
 @dataclass(frozen=True, slots=True)
 class _FieldOptions:
-    """Options for some fields of a dataclass, which is loaded when they are needed.
+    """Options for some fields of a dataclass, which is imported when the options are needed.
 
-    A list of all commands needs no options, and should not wait for what the dataclasses import.
+    A list of all commands needs no options, so it must not wait for these imports.
     """
 
     target: str
@@ -122,7 +122,7 @@ class _FieldOptions:
             yield _option(setting, meaning, is_required=is_required)
 
     def given(self, values: dict[str, Any]) -> GivenOptions[Any]:
-        """Take the values of these fields out of the values of a command."""
+        """Move the values of these fields out of the values of a command."""
         taken = {setting.field: _taken(setting, values.pop(setting.field)) for setting in self.settings()}
         return GivenOptions(
             self.config(), {field: value for field, value in taken.items() if value is not None}
@@ -130,14 +130,14 @@ class _FieldOptions:
 
 
 class FieldsCommand(click.Command):
-    """A command that takes --verbose, and whose `options_of` become parameters when first asked for."""
+    """A command with --verbose, whose `options_of` become parameters when they are first needed."""
 
     _params: list[Any]
     _is_expanded: bool
 
     @property
     def params(self) -> list[click.Parameter]:
-        """All parameters: always the same list, as click adds to it."""
+        """All parameters; always the same list, because click appends to it."""
         if not self._is_expanded:
             fields = [each.options() if isinstance(each, _FieldOptions) else [each] for each in self._params]
             own = [param for params in fields for param in params]
@@ -154,14 +154,14 @@ def options_of(
 ) -> Callable[[Command], Command]:
     """Give a `FieldsCommand` one option for each of these fields of a dataclass.
 
-    The command takes them as one `GivenOptions`. A field that is marked as `POSITIONAL` becomes an argument.
+    The command receives the values as one `GivenOptions`. A field marked as `POSITIONAL` becomes an argument.
 
     Args:
         target: the dataclass, as "module:Class" below `peopleboy`.
-        fields: which of its fields, in the order of the help.
+        fields: names of the fields, in the order of the help.
         into: name of the command's parameter.
-        is_optional: whether fields without a default may be left out, too.
-        meanings: help in place of a field's own.
+        is_optional: whether fields without a default are optional as well.
+        meanings: help texts that replace those of the fields.
     """
     options = _FieldOptions(target, fields, is_optional, meanings)
 
@@ -171,7 +171,7 @@ def options_of(
             given = options.given(values)
             command(*arguments, **{into: given}, **values)
 
-        # Where click's own decorators keep their options until the command is made.
+        # click's own decorators keep their options in this attribute until the command is made.
         with_given.__dict__.setdefault("__click_params__", []).append(options)
         return cast(Command, with_given)
 
@@ -185,10 +185,10 @@ def _option(setting: "Setting", meaning: str, *, is_required: bool) -> click.Par
             [setting.field], required=False, metavar=metavar, shell_complete=complete_scenario
         )
     flag = f"--{setting.key.replace('_', '-')}"
-    if setting.kind is bool:  # a setting that is on by default has a key that says so, such as no_recording
+    if setting.kind is bool:  # a setting that is on by default has a negated key, such as no_recording
         return click.Option([flag, setting.field], is_flag=True, help=meaning)
     if setting.default is not MISSING and setting.default is not None and "[default:" not in meaning:
-        # Click does not get the default itself, so that a command knows what the user gave.
+        # Do not pass the default to click, so that the command can tell which values the user gave.
         default = ", ".join(map(str, setting.default)) if _is_many(setting) else setting.default
         meaning += f"  [default: {default}]"
     choices = _choices(setting)
@@ -215,13 +215,13 @@ def _choices(setting: "Setting") -> list[str]:
 def _type(setting: "Setting") -> Any:
     low, high = setting.limits.get("ge"), setting.limits.get("le", setting.limits.get("lt"))
     if setting.kind is int:
-        # The limits are kept as numbers of any kind; those of a whole number are whole.
+        # The limits are stored as floats; convert them for a whole number.
         return WholeNumber(None if low is None else int(low), None if high is None else int(high))
     if setting.kind is float:
         return Number(low, high, max_open="lt" in setting.limits) if low is not None else float
     if setting.kind is Path:
         return PATH
-    # A pair of numbers is two words of the command line.
+    # A pair of numbers takes two arguments on the command line.
     return (float, float) if setting.kind == tuple[float, float] else str
 
 
@@ -240,13 +240,13 @@ complete_trackers = complete_names((*TRACKER_NAMES, "truth"))
 _COMPLETED: Final = {"tracker": complete_trackers, "behaviour": complete_names(BEHAVIOUR_NAMES)}
 
 _NAMES: Final = ("tracker", "camera")
-"""Fields whose values are names of ours, such as `colour`, which may be spelt the American way."""
+"""Fields whose values are names such as `colour`, which may also have the American spelling."""
 
 _AMERICAN: Final = {"color": "colour", "behavior": "behaviour", "randomize": "randomise", "gray": "grey"}
 
 
 def british(word: str) -> str:
-    """Return a word of the command line in the spelling of the options: `color` is `colour`."""
+    """Return a command-line word in the options' spelling: `color` becomes `colour`."""
     for american, ours in _AMERICAN.items():
         word = word.replace(american, ours)
     return word
@@ -257,7 +257,7 @@ _ADDRESS = "Run on the cluster of this Dask scheduler instead."
 
 
 def workers_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Add the options for parallel work; the command takes them as `Workers` named workers."""
+    """Add the options for parallel work; the command receives a `Workers` named `workers`."""
 
     @wraps(command)
     def with_workers(*arguments: Any, workers: int | None, scheduler: str | None, **options: Any) -> None:
@@ -270,7 +270,7 @@ def workers_options(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def seeds_options(count: int, first: int = 0) -> Callable[[Command], Command]:
-    """Add --seeds and --first-seed with these defaults; the command takes a range named seeds."""
+    """Add --seeds and --first-seed with these defaults; the command receives a range named `seeds`."""
 
     def decorate(command: Command) -> Command:
         @wraps(command)
@@ -303,7 +303,7 @@ frame_cache_option = click.option(
     type=PATH,
     default=Path("runs/films"),
     show_default=True,
-    help="Folder in which rendered frames are kept; on a cluster, one that all machines share.",
+    help="Folder that caches rendered frames; on a cluster, a folder that all machines share.",
 )
 
 
@@ -312,8 +312,8 @@ class Output:
     """How a command prints its results.
 
     Attributes:
-        as_json: print one JSON document and nothing else.
-        is_quiet: print no text and no progress.
+        as_json: whether to print one JSON document and nothing else.
+        is_quiet: whether to print neither text nor progress.
     """
 
     as_json: bool
@@ -337,7 +337,7 @@ class Output:
 
 
 def output_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Add --json and --quiet; the command takes them as an `Output` named output."""
+    """Add --json and --quiet; the command receives an `Output` named `output`."""
 
     @wraps(command)
     def with_output(*arguments: Any, as_json: bool, quiet: bool, **options: Any) -> None:
@@ -357,24 +357,24 @@ def output_options(command: Callable[..., None]) -> Callable[..., None]:
 
 
 class _StandardError(logging.Handler):
-    """Writes to the standard error of the moment, on which a progress bar may be."""
+    """Write to the current standard error, where a progress bar may be active."""
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Write a line."""
+        """Write one log record as a line."""
         click.echo(self.format(record), err=True)
 
 
 class _Formatter(logging.Formatter):
-    """`peopleboy: note: ...` for warnings; with --verbose also the seconds since the start."""
+    """Format warnings as `peopleboy: note: ...`, and other records with the seconds since the start."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """Format a line."""
+        """Format one log record."""
         kind = "note" if record.levelno >= logging.WARNING else f"{record.relativeCreated / 1000.0:.1f} s"
         return f"peopleboy: {kind}: {record.getMessage()}"
 
 
 def configure_logging(level: int = logging.WARNING) -> None:
-    """Print the log of `peopleboy` from this level on to standard error."""
+    """Print log records of `peopleboy` at or above this level to standard error."""
     log = logging.getLogger("peopleboy")
     log.setLevel(level)
     if not any(isinstance(handler, _StandardError) for handler in log.handlers):
@@ -397,5 +397,5 @@ def _verbose_option() -> click.Option:
 
 
 def print_note(text: str) -> None:
-    """Log a note for the reader of the results."""
+    """Log a note about the results."""
     logging.getLogger("peopleboy").warning(text)

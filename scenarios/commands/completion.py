@@ -1,7 +1,6 @@
-"""What a shell completes on the command line: names of scenarios, suites, trackers and behaviours.
+"""Shell completion for names of scenarios, suites, trackers and behaviours.
 
-A shell that is set up to ask `peopleboy` gets them, as docs/tutorial/first-run.md says. Nothing is loaded for
-it that takes time.
+docs/tutorial/first-run.md explains how to set up a shell for it. It imports nothing slow.
 """
 
 from collections.abc import Callable, Iterable
@@ -21,7 +20,7 @@ _Complete = Callable[[click.Context, click.Parameter, str], list[CompletionItem]
 
 
 def complete_names(names: Iterable[str]) -> _Complete:
-    """Complete one of some names."""
+    """Return a completion function for a fixed set of names."""
     every = sorted(names)
 
     def complete(context: click.Context, parameter: click.Parameter, start: str) -> list[CompletionItem]:  # noqa: ARG001
@@ -35,7 +34,7 @@ def complete_scenario(
     parameter: click.Parameter,  # noqa: ARG001
     start: str,
 ) -> list[CompletionItem]:
-    """Complete a scenario of the library or a suite; where none begins so, the path of a file."""
+    """Complete a scenario or suite of the library; if no name matches, complete a file path."""
     paths = [path for folder in ("library", "suites") for path in (_HOME / folder).glob("*.yaml")]
     names = sorted(path.stem for path in paths if path.stem.startswith(start))
     return [CompletionItem(name) for name in names] or [CompletionItem(start, type="file")]

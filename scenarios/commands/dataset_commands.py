@@ -1,4 +1,4 @@
-"""Commands that make data sets of runs: `render`, `export`."""
+"""Commands that make data sets from runs: `render`, `export`."""
 
 import sys
 from collections.abc import Sequence
@@ -51,10 +51,10 @@ def render(
 ) -> None:
     """Render a data set with splits, checks and a datasheet.
 
-    A data set holds scenarios, each with many seeds; or, with --random-worlds, a random world for each seed,
-    with its own place, things, temperatures, people and cameras. From 7 seeds on every split has runs. A
-    killed call resumes when you give the command again. With more --seeds the set grows, and no run changes
-    its split.
+    A data set contains scenarios with many seeds each, or, with --random-worlds, one random world per seed,
+    with its own place, objects, temperatures, people and cameras. With 7 seeds or more, every split has runs.
+    A killed call resumes when you run the command again. If you add --seeds later, the data set grows and all
+    earlier runs stay in their splits.
     """
     from peopleboy.scenarios.export.make_dataset import render_set
 
@@ -83,7 +83,7 @@ def _print_set(done: "RenderedSet") -> None:
 
 
 class FormatName(click.Choice[str]):
-    """The name of a format, also of one from another package; those are found when the command is used."""
+    """A format name; formats of other packages are looked up when the command is used."""
 
     def __init__(self) -> None:
         self.case_sensitive = True
@@ -106,14 +106,13 @@ class FormatName(click.Choice[str]):
 def export(runs: Sequence[Path], form: str, given: "GivenOptions[ExportOptions]", output: Output) -> None:
     """Export runs to the formats of other tools.
 
-    RUNS are folders of runs, or folders that hold them. The runs of a rendered data set are exported to coco,
-    yolo and mot by split, as its folder `splits` says; export.json lists the runs of each split.
+    RUNS are folders of runs, or folders that contain such folders. Runs of a rendered data set are exported
+    to coco, yolo and mot by split, as listed in its folder `splits`; export.json lists each split's runs.
 
-    mot: MOTChallenge, for TrackEval. coco: masks, boxes and keypoints. images: for each image the person and
-    the body part at each pixel, and true depth. yolo, yolo-pose: boxes, and keypoints, for Ultralytics.
-    viper: ViPER XML. mcap: ROS 2 bags. mp4: videos. coco, images and mcap contain every camera. Images and
-    masks are rendered again, and equal those of the run to the bit. mcap needs the package rosbags, mp4
-    needs av.
+    mot: MOTChallenge, for TrackEval. coco: masks, boxes and keypoints. images: per-pixel labels of person and
+    body part, and true depth, for each image. yolo, yolo-pose: boxes, and keypoints, for Ultralytics. viper:
+    ViPER XML. mcap: ROS 2 bags. mp4: videos. coco, images and mcap contain every camera. Images and masks are
+    rendered again and are bit-identical to those of the run. mcap needs the package rosbags, mp4 needs av.
     """
     from peopleboy.scenarios.export.export_runs import export as write
     from peopleboy.scenarios.export.export_runs import notes_on
@@ -126,7 +125,7 @@ def export(runs: Sequence[Path], form: str, given: "GivenOptions[ExportOptions]"
         refuse_unfinished(folder)
     opened = open_whole_runs(
         [run for folder in runs for run in runs_in(folder)],
-        are_named_apart=form != "mot",  # which names sequences by scenario and seed, for several trackers
+        are_named_apart=form != "mot",  # mot names sequences by scenario and seed, for several trackers
     )
     first = opened[0].folder
     what = form if given.camera is None else f"{form}-{given.camera}"

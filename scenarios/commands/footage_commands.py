@@ -102,7 +102,7 @@ def track(
 def _rgbd(given: "GivenOptions[RgbdOptions]", camera: "GivenOptions[RgbdCamera]") -> "RgbdOptions | None":
     if given.depth is None:
         if given.values or camera.values:
-            raise BadInput("options of a depth camera need --depth FOLDER; without it, leave them out")
+            raise BadInput("options of a depth camera need --depth FOLDER; add it, or leave them out")
         return None
     if given.m_per_count is None:
         raise BadInput("--depth needs --depth-scale, the metres per count: 0.001 for millimetres")
@@ -137,16 +137,16 @@ def _print(tracked: "Tracked", options: "TrackOptions", output: Output) -> None:
 )
 @output_options
 def import_tracks(run: Path, tracks: Path, given: "GivenOptions[TrackImport]", output: Output) -> None:
-    """Import tracks that another program made of a run.
+    """Import tracks that another program computed from a run's images.
 
     TRACKS is MOTChallenge text: frame, id, left, top, width, height, confidence, -1, -1, -1. Frames count the
-    camera's images from 1, as exports do, and boxes are in pixels. Writes a run's folder with RUN's scenario
-    and ground truth and with these tracks, for report, view, evaluate and export. Status and position on the
-    floor are marked as unknown, as MOTChallenge text has neither. The images are rendered again, and equal
-    those of RUN.
+    camera's images from 1, as in exports, and boxes are in pixels. Writes a run folder with RUN's scenario
+    and ground truth and these tracks, for report, view, evaluate and export. The tracks' status and floor
+    position are marked as unknown, because MOTChallenge text has neither. The images are rendered again and
+    are bit-identical to those of RUN.
 
-    RUN may be a folder of runs, such as that of a sweep. TRACKS is then a folder with a file
-    SCENARIO-SEED.txt for each run, or with a folder `data` that contains them.
+    RUN may be a folder of runs, such as the output of a sweep. TRACKS is then a folder with a file
+    SCENARIO-SEED.txt for each run, or with a folder `data` that contains these files.
     """
     from peopleboy.scenarios.finished_runs.import_tracks import import_tracks as take
     from peopleboy.scenarios.finished_runs.import_tracks import imports_by_sequence
@@ -200,8 +200,8 @@ def sim_to_real(rendered: Sequence[Path], real: Sequence[Path], out: Path, seed:
     """Measure the sim-to-real gap of rendered thermal images.
 
     Reports how well a classifier separates rendered from real images. RENDERED are folders of runs with
-    images, or sets of runs. A real clip is a folder with 8-bit grey images, in it or in thermal/, and gt.txt
-    in MOTChallenge, VOT or OTB format. Each side needs two scenes or more. Needs scikit-learn.
+    images, or rendered data sets. A real clip is a folder with 8-bit grey images, directly or in thermal/,
+    and gt.txt in MOTChallenge, VOT or OTB format. Each side needs at least two scenes. Needs scikit-learn.
     """
     from peopleboy.scenarios.report.page_parts import check_place
     from peopleboy.scenarios.sim_to_real.compare import compare_images as compare

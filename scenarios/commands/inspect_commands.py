@@ -1,4 +1,4 @@
-"""Commands that inspect runs and the library: `list`, `show`, `view`, `report`, `evaluate` and others."""
+"""Commands that inspect runs and the library, such as `list`, `show`, `view`, `report` and `evaluate`."""
 
 import shutil
 import sys
@@ -51,14 +51,14 @@ def view(folder: Path, web: bool, port: int | None) -> None:
     from peopleboy.scenarios.recording.viewer import open_viewer, serve
 
     if port is not None and not web:
-        raise BadInput(f"--port {port}: is the port of --web; give --web too, or leave it out")
+        raise BadInput(f"--port {port}: is the port of --web; add --web, or leave --port out")
     recording = recording_in(folder)
     check_installed("view")
     if not is_whole(recording):
-        print_note(f"{recording}: the recording was cut off; the part that was written is shown")
+        print_note(f"{recording}: the recording was cut off; only the part that was written is shown")
     layers = [recording, *layers_in(folder)]
     if web:
-        serve(layers, lambda address: click.echo(f"{address} shows the recording; stop with Ctrl-C."), port)
+        serve(layers, lambda address: click.echo(f"Viewer: {address} (stop with Ctrl-C)"), port)
     else:
         open_viewer(layers)
 
@@ -68,14 +68,14 @@ def view(folder: Path, web: bool, port: int | None) -> None:
 @options_of(
     "scenarios.running.run_options:RunOptions", "out", "record", out="Output folder.  [default: RUN/scene]"
 )
-@click.option("--no-thermal", is_flag=True, help="Find people by shape alone, without the thermal image.")
+@click.option("--no-thermal", is_flag=True, help="Detect people by shape alone, without the thermal image.")
 @output_options
 def scene_model(folder: Path, no_thermal: bool, given: "GivenOptions[RunOptions]", output: Output) -> None:
-    """Find the things that people moved, from depth images.
+    """Find objects that people moved, from depth images.
 
-    The run needs images: run the scenario with --frames and a camera `depth`. Writes scene.jsonl, a line per
-    frame; static_map.ply, the static scene as a point cloud; background.png, its depth in the last view; and
-    scene.rrd, which `view` shows over the run's recording.
+    The run needs images: run the scenario with --frames and a camera `depth`. Writes scene.jsonl, one line
+    per frame; static_map.ply, the static scene as a point cloud; background.png, the static scene's depth in
+    the last view; and scene.rrd, which `view` shows together with the run's recording.
     """
     from peopleboy.scenarios.finished_runs.run_scene_model import FOLDER, SceneModelOptions, run_scene_model
     from peopleboy.scenarios.progress_bar import progress_bar
@@ -97,9 +97,9 @@ def scene_model(folder: Path, no_thermal: bool, given: "GivenOptions[RunOptions]
 @click.argument("words", metavar="[WORD...]", nargs=-1)
 @output_options
 def list_command(words: tuple[str, ...], output: Output) -> None:
-    """List scenarios and suites with duration and people.
+    """List scenarios and suites with their duration and number of people.
 
-    With WORDs, only those are listed whose name or description contains all of them, for example
+    With WORDs, lists only entries whose name or description contains all of them, for example
     `peopleboy list crossing` or `peopleboy list suite`.
     """
     from peopleboy.scenarios.files.library import library, suites
@@ -139,7 +139,7 @@ def _print_entries(entries: "Sequence[LibraryEntry]") -> None:
 def show(scenario: str, seed: int | None, out: Path | None, output: Output) -> None:
     """Draw the plan of a scenario, with paths and times.
 
-    With --json, prints the resolved scenario too: every value, with all random draws of the seed.
+    With --json, also prints the resolved scenario: every value, including those sampled from the seed.
     """
     from peopleboy.scenarios.drawing.draw_plan import draw_plan
     from peopleboy.scenarios.files.load import load_scenario
@@ -172,8 +172,8 @@ def schema() -> None:
 def report(runs: Sequence[Path], out: Path | None, output: Output) -> None:
     """Write an HTML report on tracks, occlusions and losses.
 
-    Two to four RUNs are shown side by side. More RUNs, or a folder of runs, such as that of a sweep, are
-    summarised by tracker.
+    Two to four RUNs are shown side by side. More RUNs, or a folder of runs, such as the output of a sweep,
+    are summarised by tracker.
     """
     from peopleboy.scenarios.report.report_page import write_report
 
@@ -203,11 +203,11 @@ def evaluate(
 ) -> None:
     """Score tracks against ground truth, from runs or files.
 
-    RUNS are folders of runs, or folders that hold them, such as that of a suite. Several runs of one tracker
-    give the score over all frames, and mean and standard deviation over the runs. Runs of several trackers
-    are printed side by side, with the difference of each from the first over runs of the same scenario and
-    seed. Position errors on the floor are in metres; a tracker without boxes is scored on the floor alone. If
-    the robot drove among people, comfort metrics are printed too.
+    RUNS are folders of runs, or folders that contain such folders, such as the output of a suite. Several
+    runs of one tracker give the score over all frames, and mean and standard deviation over the runs. Runs of
+    several trackers are printed side by side, with the difference of each tracker from the first, over runs
+    of the same scenario and seed. Position errors on the floor are in metres; a tracker without boxes is
+    scored on the floor only. If the robot drove among people, comfort metrics are printed as well.
     """
     from peopleboy.scenarios.run_folder.finished_run import runs_in
     from peopleboy.scenarios.scores.by_tracker import (

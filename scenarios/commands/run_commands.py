@@ -39,15 +39,15 @@ if TYPE_CHECKING:
     *("seed", "out", "frames", "tracker", "boxes", "behaviour", "physics"),
     *("renderer", "record", "lossless", "overwrite"),
     seed=SEED,
-    out="Folder of the run.  [default: runs/SCENARIO-SEED, and -TRACKER, -BEHAVIOUR or -PHYSICS if they are "
-    "not those of the scenario]",
+    out="Folder of the run.  [default: runs/SCENARIO-SEED, plus -TRACKER, -BEHAVIOUR or -PHYSICS if they "
+    "differ from the scenario's]",
     tracker=TRACKER,
     behaviour=BEHAVIOUR,
 )
 @click.option(
     "--live",
     is_flag=True,
-    help="Show the run in the rerun viewer while it goes on; without a screen, on a page of this machine.",
+    help="Show the run in the rerun viewer while it is running; without a screen, on a local web page.",
 )
 @workers_options
 @output_options
@@ -60,9 +60,9 @@ def run(
 ) -> None:
     """Run a scenario: ground truth, tracks, scores, recording.
 
-    SCENARIO is a name from `peopleboy list`, the path of a YAML file, or a suite, such as dataset1. The runs
-    of a suite have seeds of their own and no recordings; a killed suite resumes when you give the command
-    again. --workers and --scheduler are for suites only.
+    SCENARIO is a name from `peopleboy list`, the path of a YAML file, or a suite, such as dataset1. Runs of a
+    suite have their own seeds and no recordings; a killed suite resumes when you run the command again.
+    --workers and --scheduler are for suites only.
     """
     from peopleboy.scenarios.files.library import suite_names
     from peopleboy.scenarios.files.load import load_scenario
@@ -72,9 +72,9 @@ def run(
     _check_physics(given)
     is_suite = scenario in suite_names()
     if is_suite and given.seed is not None:
-        raise BadInput(f"--seed {given.seed}: suite {scenario} has seeds of its own; leave it out")
+        raise BadInput(f"--seed {given.seed}: suite {scenario} has its own seeds; leave it out")
     if is_suite and given.behaviour is not None:
-        raise BadInput(f"--behaviour {given.behaviour}: suite {scenario} has drives of its own; leave it out")
+        raise BadInput(f"--behaviour {given.behaviour}: suite {scenario} has its own drives; leave it out")
     loaded = None if is_suite else load_scenario(scenario)
     seed = given.seed if given.seed is not None else 0 if loaded is None else loaded.seed
     name = (scenario if loaded is None else f"{loaded.name}-{seed}") + _others(loaded, given)
@@ -90,7 +90,7 @@ def run(
         )
     if options.lossless and (loaded is None or not options.record):
         raise BadInput(
-            f"{scenario}: --lossless is for the recording; suites and --no-recording write none, leave it out"
+            f"{scenario}: --lossless is for recordings; suites and --no-recording write none, leave it out"
         )
     if loaded is None:
         _run_suite(scenario, options, workers, output)
@@ -115,7 +115,7 @@ def _check_physics(given: "GivenOptions[RunOptions]") -> None:
 
 
 def _others(scenario: "Scenario | None", given: "GivenOptions[RunOptions]") -> str:
-    """Return the end of the folder's name: what differs from the scenario."""
+    """Return the suffix of the folder's name: the options that differ from the scenario."""
     usual = () if scenario is None else (scenario.tracker, scenario.robot.behaviour, scenario.spec.physics)
     chosen = (given.tracker, given.behaviour, given.physics)
     others = [each for each in chosen if each is not None and each not in usual]
@@ -153,7 +153,7 @@ def _show(scores: "RunScores", options: "RunOptions") -> None:
 
 
 def _run_shown(scenario: "Scenario", options: "RunOptions") -> "RunScores":
-    """Run a scenario with a bar that shows frames, frame rate and what the robot does."""
+    """Run a scenario with a progress bar that shows frames, frame rate and the behaviour's mode."""
     from peopleboy.scenarios.progress_bar import progress_bar, progress_console
     from peopleboy.scenarios.running.run import run as run_scenario
 
@@ -189,12 +189,12 @@ _SEEN: Final = 0.3
 @click.option(
     "--random-worlds",
     is_flag=True,
-    help="Run a random world for each seed in place of a scenario, as `render` does.",
+    help="Run one random world per seed instead of a scenario, as `render` does.",
 )
 @options_of(
     "scenarios.running.run_options:RunOptions",
     *("out", "tracker", "boxes", "behaviour", "physics", "overwrite"),
-    out="Folder in which the runs' folders are written.  [default: runs]",
+    out="Folder that receives the runs' folders.  [default: runs]",
     tracker=TRACKER,
     behaviour=BEHAVIOUR,
     overwrite="Replace earlier runs.",
@@ -211,9 +211,9 @@ def sweep(
 ) -> None:
     """Run and score many seeds of a scenario, or random worlds.
 
-    No recordings are written. A killed sweep resumes when you give the command again. In random worlds many
-    people are occluded; their scores are printed for all people, and for people with a visible fraction
-    above 30 %.
+    No recordings are written. A killed sweep resumes when you run the command again. In random worlds many
+    people are occluded, so scores are printed for all people, and for people with a visible fraction above
+    30 %.
     """
     from peopleboy.scenarios.running.many_runs import sweep as run_seeds
     from peopleboy.scenarios.running.many_runs import sweep_worlds
@@ -237,7 +237,7 @@ def sweep(
 
     def show() -> None:
         print_runs(groups, note=print_note)
-        print_runs(seen, f"people of whom more than {_SEEN:.0%} is visible")
+        print_runs(seen, f"people with a visible fraction above {_SEEN:.0%}")
 
     output.results(lambda: figures_of_all(groups) | {"visible": figures_of_all(seen)}, show)
 
@@ -248,8 +248,8 @@ def sweep(
     "--controllers",
     default="follow_person,follow_person@truth",
     show_default=True,
-    help="Controllers, separated by commas: a behaviour or module:Class, and after an @ the tracker it gets, "
-    "if not that of the scenario.",
+    help="Controllers, separated by commas: a behaviour or module:Class, optionally followed by @ and the "
+    "tracker that it uses instead of the scenario's.",
 )
 @seeds_options(20)
 @options_of(
@@ -271,8 +271,8 @@ def compare(
 ) -> None:
     """Compare controllers on the same scenarios.
 
-    Prints metrics with confidence intervals, and writes tables and plots. SCENARIO is single_follow unless
-    you give others. A killed comparison resumes when you give the command again.
+    Prints metrics with confidence intervals, and writes tables and plots. SCENARIO is single_follow by
+    default. A killed comparison resumes when you run the command again.
     """
     from peopleboy.scenarios.files.load import load_scenario
     from peopleboy.scenarios.running.compare_controllers import (

@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 def datasets(suites: Sequence[str], frame_cache: Path, output: Output) -> None:
     """Count frames and people of the thesis data sets.
 
-    SUITE is one of dataset1 to dataset4; without a name, all of them. The counts are printed beside those of
-    table 3.1 of the thesis. Frames are rendered and kept.
+    SUITE is one of dataset1 to dataset4; without a name, all of them. The counts are printed next to those in
+    table 3.1 of the thesis. Rendered frames are cached.
     """
     from peopleboy.scenarios.scores.suite_table import THESIS
     from peopleboy.studies.reproductions.runner import contents_of, contents_to_json, print_contents
@@ -52,7 +52,7 @@ def datasets(suites: Sequence[str], frame_cache: Path, output: Output) -> None:
 @options_of("studies.reproductions.runner:ReproduceOptions", "paper", "quick", "seeds", "out", "so_far")
 @frame_cache_option
 @workers_options
-@click.option("--list", "lists", is_flag=True, help="List tables and figures; measure nothing.")
+@click.option("--list", "lists", is_flag=True, help="List tables and figures without reproducing them.")
 @output_options
 def reproduce(
     names: Sequence[str],
@@ -64,8 +64,8 @@ def reproduce(
 ) -> None:
     """Reproduce tables and figures of the publications.
 
-    Prints them beside the published values, and writes one page about them. ID is one of `--list`, or its
-    number: 4.9 stands for figures 4.9a and 4.9b. A killed call resumes when you give the command again.
+    Prints results next to the published values, and writes one page about them. ID is an entry of `--list`,
+    or its number: 4.9 means figures 4.9a and 4.9b. A killed call resumes when you run the command again.
     """
     from peopleboy.studies.reproductions.catalogue import choose
     from peopleboy.studies.reproductions.runner import (
@@ -118,8 +118,8 @@ def tune(
     """Tune the parameters of the thesis trackers, one at a time.
 
     Each parameter is varied as in sections 4.4 to 7.5 of the thesis, with the tracker of its chapter, and
-    scored by area accuracy. No reported score uses seeds from 100 on. Writes a curve for each parameter and a
-    page. A killed call resumes when you give the command again.
+    scored by area accuracy. Seeds from 100 on are used for tuning only, never for reported scores. Writes a
+    curve for each parameter and a page. A killed call resumes when you run the command again.
     """
     from peopleboy.studies.reproductions.tune import chosen_parameters, print_tuned
     from peopleboy.studies.reproductions.tune import tune as tune_all
@@ -133,10 +133,10 @@ def tune(
 
 
 class _Models(click.Group):
-    """A subcommand for each model; the modules of a model are imported when its options are needed."""
+    """A subcommand for each model; a model's modules are imported when its options are needed."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
-        """Name the models."""
+        """List the names of the models."""
         from peopleboy.studies.training.specification import MODELS
 
         return list(MODELS)
@@ -161,7 +161,7 @@ class _Models(click.Group):
 def train() -> None:
     """Train a model of the trackers on rendered sequences.
 
-    Writes samples and weights to a folder; a killed call resumes when you give the command again. Needs
+    Writes samples and weights to a folder; a killed call resumes when you run the command again. Needs
     pip install 'peopleboy[studies]'.
     """
 

@@ -1,6 +1,6 @@
-"""Check the arguments, actions and options of an environment, and vary its worlds by the options.
+"""Check the arguments, actions and options of an environment, and vary its worlds according to the options.
 
-Worlds vary from episode to episode so that a learned controller does not rely on one of them.
+Worlds vary between episodes so that a learned controller does not overfit to one of them.
 """
 
 import math
@@ -28,20 +28,20 @@ LARGEST_PX: Final = (1280, 960)
 
 
 def check_word(name: str, word: str | None, known: Sequence[str | None]) -> None:
-    """Refuse a word that is none of those known.
+    """Refuse an unknown word.
 
     Raises:
-        BadInput: it is none.
+        BadInput: the word is not in `known`.
     """
     if word not in known:
-        raise BadInput(f"{name} {word!r}: there is no such; choose from {', '.join(map(str, known))}")
+        raise BadInput(f"{name}: unknown value {word!r}; choose from {', '.join(map(str, known))}")
 
 
 def check_size(size: tuple[int, int]) -> None:
-    """Refuse a width and height [px] that images cannot have.
+    """Refuse an invalid width and height [px] of images.
 
     Raises:
-        BadInput: it is one.
+        BadInput: the size is invalid.
     """
     is_fine = (
         isinstance(size, tuple | list)
@@ -59,10 +59,10 @@ def check_size(size: tuple[int, int]) -> None:
 
 
 def shown_cameras(cameras: Sequence[str] | None, observation: str, robot: RobotConfig) -> tuple[str, ...]:
-    """Return the names of the cameras whose images are shown; None for all.
+    """Return the names of the cameras in the observation; all cameras if `cameras` is None.
 
     Raises:
-        BadInput: a robot has no such cameras, or the observation has no images.
+        BadInput: the robot lacks one of the cameras, or the observation has no images.
     """
     if cameras is None:
         return tuple(robot.cameras)
@@ -76,10 +76,10 @@ def shown_cameras(cameras: Sequence[str] | None, observation: str, robot: RobotC
 
 
 def check_actions(actions: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
-    """Return the two shares of each of some actions, clipped: (G, 2).
+    """Return actions as shares of the speed limits, clipped to -1..1: (G, 2).
 
     Raises:
-        BadInput: they have not that shape, or not all numbers are finite.
+        BadInput: the actions do not have this shape, or contain NaN or infinity.
     """
     try:
         shares = np.asarray(actions, np.float64)
@@ -104,15 +104,15 @@ LIMITS: Final[Mapping[str, tuple[float, float]]] = {
     "pace": (0.2, 2.0),
     "facing": (0, 1),
 }
-"""What `reset(options=...)` takes, with its limits; each a number, or a pair from which one is drawn evenly.
+"""Keys of `reset(options=...)` and their limits; a value is a number, or a pair to sample from uniformly.
 
 warmer_k [K] is added to the temperatures of the place and of everything in it; light is a factor on the
-light, and noise one on the noise of all cameras; people is how many of the scenario's people are there, its
-first ones, so that fewer hide each other; clothes, 1 or True, draws everybody's clothes anew; pace is a
-factor on everybody's walking speeds, which stay within 0.1..2.5 m/s; facing, 1 or True, lets the robot look
-at first to where the first person comes in.
+light, and noise a factor on the noise of all cameras; people is the number of people, the first ones of the
+scenario, so that fewer people occlude each other; clothes, 1 or True, samples everybody's clothes anew; pace
+is a factor on all walking speeds, which stay within 0.1..2.5 m/s; facing, 1 or True, makes the robot
+initially face the point where the first person enters.
 
-Of random worlds there is `world` as well: what they are drawn from, see
+Random worlds also have `world`: the distribution that they are sampled from, see
 `peopleboy.scenarios.random_worlds.distribution`.
 """
 
@@ -123,14 +123,14 @@ _WHOLE: Final = ("people", *_SWITCHES)
 
 
 def check_options(options: Mapping[str, Any], *, draws_worlds: bool = False) -> None:
-    """Refuse options that there are not, and values out of their limits.
+    """Refuse unknown options and values outside their limits.
 
     Args:
-        options: by name.
-        draws_worlds: whether worlds are drawn at random, so that `world` can be said.
+        options: values by name.
+        draws_worlds: whether worlds are random, so that `world` is valid.
 
     Raises:
-        BadInput: with the key, the value, and what would be right.
+        BadInput: an option is invalid; the error states key, value and limits.
     """
     if not isinstance(options, Mapping):
         raise BadInput(f"options: must be a mapping of names to values, got {options!r}")
@@ -139,7 +139,7 @@ def check_options(options: Mapping[str, Any], *, draws_worlds: bool = False) -> 
             world_of(options)
             continue
         if key == WORLD:
-            raise BadInput("options: world is of worlds drawn at random; make that of scenario=None")
+            raise BadInput("options: world needs random worlds; make the environment with scenario=None")
         if key not in LIMITS:
             raise BadInput(f"options: unknown key {key!r}; {hint(str(key), [*LIMITS, WORLD])}")
         low, high = LIMITS[key]
@@ -155,10 +155,10 @@ def check_options(options: Mapping[str, Any], *, draws_worlds: bool = False) -> 
 
 
 def world_of(options: Mapping[str, Any]) -> Distribution | None:
-    """Return what random worlds are drawn from by these options; None for what they are always drawn from.
+    """Return the distribution of random worlds that the options ask for; None for the default distribution.
 
     Raises:
-        BadInput: there is no such name, or its value is beyond the limits.
+        BadInput: a name is unknown, or its value is outside the limits.
     """
     if WORLD not in options:
         return None
@@ -167,7 +167,7 @@ def world_of(options: Mapping[str, Any]) -> Distribution | None:
 
 
 def vary(config: WorldConfig, options: Mapping[str, Any], rng: np.random.Generator) -> WorldConfig:
-    """Vary a world by options that were checked."""
+    """Vary a world according to options that were checked."""
     drawn = {key: _draw(key, options[key], rng) for key in LIMITS if key in options}
     place, robot, people = config.place, config.robot, config.people
     if "warmer_k" in drawn:
@@ -202,7 +202,7 @@ def _facing(robot: RobotConfig, person: PersonConfig) -> RobotConfig:
 
 
 def _clothes(config: WorldConfig, person: PersonConfig, rng: np.random.Generator) -> Clothes:
-    """Draw what a person wears: anything, or what is usual where all is drawn finely."""
+    """Sample a person's clothes: any in plain worlds, typical ones in detailed worlds."""
     if config.detail == "plain":
         return random_clothes(rng)
     return usual_clothes(rng, person.sex, air_of(config.place))
@@ -220,7 +220,7 @@ def _draw(key: str, value: Any, rng: np.random.Generator) -> float:
 
 
 def _lighter(light: tuple[tuple[float, float], ...], factor: float) -> tuple[tuple[float, float], ...]:
-    """Scale all steps of the light, and the full light before the first of them."""
+    """Scale all steps of the light, including the full light before the first step."""
     return tuple((at_s, factor * level) for at_s, level in ((-1.0, 1.0), *light))
 
 

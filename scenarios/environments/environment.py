@@ -1,4 +1,4 @@
-"""Any scenario as a gymnasium environment, in which anybody's controller drives the robot."""
+"""Gymnasium environment of any scenario, in which your controller drives the robot."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -71,39 +71,41 @@ _RANDOM_S: Final = 30.0  # episodes in random worlds
 class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     """A robot among people, driven by actions; one step is one image, 1/15 s.
 
-    Action: (2,) within -1..1, the shares of the robot's forward speed limit (0.8 m/s) and turn rate limit
-    (150 deg/s, positive to the left); beyond is clipped. Observations are described in `observations`, the
-    reward in `rewards`. An episode terminates when the robot touches anything, or, unless the task is
-    "corridor", when the person to follow has been out of sight for 10 s; it is truncated when the
-    scenario's time is over. `info` holds `truth` (a `ImageFreeTruth`), `reward` (its terms), `events` (what
-    is new, and with whom), `seed`, and, once the episode is over, `metrics`.
+    Action: (2,) within -1..1, as shares of the robot's limits of forward speed (0.8 m/s) and turn rate
+    (150 deg/s, positive to the left); larger values are clipped. Observations are described in
+    `observations`, the reward in `rewards`. An episode terminates when the robot touches anything, or, unless
+    the task is "corridor", when the person to follow has been out of sight for 10 s; it is truncated at the
+    end of the scenario's duration. `info` holds `truth` (an `ImageFreeTruth`), `reward` (its terms), `events`
+    (new events, each with the other party), `seed`, and, at the end of the episode, `metrics`.
 
-    `reset(seed=3)` plays the world of `peopleboy run --seed 3`: the same commands lead to the same truth and,
-    with the tracks of the same tracker, to the same figures. `reset()` goes on to a seed drawn from it.
-    `reset(options=...)` varies that one episode, see `peopleboy.scenarios.environments.arguments.LIMITS`.
+    `reset(seed=3)` plays the world of `peopleboy run --seed 3`: the same commands give the same ground truth
+    and, with the tracks of the same tracker, the same metrics. `reset()` samples the next seed from that
+    seed. `reset(options=...)` varies this one episode, see
+    `peopleboy.scenarios.environments.arguments.LIMITS`.
 
     Args:
-        scenario: name in the library or path of a YAML file; None for a world drawn at random at every reset
-            from `peopleboy.scenarios.random_worlds.distribution`, by the episode's seed, which lasts 30 s.
-        task: "follow", "corridor" or "patrol", which decides the reward.
-        observation: "pixels"; "tracks", what the tracker makes of the images; or "truth", what a perfect
-            tracker would, for which nothing is rendered.
+        scenario: library name or path of a YAML file; None for a random world of 30 s at every reset, sampled
+            from `peopleboy.scenarios.random_worlds.distribution` with the episode's seed.
+        task: "follow", "corridor" or "patrol"; selects the reward.
+        observation: "pixels"; "tracks", the output of the tracker; or "truth", the output of a perfect
+            tracker, for which nothing is rendered.
         image_size: width and height [px] of all images.
-        cameras: names of those whose images `pixels` has, others being left undrawn; None for all.
+        cameras: names of the cameras whose images `pixels` contains, others are not rendered; None for all.
         tracker: name of the tracker behind "tracks", "truth" for exact boxes, or None for the scenario's.
-        randomise: options of every episode for which `reset` is given none.
+        randomise: options of every episode for which `reset` gets none.
         render_mode: "rgb_array" for `render`; "human" to show every step in rerun's viewer, a window, or a
             page whose address is printed if there is no screen; or None.
-        physics: "bullet" or "kinematic", which is quicker and needs no PyBullet; None for the scenario's.
-        physics_hz: steps of physics a second, a multiple of 15; None is that of a run, 240. 60 is quicker by
-            what `python -m benchmarks.speed.environments` prints, beside how far the robot's way is off then.
-        normalise: whether numbers are brought within -1..1, see `Normaliser` in
+        physics: "bullet", or "kinematic", which is faster and needs no PyBullet; None for the scenario's.
+        physics_hz: physics steps per second, a multiple of 15; None for that of a run, 240. For the speedup
+            at 60, and the resulting deviation of the robot's path, run `python -m
+            benchmarks.speed.environments`.
+        normalise: whether to scale numbers to -1..1, see `Normaliser` in
             `peopleboy.scenarios.environments.observations`.
-        max_episode_steps: steps after which an episode is truncated, if the scenario is not over before;
-            None for the scenario's duration alone. `gymnasium.make` has 1125 unless you give another.
+        max_episode_steps: steps after which an episode is truncated, if the scenario does not end before;
+            None for the scenario's duration alone. `gymnasium.make` uses 1125 unless you give another number.
 
     Raises:
-        BadInput: an argument cannot be used.
+        BadInput: an argument is invalid.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array"], "render_fps": 15}  # noqa: RUF012
@@ -138,12 +140,12 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self.vary_by({} if randomise is None else randomise)
         first = self._moved(_random_episode(0) if scenario is None else load_scenario(scenario))
         self._tracker_name = first.tracker if tracker is None else tracker
-        self._wanted = tracker_cameras(self._tracker_name)  # refuses an unknown name now
+        self._wanted = tracker_cameras(self._tracker_name)  # raises for an unknown name
         self.task, self._kind, self._size = task, observation, image_size
         self.render_mode = render_mode
         usual = first.world(0)
         self._physics_hz = usual.physics_hz if physics_hz is None else physics_hz
-        replace(usual, physics_hz=self._physics_hz)  # refuses a rate that does not fit now
+        replace(usual, physics_hz=self._physics_hz)  # raises for an invalid rate
         self._take(first)
         if max_episode_steps is not None and max_episode_steps < 1:
             raise BadInput(f"max_episode_steps {max_episode_steps!r} must be 1 or more, or None")
@@ -162,7 +164,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         """Begin an episode; see the class.
 
         Raises:
-            BadInput: options that there are not.
+            BadInput: an option is invalid.
         """
         super().reset(seed=seed)
         chosen = self._randomise if options is None else options
@@ -183,7 +185,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             self._tracker = make_checked_tracker(name, self._seed, self._world.truth, cameras)
         self._tracks: tuple[Track, ...] = ()
         self._before: Pose2 | None = None
-        self._track = 0  # that lay on the person to follow last
+        self._track = 0  # id of the last track on the person to follow
         self._images: Arrays = {}
         settings = EpisodeSettings(
             plan=self._scenario.plan,
@@ -201,17 +203,17 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         return observation, self._info(outcomes)
 
     def join(self, episodes: LiveEpisodes, number: int) -> None:
-        """Have the episodes from the next one on among those of many worlds, under a number."""
+        """Store all further episodes under this number among those of many worlds."""
         self._episodes, self._number = episodes, number
 
     def vary_by(self, options: Mapping[str, Any]) -> None:
-        """Vary every episode from the next one on for which `reset` is given no options, as lessons do.
+        """Vary further episodes for which `reset` gets no options, for example in a curriculum.
 
         Args:
-            options: as `reset` takes them; none at all for the scenario as it is.
+            options: options of `reset`; empty for the unchanged scenario.
 
         Raises:
-            BadInput: options that there are not.
+            BadInput: an option is invalid.
         """
         check_options(options, draws_worlds=self._draws_worlds)
         self._randomise = dict(options)
@@ -222,7 +224,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         """Drive for one control step.
 
         Raises:
-            BadInput: the action is not two finite numbers, or there is no episode under way.
+            BadInput: the action is not two finite numbers, or no episode is under way.
         """
         shares, world = check_actions(action, (2,)), self._running()
         linear_m_s, angular_rad_s = (shares[0] * self._own["limits"]).tolist()
@@ -238,14 +240,14 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         return self._observation(), reward, ends, is_cut, self._info(outcomes)
 
     def track(self, snapshot: Snapshot, row: int) -> int:
-        """Let the tracker look at an instant, where there is one.
+        """Update the tracker, if there is one, with the images of an instant.
 
         Args:
-            snapshot: of many worlds.
-            row: of this one's.
+            snapshot: snapshot of many worlds.
+            row: row of this world.
 
         Returns:
-            The number of the track that lies on the person to follow, 0 for none.
+            Id of the track on the person to follow, 0 for none.
         """
         assert self._tracker is not None
         world, senses = self._running(even_over=True), snapshot.senses(row)
@@ -259,56 +261,56 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
 
     @property
     def tracks(self) -> NDArray[np.float32]:
-        """`tracks` (35,) of the instant at which the tracker looked last."""
+        """`tracks` (35,) at the last update of the tracker."""
         return observe_tracks(self._tracks, self._robot)
 
     @property
     def seed(self) -> int:
-        """That of the last episode, which has begun."""
+        """Seed of the current or last episode."""
         return self._seed
 
     @property
     def world(self) -> World:
-        """That of the last episode, over or not.
+        """World of the current or last episode.
 
         Raises:
-            BadInput: there is no episode yet.
+            BadInput: no episode has begun.
         """
         return self._running(even_over=True)
 
     def render(self) -> NDArray[np.uint8] | None:
-        """Draw thermal image, colour image and plan side by side, (360, 1440, 3); None but of "rgb_array".
+        """Draw thermal image, colour image and plan side by side, (360, 1440, 3); None unless "rgb_array".
 
         Raises:
-            BadInput: there is no episode yet.
+            BadInput: no episode has begun.
         """
         return self._draw() if self.render_mode == "rgb_array" else None
 
     def metrics(self) -> Metrics:
-        """Return the figures of the episode so far, see `EpisodeMetrics`.
+        """Return the metrics of the episode so far, see `EpisodeMetrics`.
 
-        They are over the snapshot at which a run has frames; that at which the time is over is none.
+        They cover the instants at which a run has frames, so not the instant at which the time is over.
 
         Raises:
-            BadInput: there is no episode yet.
+            BadInput: no episode has begun.
         """
         self._running(even_over=True)
         return self._episodes.metrics(self._number)
 
     def save(self, folder: str | Path, *, record: bool = True, overwrite: bool = False) -> None:
-        """Write the episode so far as a run's folder, to be reported, viewed and exported.
+        """Write the episode so far as a run folder, for reports, the viewer and exports.
 
-        The world is played once more with the episode's commands, so that it takes as long as a run. Its
-        tracks are those of the environment's tracker; of `observation="truth"`, those of the true boxes.
+        Replays the world with the episode's commands, so this takes as long as a run. The tracks are those of
+        the environment's tracker; with `observation="truth"`, they are the true boxes.
 
         Args:
-            folder: where to.
+            folder: output folder.
             record: whether to write a recording.
-            overwrite: whether an earlier run there may be replaced.
+            overwrite: whether to replace an earlier run in the folder.
 
         Raises:
-            BadInput: there is no episode yet, it was varied by options or had images or physics that no run
-                has, or the folder cannot be written to.
+            BadInput: no episode has begun, the episode was varied by options, its image size or physics
+                differ from those of a run, or the folder cannot be written to.
         """
         from peopleboy.scenarios.running.run import save_episode  # here, as only saved episodes need it
         from peopleboy.scenarios.running.run_options import RunOptions
@@ -316,13 +318,13 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         config = self._running(even_over=True).config
         usual = self._scenario.world(self._seed)
         if self._is_varied:
-            raise BadInput("save: the episode was varied by options, which no run can be; reset without")
+            raise BadInput("save: the episode was varied by options, which a run cannot be; reset without")
         if config.physics_hz != usual.physics_hz:
             raise BadInput(f"save: a run has physics_hz={usual.physics_hz}, got {config.physics_hz}")
         if self._kind == "tracks" and self._robot != usual.robot:
-            raise BadInput(f"save: images of a run are as the scenario says, not of {self._size} pixels")
+            raise BadInput(f"save: a run has the scenario's image size, got image_size={self._size}")
         if Path(folder).exists() and not overwrite:
-            raise BadInput(f"save: {folder}: exists already; a run there is replaced with overwrite=True")
+            raise BadInput(f"save: {folder}: exists already; give overwrite=True to replace a run there")
         options = RunOptions(
             seed=self._seed,
             out=Path(folder),
@@ -334,7 +336,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         save_episode(self._scenario, self._commands, frames, options, config.control_hz)
 
     def close(self) -> None:
-        """Free the physics world, and end the viewer."""
+        """Free the physics world, and close the viewer."""
         self._free()
         if self._viewer is not None:
             self._viewer.close()
@@ -349,7 +351,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         return self._picture.draw(senses, self._truth, self._tracks, explanation)
 
     def _show_first(self) -> None:
-        """Show the episode's first instant, in a viewer that is there already or opened now."""
+        """Show the first instant of an episode in the viewer, which is opened if necessary."""
         if self._viewer is None:
             from peopleboy.scenarios.recording.recording_file import check_installed
 
@@ -381,12 +383,12 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         return vary(config, options, stream(self._seed, "environment.options"))
 
     def _perceive(self, world: World) -> list[int] | None:
-        """Take a snapshot, and return what `LiveEpisodes.evaluate` needs to know of the tracker."""
+        """Take a snapshot, and return the ids of tracks that `LiveEpisodes.evaluate` needs."""
         self._snapshot = take_snapshot(world)._replace(numbers=np.array([self._number]))
         return None if self._tracker is None else [self.track(self._snapshot, 0)]
 
     def _observation(self) -> Arrays:
-        """Return the observation of this instant."""
+        """Return the observation of the current instant."""
         tracks = self.tracks[None] if self.builder.tracks else None
         found = self.builder.build(self._snapshot, self._episodes.records, tracks)
         self._images |= {name: images[0] for name, (_, images) in self.builder.images(self._snapshot).items()}
@@ -394,7 +396,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
 
     @property
     def _own(self) -> np.void:
-        """The record EPISODE of the last episode."""
+        """Record EPISODE of the current or last episode."""
         own: np.void = self._episodes.records[self._number]
         return own
 
@@ -418,5 +420,5 @@ def _random_episode(seed: int, distribution: Distribution | None = None) -> Scen
 
 
 def _resize(robot: RobotConfig, size: tuple[int, int]) -> RobotConfig:
-    """Let all cameras take images of another size, of the same height of view and as sharp."""
+    """Change the image size of all cameras; vertical field of view and sharpness stay."""
     return replace(robot, cameras={name: camera.resized(*size) for name, camera in robot.cameras.items()})

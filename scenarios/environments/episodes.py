@@ -1,4 +1,4 @@
-"""Episodes in many worlds: rewards, terminations, events and metrics; a single environment has one."""
+"""Episodes in many worlds: rewards, terminations, events and metrics; a single environment has one world."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -33,28 +33,27 @@ Metrics = dict[str, dict[str, float]]
 
 
 class EpisodeMetrics:
-    """Keeps the snapshots of an episode, and computes its metrics on demand, as those of a run.
+    """Collect the snapshots of an episode, and compute its metrics on demand, as for a run.
 
-    Only the controller knows which person it follows: `wrong_person_s` is NaN, and `followed_to_end` asks for
-    the track only.
+    The environment does not know which person a controller follows: `wrong_person_s` is NaN, and
+    `followed_to_end` depends on the track alone.
     """
-
     def __init__(self, plan: FloorPlan, task: FollowingTask) -> None:
         self._plan, self._task = plan, task
         self._noted: list[tuple[Scenes, int, int]] = []
 
     def add(self, scenes: Scenes, row: int, track: int) -> None:
-        """Take in an instant.
+        """Add an instant.
 
         Args:
-            scenes: of many worlds.
-            row: of the one in which the episode is.
-            track: number of the track that lies on the person to follow, 0 for none.
+            scenes: instant in many worlds.
+            row: row of the episode's world.
+            track: id of the track on the person to follow, 0 for none.
         """
         self._noted.append((scenes, row, track))
 
     def metrics(self) -> Metrics:
-        """Return the groups `following`, `corridor` and `comfort` of a run's metrics.json, or NaN."""
+        """Return the groups `following`, `corridor` and `comfort` of metrics.json; NaN if undefined."""
         worlds = np.concatenate([scenes.worlds[row : row + 1] for scenes, row, _ in self._noted])
         borders = zip(worlds["first"].tolist(), worlds["end"].tolist(), strict=True)
         people = np.concatenate(
@@ -85,14 +84,14 @@ class EpisodeMetrics:
 
 
 def track_in(scenes: Scenes, row: int, tracks: Iterable[Track], box: Box | None, before: int) -> int:
-    """Return the number of the track that lies on the person to follow in one world, 0 for none.
+    """Return the id of the track on the person to follow in one world, 0 for none.
 
     Args:
-        scenes: of many worlds.
-        row: of that one.
-        tracks: that a tracker made there.
-        box: in which the person truly is in the thermal image.
-        before: the track that lay there last, 0 for none.
+        scenes: instant in many worlds.
+        row: row of the world.
+        tracks: tracks of a tracker in that world.
+        box: true box of the person in the thermal image.
+        before: id of the last track on the person, 0 for none.
     """
     world = scenes.worlds[row]
     own = scenes.people[world["first"] : world["end"]]
@@ -112,11 +111,11 @@ class EpisodeSettings(NamedTuple):
     """The place and the limits of one episode.
 
     Attributes:
-        plan: of the place.
-        following: how the person is to be followed.
-        frames: steps after which time is over.
+        plan: floor plan of the place.
+        following: settings of the task to follow a person.
+        frames: steps after which the episode is truncated.
         dt_s: [s] length of a step.
-        limits: [m/s, rad/s] of the drive.
+        limits: [m/s, rad/s] speed limits of the drive.
     """
 
     plan: FloorPlan
@@ -127,14 +126,14 @@ class EpisodeSettings(NamedTuple):
 
 
 class StepOutcomes(NamedTuple):
-    """What came of a step in G worlds.
+    """Outcome of a step in G worlds.
 
     Attributes:
-        terms: (G, 8) of the reward, in the order of `TERMS`.
-        rewards: (G,) their sums.
+        terms: (G, 8) terms of the reward, in the order of `TERMS`.
+        rewards: (G,) sums of the terms.
         terminations, truncations: (G,) whether the episodes are over.
-        events: what is new, and to or with whom.
-        truths: what is true.
+        events: new events, each with the name of the other party.
+        truths: ground truth.
     """
 
     terms: Array
@@ -149,7 +148,7 @@ class LiveEpisodes:
     """The episodes of B worlds.
 
     Attributes:
-        records: (B,) EPISODE of the last one in each world, over or not.
+        records: (B,) EPISODE, the current or last episode of each world.
     """
 
     def __init__(self, count: int, task: str) -> None:
@@ -167,9 +166,9 @@ class LiveEpisodes:
         """Begin an episode in one of the worlds.
 
         Args:
-            number: of the world.
-            settings: of the episode.
-            snapshot: the first one, in that world alone.
+            number: number of the world.
+            settings: settings of the episode.
+            snapshot: first snapshot, of that world alone.
             tracks: see `evaluate`.
         """
         self.records[number] = np.zeros((), EPISODE)
@@ -184,13 +183,13 @@ class LiveEpisodes:
         return outcomes._replace(terms=np.zeros_like(outcomes.terms), rewards=[0.0])
 
     def evaluate(self, snapshot: Snapshot, actions: Array, tracks: Sequence[int] | None) -> StepOutcomes:
-        """Take in the next snapshot of some episodes, and return what came of the step.
+        """Add the next snapshot of some episodes, and return the outcome of the step.
 
         Args:
-            snapshot: of G worlds, by their numbers.
-            actions: (G, 2) that led there.
-            tracks: of each the number of the track that lies on the person to follow, 0 for none; None where
-                there is no tracker, and a person counts as tracked while seen.
+            snapshot: snapshot of G worlds.
+            actions: (G, 2) actions that led to it.
+            tracks: id of the track on the person to follow in each world, 0 for none; None if there is no
+                tracker, in which case a visible person counts as tracked.
         """
         numbers, scenes, records = snapshot.numbers, snapshot.scenes, self.records
         records["frame"][numbers] += 1
@@ -222,7 +221,7 @@ class LiveEpisodes:
     def _compare(
         self, numbers: Numbers, scenes: Scenes, before: NDArray[np.uint64], now: NDArray[np.uint64]
     ) -> list[Events]:
-        """Return what is new since the snapshot before; `before` and `now` are who was and is seen."""
+        """Return the new events; bits of `before` and `now` mark the people visible before and now."""
         touching = self.records["is_touching"]
         is_new = (before != now) | touching[numbers] | scenes.worlds["is_touching"]
         touching[numbers] = scenes.worlds["is_touching"]
@@ -241,6 +240,6 @@ class LiveEpisodes:
         return events
 
     def _lay_out(self) -> None:
-        """Put the areas of all places into one array."""
+        """Concatenate the areas of all places into one array."""
         self._areas = np.concatenate(self._plans)
         self._first_area = ends([len(areas) for areas in self._plans])

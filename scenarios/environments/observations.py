@@ -1,6 +1,6 @@
-"""Build the observations of an environment: images, tracks, or the truth in the form of tracks.
+"""Build the observations of an environment: images, tracks, or ground truth in the form of tracks.
 
-Numbers are within -1..1 if asked, as most learners want them; images stay as they are.
+Numbers can be scaled to -1..1, as most learners need; images stay unscaled.
 """
 
 import math
@@ -33,11 +33,11 @@ def fill_odometry(starts: Array, now: Array, wheels: Array, found: NDArray[np.fl
     """Fill `odometry`.
 
     Args:
-        starts: (G, 3) x, y [m], heading [rad] by odometry at the start.
-        now: (G, 3) the same now.
+        starts: (G, 3) x, y [m], heading [rad] from odometry at the start of the episodes.
+        now: (G, 3) the same at the current instant.
         wheels: (G, 2) [m/s] rim speeds, left and right.
-        found: (G, 6) gets x, y [m] from the start in its frame, cosine and sine of the heading since then,
-            forward speed [m/s], turn rate [rad/s].
+        found: (G, 6) output: x, y [m] in the frame of the start pose, cosine and sine of the heading since
+            the start, forward speed [m/s], turn rate [rad/s].
     """
     for row in range(len(starts)):
         cos, sin = math.cos(starts[row, 2]), math.sin(starts[row, 2])
@@ -60,17 +60,18 @@ def fill_tracks(
     highest: tuple[float, ...],
     found: NDArray[np.float32],
 ) -> None:
-    """Fill `tracks`, the tallest first, zeros into the rest.
+    """Fill `tracks`, the tallest person first, and the remaining rows with zeros.
 
     Args:
-        people: (Q, 7) id, box [px], confidence and is_visible, of all worlds; nobody by a box of NaN.
-        borders: (G, 2) where those of each world begin and end.
-        width: [px] of the image.
-        height: [px].
-        farthest: [half image widths] from the middle of the image, beyond which people are left out.
-        lowest: number of each column.
-        highest: number of each column.
-        found: (G, 5 * 7).
+        people: (Q, 7) id, box [px], confidence and is_visible, of all worlds; rows with a box of NaN are
+            empty.
+        borders: (G, 2) first and end row of each world.
+        width: [px] image width.
+        height: [px] image height.
+        farthest: [half image widths] distance from the image centre beyond which people are left out.
+        lowest: minimum of each column.
+        highest: maximum of each column.
+        found: (G, 5 * 7) output.
     """
     columns = people.shape[1]
     rows = np.empty(people.shape)
@@ -99,11 +100,11 @@ Arrays = dict[str, NDArray[Any]]
 KINDS: Final = ("pixels", "tracks", "truth")
 MOST_TRACKS: Final = 5
 COLUMNS: Final = ("id", "x", "height", "top", "bottom", "confidence", "is_visible")
-"""The seven numbers of each of the five people in `tracks`, the tallest and so nearest first.
+"""The seven columns of each of the five people in `tracks`, ordered from the tallest, which is the nearest.
 
-id is 1 or more and stays with a person; a row of zeros is empty. x is in half image widths, -1 at the left
-border, +1 at the right one; height, top and bottom are in image heights from the top; confidence is 0..1;
-is_visible is 0 while a person is wholly hidden.
+id is 1 or more and constant for a person; a row of zeros is empty. x is in half image widths, -1 at the left
+border, +1 at the right border; height, top and bottom are in image heights from the top; confidence is 0..1;
+is_visible is 0 while a person is totally occluded.
 """
 
 _LOWEST: Final = (0.0, -10.0, 0.0, -10.0, -10.0, 0.0, 0.0)
@@ -116,11 +117,11 @@ _FASTEST: Final = 10.0
 def observation_space(kind: str, robot: RobotConfig, shown: Sequence[str]) -> spaces.Space[Arrays]:
     """Return the space of one of `KINDS`.
 
-    `sonar` is (16,) [m], counted from the left to the front and round; `odometry` is (6,): x, y [m] from the
-    start in its frame, cosine and sine of the heading since the start, forward speed [m/s], turn rate
-    [rad/s]. `pixels` has the newest image of each camera that is `shown` beside them by its name, (H, W, 1)
-    or (H, W, 3) uint8, such as `thermal` and `colour`, or of a depth camera (H, W, 1) uint16 [mm]; `tracks`
-    and `truth` have `tracks` (35,), five rows of `COLUMNS`.
+    `sonar` is (16,) [m], counted from the left through the front; `odometry` is (6,): x, y [m] in the frame
+    of the start pose, cosine and sine of the heading since the start, forward speed [m/s], turn rate [rad/s].
+    `pixels` adds the newest image of each camera in `shown` under its name, (H, W, 1) or (H, W, 3) uint8,
+    such as `thermal` and `colour`, or for a depth camera (H, W, 1) uint16 [mm]; `tracks` and `truth` add
+    `tracks` (35,), five rows of `COLUMNS`.
     """
     sonar = robot.sonar
     odometry = np.array([_FARTHEST_M, _FARTHEST_M, 1.0, 1.0, _FASTEST, _FASTEST], np.float32)
@@ -140,11 +141,11 @@ def observation_space(kind: str, robot: RobotConfig, shown: Sequence[str]) -> sp
 
 
 def read_sensors(snapshot: Snapshot, starts: Array) -> Arrays:
-    """Return what every observation has, of G worlds: sonar (G, 16) and odometry (G, 6).
+    """Return the entries that every observation of G worlds has: sonar (G, 16) and odometry (G, 6).
 
     Args:
-        snapshot: of the worlds.
-        starts: (G, 3) odometry x, y [m], heading [rad] at the beginning of each episode.
+        snapshot: snapshot of the worlds.
+        starts: (G, 3) x, y [m], heading [rad] from odometry at the start of each episode.
     """
     odometry = np.empty((len(starts), 6), np.float32)
     fill_odometry(starts, snapshot.odometry, snapshot.wheel_speeds_m_s, odometry)
@@ -152,7 +153,7 @@ def read_sensors(snapshot: Snapshot, starts: Array) -> Arrays:
 
 
 def observe_tracks(tracks: Iterable[Track], robot: RobotConfig) -> NDArray[np.float32]:
-    """Return what the tracker is sure of in one world: (35,)."""
+    """Return the confirmed tracks of one world: (35,)."""
     thermal = calibrations_of(robot.cameras)[THERMAL]
     rows = [
         (track.id, *box, track.confidence, track.status is not Status.TOTALLY_OCCLUDED)
@@ -164,29 +165,29 @@ def observe_tracks(tracks: Iterable[Track], robot: RobotConfig) -> NDArray[np.fl
 
 
 def observe_truth(scenes: Scenes, robot: RobotConfig) -> NDArray[np.float32]:
-    """Return what a perfect tracker would say in G worlds, everybody within the image: (G, 35)."""
+    """Return the output of a perfect tracker in G worlds, with all people in the image: (G, 35)."""
     people = scenes.people
     seen, sure = people["free_ray_share"] > SEEN, np.ones(len(people))
     rows = np.column_stack([people["id"], people["box"], sure, seen])
     borders = np.column_stack([scenes.worlds["first"], scenes.worlds["end"]])
-    return _fill(rows, borders, robot, farthest=1.0)  # whose middle lies between the borders
+    return _fill(rows, borders, robot, farthest=1.0)  # people whose centre is between the image borders
 
 
 def image_shape(camera: CameraConfig) -> tuple[int, int, int]:
-    """(H, W, C) of its images in an observation."""
+    """Return the shape (H, W, C) of a camera's images in an observation."""
     return camera.camera.height, camera.camera.width, kind_of(camera).channels
 
 
 def _fill(
     people: Array, borders: Numbers, robot: RobotConfig, farthest: float = np.inf
 ) -> NDArray[np.float32]:
-    """Fill `tracks` (G, 35): the tallest first, zeros into the rest.
+    """Fill `tracks` (G, 35): the tallest person first, and the remaining rows with zeros.
 
     Args:
         people: (Q, 7) id, box [px], confidence and is_visible, one world after the other.
-        borders: (G, 2) where those of each world begin and end.
-        robot: with the thermal camera, in whose image the boxes are.
-        farthest: [half image widths] of people from the middle of the image.
+        borders: (G, 2) first and end row of each world.
+        robot: robot with the thermal camera whose image contains the boxes.
+        farthest: [half image widths] distance from the image centre beyond which people are left out.
     """
     camera = robot.cameras["thermal"].camera
     found = np.empty((len(borders), MOST_TRACKS * len(COLUMNS)), np.float32)
@@ -195,29 +196,29 @@ def _fill(
 
 
 AWAY_M: Final = 20.0
-"""[m] x and y of `odometry` that become 1."""
+"""[m] x and y of `odometry` that are scaled to 1."""
 
 IMAGES: Final = 2.0
-"""[image heights] height, top and bottom of `tracks` that become 1."""
+"""[image heights] height, top and bottom of `tracks` that are scaled to 1."""
 
 _SCALES: Final = (1.0, 1.0, IMAGES, IMAGES, IMAGES, 1.0, 1.0)
 _LOWEST_SHARES: Final = (0.0, -1.0, 0.0, -1.0, -1.0, 0.0, 0.0)
 
 
 class Normaliser:
-    """Brings the numbers of an observation within -1..1; what is beyond is clipped.
+    """Scale the numbers of an observation to -1..1; larger values are clipped.
 
-    | entry | becomes |
+    | entry | scaled to |
     |---|---|
-    | `sonar` | 0..1, shares of the sonars' reach |
+    | `sonar` | 0..1, shares of the sonars' range |
     | `odometry` x, y | -1..1 for -20..20 m |
-    | `odometry` cosine, sine | as they are |
+    | `odometry` cosine, sine | unchanged |
     | `odometry` speed, turn rate | -1..1, shares of the drive's limits |
-    | `tracks` id | 1 for a person, 0 for none; all keep their rows, newcomers take the first free one |
+    | `tracks` id | 1 for a person, 0 for none; people keep their rows, new people take the first free row |
     | `tracks` x | -1..1, half image widths |
     | `tracks` height, top, bottom | 0..1, -1..1, -1..1 for two image heights |
-    | `tracks` confidence, is_visible | as they are |
-    | images | as they are |
+    | `tracks` confidence, is_visible | unchanged |
+    | images | unchanged |
     """
 
     def __init__(self, robot: RobotConfig) -> None:
@@ -228,7 +229,7 @@ class Normaliser:
         )
 
     def space(self, raw: spaces.Space[Arrays]) -> spaces.Space[Arrays]:
-        """Return the space of what comes out for that of what goes in."""
+        """Return the space of scaled observations for the space of raw ones."""
         lowest = {
             "sonar": np.zeros(raw["sonar"].shape, np.float32),  # type: ignore[index]  # it is a Dict
             "odometry": -np.ones(len(self._odometry), np.float32),
@@ -242,12 +243,12 @@ class Normaliser:
         )
 
     def __call__(self, observation: Arrays, holders: NDArray[np.float64]) -> Arrays:
-        """Bring the next observations of G worlds within bounds.
+        """Scale the next observations of G worlds.
 
         Args:
-            observation: as `observation_space` says, with worlds first.
-            holders: (G, 5) numbers of the people who have the rows of `tracks`, kept up to date; 0 for none,
-                as at the beginning of an episode.
+            observation: as in `observation_space`, with worlds as the first axis.
+            holders: (G, 5) ids of the people in the rows of `tracks`, updated in place; 0 for none, as at
+                the start of an episode.
         """
         found = observation | {
             "sonar": np.clip(observation["sonar"] / self._reach_m, 0.0, 1.0),
@@ -263,13 +264,13 @@ class Normaliser:
 
 @njit(cache=True, nogil=True)
 def _keep_rows(given: NDArray[np.float32], shares: Array, holders: Array, found: NDArray[np.float32]) -> None:
-    """Put everybody into the row of before, and newcomers into the first that is free.
+    """Keep each person in the same row as before, and put new people into the first free row.
 
     Args:
-        given: (G, 5, 7) as in observations.
-        shares: (G, 5, 7) the same within bounds.
+        given: (G, 5, 7) raw tracks.
+        shares: (G, 5, 7) the same tracks, scaled.
         holders: (G, 5) see `Normaliser`.
-        found: (G, 5, 7).
+        found: (G, 5, 7) output.
     """
     found[:] = 0.0
     for world in range(len(given)):
@@ -286,16 +287,16 @@ def _keep_rows(given: NDArray[np.float32], shares: Array, holders: Array, found:
 
 
 class ObservationBuilder:
-    """Builds the observations of one kind, in one world as in many.
+    """Build the observations of one kind, for one world or many.
 
     Args:
         kind: one of `KINDS`.
-        robot: with the cameras of all worlds.
-        shown: names of those whose images `pixels` has.
-        normaliser: brings numbers within -1..1; None to leave them.
+        robot: robot with the cameras, the same in all worlds.
+        shown: names of the cameras whose images `pixels` contains.
+        normaliser: scales numbers to -1..1; None leaves them unscaled.
 
     Attributes:
-        tracks: whether trackers look for people.
+        tracks: whether the observations need a tracker.
         slow: names of the cameras that do not take an image at every step.
     """
 
@@ -308,12 +309,12 @@ class ObservationBuilder:
         self.slow = [name for name in self._shapes if robot.cameras[name].rate_hz]
 
     def build(self, snapshot: Snapshot, episodes: Records, tracks: NDArray[np.float32] | None) -> Arrays:
-        """Return all but images, with worlds first.
+        """Return all entries except images, with worlds as the first axis.
 
         Args:
-            snapshot: of G worlds, by their numbers.
+            snapshot: snapshot of G worlds.
             episodes: (B,) records EPISODE.
-            tracks: (G, 35) where trackers look, None elsewhere.
+            tracks: (G, 35) output of the trackers; None without trackers.
         """
         numbers = snapshot.numbers
         found = read_sensors(snapshot, episodes["start"][numbers])
@@ -328,7 +329,7 @@ class ObservationBuilder:
         return found
 
     def images(self, snapshot: Snapshot) -> dict[str, tuple[Sequence[int], NDArray[Any]]]:
-        """Return the images of `pixels`: for each camera which of the worlds have a new one, and these."""
+        """Return the images of `pixels`: by camera, the worlds with a new image, and these images."""
         found = {}
         for name, shape in self._shapes.items():
             assert snapshot.images is not None

@@ -1,9 +1,9 @@
-"""What a controller earns in one control step.
+"""Compute the reward of a controller for one control step.
 
     reward = keep + face + progress + centre + space + change + collision + lost
 
-Its unit is one second of the task done perfectly. With dt [s] the length of a step, d [m] the floor distance
-to the person to follow, b [rad] the person's bearing, v [m/s] the speed along the corridor, y [m] the
+The unit is one second of perfect performance. With dt [s] the length of a step, d [m] the floor distance
+to the person to follow, b [rad] the bearing of that person, v [m/s] the speed along the corridor, y [m] the
 distance from the corridor's centre line, W [m] its width, g [m] the gap to the nearest person, a [-1..1] the
 action:
 
@@ -16,8 +16,8 @@ action:
     collision = -10                                          once; the episode ends
     lost      = -10                                          once; the episode ends
 
-"follow" earns keep and face, "corridor" progress and centre, "patrol" the former while the person is seen
-and the latter otherwise; the rest counts in all three.
+"follow" includes keep and face, "corridor" includes progress and centre, "patrol" includes keep and face while
+the person is seen, and progress and centre otherwise; all three include the other terms.
 """
 
 import math
@@ -32,45 +32,45 @@ from peopleboy.sim.robot.robot_body import RADIUS_M
 from peopleboy.sim.shapes.shape_table import Numbers
 from peopleboy.sim.truth.scenes import SEEN, Records
 
-# How the robot stands to the person to follow and to the corridor, and what happens to it (kernels).
+# Pose of the robot relative to the person to follow and to the corridor, and what happens to it (kernels).
 
 LOST_S: Final = 10.0
-NO_PERSON_M: Final = 1000.0  # stands for a distance or gap to a person where there is none
+NO_PERSON_M: Final = 1000.0  # distance or gap to a person if there is no person
 EPISODE: Final = np.dtype(
     [
-        ("start", np.float64, 3),  # [m, m, rad] odometry at the beginning
-        ("action", np.float64, 2),  # the last one
+        ("start", np.float64, 3),  # [m, m, rad] odometry at the start
+        ("action", np.float64, 2),  # the last action
         ("frame", np.int64),  # steps so far
-        ("frames", np.int64),  # when time is over
+        ("frames", np.int64),  # steps after which the episode is truncated
         ("dt_s", np.float64),
-        ("keep_m", np.float64),  # distance to keep
+        ("keep_m", np.float64),  # [m] distance to keep
         ("limits", np.float64, 2),  # [m/s, rad/s] of the drive
-        ("unseen_s", np.float64),  # for which the person to follow has been out of sight
+        ("unseen_s", np.float64),  # [s] since the person to follow was last visible
         ("has_seen", np.int64),  # number of the person to follow, once seen
-        ("seen", np.uint64),  # a bit for each person who is seen, the first one's is the lowest
+        ("seen", np.uint64),  # one bit for each visible person; the lowest bit is the first person
         ("is_touching", np.bool_),
         ("is_over", np.bool_),
-        ("holders", np.float64, 5),  # numbers of the people who have the rows of `tracks`, if normalised
+        ("holders", np.float64, 5),  # ids of the people in the rows of `tracks`, if normalised
     ]
 )
-"""What is known of an episode under way."""
+"""State of the current or last episode."""
 
 Array = NDArray[np.float64]
 Record = Any  # a row of records
 
 
 class Situation(NamedTuple):
-    """What the reward is about.
+    """Inputs of the reward.
 
     Attributes:
-        sees_target: whether the thermal camera could see the target now.
-        distance_m: [m] on the floor to the target.
-        bearing_rad: [rad] of the target from the robot's nose.
+        sees_target: whether the target is visible to the thermal camera.
+        distance_m: [m] floor distance to the target.
+        bearing_rad: [rad] bearing of the target from the robot's heading.
         gap_m: [m] between the outlines of the robot, a circle, and the nearest person.
-        along_m_s: [m/s] speed along the corridor's axis, either way.
+        along_m_s: [m/s] absolute speed along the corridor's axis.
         lateral_share: offset from the corridor's centre line in half widths, left positive.
         collided: whether the robot touches anything but the floor.
-        is_lost: whether the target was out of sight for 10 s after it had been seen.
+        is_lost: whether the target has been out of sight for 10 s after it was seen.
     """
 
     sees_target: bool
@@ -87,15 +87,15 @@ class Situation(NamedTuple):
 def observe_situation(
     episode: Record, scene: Record, people: Records, areas: Array, may_lose: bool
 ) -> Situation:
-    """Look at the next instant of an episode, whose record is kept up to date.
+    """Evaluate the next instant of an episode, and update its record.
 
-    The person to follow is the first in the scenario's order who is present.
+    The person to follow is the first present person in the scenario's order.
 
     Args:
         episode: record EPISODE.
         scene: record SCENE.
         people: records BYSTANDER.
-        areas: (A, 4) [m] of the place, as `areas_of` gives them.
+        areas: (A, 4) [m] areas of the place, from `areas_of`.
         may_lose: whether an episode ends when its target is lost.
     """
     is_there = scene.end > scene.first
@@ -127,9 +127,9 @@ def observe_situation(
 
 @njit(cache=True)
 def _corridor_motion(scene: Record, areas: Array) -> tuple[float, float]:
-    """Speed [m/s] along the axis of the corridor's leg, and the offset from its middle in half widths.
+    """Return the speed [m/s] along the corridor's leg, and the offset from its middle in half widths.
 
-    At a corner the leg is the one along which the robot rather looks.
+    At a corner, the leg is the one whose direction is closer to the robot's heading.
     """
     x, y, heading = scene.robot[0], scene.robot[1], scene.robot[2]
     speed, cos, sin = scene.velocity[0], math.cos(heading), math.sin(heading)
@@ -149,14 +149,14 @@ def _corridor_motion(scene: Record, areas: Array) -> tuple[float, float]:
 
 
 def areas_of(plan: FloorPlan) -> Array:
-    """(A, 4) [m] min_x, min_y, max_x, max_y of the areas of a floor plan."""
+    """Return the areas of a floor plan, (A, 4) [m] min_x, min_y, max_x, max_y."""
     rows = [(area.min_x, area.min_y, area.max_x, area.max_y) for _, area in plan.areas]
     return np.array(rows, np.float64).reshape(-1, 4)
 
 
 TASKS: Final = ("follow", "corridor", "patrol")
 TERMS: Final = ("keep", "face", "progress", "centre", "space", "change", "collision", "lost")
-ENDS: Final = tuple(TERMS.index(name) for name in ("collision", "lost"))  # terms with which an episode ends
+ENDS: Final = tuple(TERMS.index(name) for name in ("collision", "lost"))  # terms that end an episode
 COLLISION: Final = -10.0
 LOST: Final = -10.0
 PERSONAL_SPACE_M: Final = 1.2
@@ -179,19 +179,19 @@ def compute_rewards(
     two: float,
     terms: Array,
 ) -> None:
-    """Judge the next instant of some episodes, and what their controllers earn by it.
+    """Evaluate the next instant of some episodes, and compute the rewards.
 
     Args:
-        task: number in `TASKS`.
-        numbers: (G,) of the episodes.
-        episodes: records EPISODE of all, kept up to date.
+        task: index in `TASKS`.
+        numbers: (G,) numbers of the episodes.
+        episodes: records EPISODE of all episodes, updated in place.
         scenes: (G,) records SCENE.
-        people: records BYSTANDER of those.
-        areas: (A, 4) of the places of all episodes, one after the other, as in `observe_situation`.
-        first_area: (B + 1,) where those of each begin.
-        actions: (G, 2) that led here.
-        two: 2, an argument so that squares are made by the library's power, as Python makes them.
-        terms: (G, 8) get those of the reward in the order of `TERMS`; their sum is the reward.
+        people: records BYSTANDER of the scenes.
+        areas: (A, 4) areas of the places of all episodes, concatenated, as in `observe_situation`.
+        first_area: (B + 1,) row at which the areas of each episode begin.
+        actions: (G, 2) actions that led to this instant.
+        two: 2, passed as an argument so that squares use the library's power function, as in Python.
+        terms: (G, 8) output: terms of the reward in the order of `TERMS`; their sum is the reward.
     """
     for row in range(len(numbers)):
         number = numbers[row]
@@ -223,5 +223,5 @@ def _earn(task: int, situation: Situation, episode: Record, action: Array, two: 
 
 @njit(cache=True)
 def _near(error: float, within: float) -> float:
-    """1 without error, falling to 0 at `within`."""
+    """Return 1 for no error, falling linearly to 0 at `within`."""
     return max(0.0, 1.0 - abs(error) / within)

@@ -1,4 +1,4 @@
-"""The scene in one picture: thermal image, colour image, and the plan around the robot."""
+"""Draw a scene as one picture: thermal image, colour image, and the plan around the robot."""
 
 import math
 from collections.abc import Sequence
@@ -21,14 +21,14 @@ from peopleboy.sim.truth.scenes import Bystander, ImageFreeTruth
 from peopleboy.tracker.track import Track
 
 WIDTH_PX, HEIGHT_PX = 480, 360  # of each of the three panels
-_PX_PER_M = 40.0  # of the plan, which shows 12 x 9 m around the robot
+_PX_PER_M = 40.0  # scale of the plan, which shows 12 x 9 m around the robot
 _PAPER: Rgb = (251, 250, 247)
 _PAPER_NAME = "#fbfaf7"
 _SUBPIXEL_BITS = 4
 
 
 class ScenePicture:
-    """Draws one instant after another; the plan is drawn once."""
+    """Draw one instant after another; the plan is drawn only once."""
 
     def __init__(self, plan: FloorPlan, place: Place) -> None:
         self._corner = np.array([place.bounds[0], place.bounds[3]])  # [m] of the plan's top-left pixel
@@ -37,14 +37,14 @@ class ScenePicture:
     def draw(
         self, observation: Observation, scene: ImageFreeTruth, tracks: Sequence[Track], explanation: object
     ) -> Picture:
-        """Draw an instant, with tracks and what their tracker explains of them: (360, 1440, 3)."""
+        """Draw an instant, with tracks and the tracker's explanation: (360, 1440, 3)."""
         thermal, colour = observation.images["thermal_scene"], observation.images["colour"]
         scale = HEIGHT_PX / thermal.shape[0]
         seen = draw_tracks(_fit(show_thermal(thermal)), tracks, scale, explanation)
         return np.concatenate((seen, _fit(colour), self._draw_plan(scene)), axis=1)
 
     def _draw_plan(self, scene: ImageFreeTruth) -> Picture:
-        """The plan with the robot in the middle, north up, and everybody who is present."""
+        """Return the plan with the robot in the middle, north up, and all people who are present."""
         robot = scene.robot
         offset = np.array([WIDTH_PX, HEIGHT_PX]) / 2.0 - self._pixels((robot.x, robot.y))
         shift = np.array([[1.0, 0.0, offset[0]], [0.0, 1.0, offset[1]]])
@@ -56,13 +56,13 @@ class ScenePicture:
         return canvas
 
     def _pixels(self, point: tuple[float, float]) -> NDArray[np.float64]:
-        """(2,) pixel of the whole plan."""
+        """Return the pixel (2,) of a point in the whole plan."""
         pixels: NDArray[np.float64] = (np.array(point) - self._corner) * [_PX_PER_M, -_PX_PER_M]
         return pixels
 
 
 def _draw_place(plan: FloorPlan, place: Place) -> Picture:
-    """The whole place from above, `_PX_PER_M` pixels a metre."""
+    """Draw the whole place from above, at `_PX_PER_M` pixels per metre."""
     min_x, min_y, max_x, max_y = place.bounds
     size = ((max_x - min_x) * _PX_PER_M / 100.0, (max_y - min_y) * _PX_PER_M / 100.0)
     figure = Figure(figsize=size, dpi=100, facecolor=_PAPER_NAME)
@@ -79,7 +79,7 @@ def _draw_place(plan: FloorPlan, place: Place) -> Picture:
 
 
 def _fit(image: Picture) -> Picture:
-    """Enlarge or shrink an image to the panel's height, and cut or fill its width."""
+    """Scale an image to the panel's height, and crop or pad its width."""
     height, width = image.shape[:2]
     wide = round(width * HEIGHT_PX / height)
     scaled = cv2.resize(image, (wide, HEIGHT_PX), interpolation=cv2.INTER_NEAREST)
@@ -119,6 +119,6 @@ def _needle(
 
 
 def _fixed(point: NDArray[np.float64]) -> tuple[int, int]:
-    """A pixel in OpenCV's fixed-point numbers."""
+    """Return a pixel in OpenCV's fixed-point format."""
     x, y = np.round(point * (1 << _SUBPIXEL_BITS)).astype(int).tolist()
     return x, y

@@ -1,4 +1,4 @@
-"""Many environments in one process, as one of gymnasium's vector environments."""
+"""Many environments in one process, as a gymnasium vector environment."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -23,13 +23,14 @@ Infos = dict[str, Any]
 
 
 def join_infos(infos: Sequence[Infos | None]) -> Infos:
-    """Make arrays (B,) of B infos, at once where gymnasium's `VectorEnv` takes one after the other.
+    """Make arrays (B,) of B infos at once; gymnasium's `VectorEnv` adds them one by one.
 
-    Each key of any of them has an array of its values, and beside it, as `_key`, one of who has it; numbers
-    are arrays of numbers, 0 for those who have none, dicts are joined in the same way, all else is objects.
+    Each key of any info has an array of its values, and under `_key` an array that marks the infos that have
+    it. Numbers give arrays of numbers, 0 where missing; dicts are joined recursively; everything else gives
+    arrays of objects.
 
     Args:
-        infos: None for an environment that says nothing.
+        infos: infos of the environments; None for an empty info.
     """
     found: Infos = {}
     for key in dict.fromkeys(key for info in infos if info is not None for key in info):
@@ -57,11 +58,11 @@ def _array(values: list[Any], first: object) -> NDArray[Any]:
 
 
 class StepResults:
-    """Those of B worlds, in some of which an episode goes on, and begins in the others.
+    """Results of B worlds, in some of which an episode continues, while it begins in the others.
 
     Attributes:
-        rewards: (B,).
-        terminations, truncations: (B,).
+        rewards: (B,) rewards.
+        terminations, truncations: (B,) whether the episodes are over.
     """
 
     def __init__(self, worlds: int) -> None:
@@ -71,22 +72,22 @@ class StepResults:
         self._truths, self._events = np.empty((2, worlds), object)
 
     def take(self, numbers: Numbers, outcomes: StepOutcomes) -> None:
-        """Take in what came of the step in some of the worlds."""
+        """Store the outcome of the step in some of the worlds."""
         self.rewards[numbers], self._terms[numbers] = outcomes.rewards, outcomes.terms
         self.terminations[numbers], self.truncations[numbers] = outcomes.terminations, outcomes.truncations
         for row, number in enumerate(numbers.tolist()):
             self._truths[number], self._events[number] = outcomes.truths[row], outcomes.events[row]
 
     def begin(self, number: int, info: Infos) -> None:
-        """Take in what an episode begins with in one of the worlds."""
+        """Store the first info of an episode that begins in one of the worlds."""
         self._truths[number], self._events[number] = info["truth"], info["events"]
 
     def infos(self, seeds: list[int], metrics: list[Metrics | None]) -> Infos:
-        """Make what `join_infos` makes of B infos of single environments.
+        """Return the same as `join_infos` of B infos of single environments.
 
         Args:
-            seeds: of each.
-            metrics: None where an episode goes on.
+            seeds: seed of each world.
+            metrics: metrics of each episode that ends; None where an episode continues.
         """
         have = np.ones(len(seeds), np.bool_)
         terms = {name: self._terms[:, k].copy() for k, name in enumerate(TERMS)}
@@ -103,7 +104,7 @@ class StepResults:
 
 
 def _with_flags(columns: dict[str, Any], have: NDArray[np.bool_]) -> Infos:
-    """Put beside each column who has it."""
+    """Add to each column the array that marks the worlds that have it."""
     return {
         key: each for name, column in columns.items() for key, each in ((name, column), (f"_{name}", have))
     }
@@ -113,22 +114,23 @@ Flags = NDArray[np.bool_]
 
 
 class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
-    """B worlds, each with a robot of its own, stepped together.
+    """B worlds, each with its own robot, stepped together.
 
-    Actions are (B, 2); an observation has the arrays of `PeopleBoyEnv` with B before their shape, such as
-    `thermal` (B, H, W, 1), each of its own and never written again. Kinematic worlds go through kernels
-    together, see `peopleboy.sim.batch.world_batch.KinematicBatch`. World i gives to the byte what a single
-    environment with its seed and actions gives. The step after an episode's end begins the next episode in
-    that world, whatever its action, with reward 0 (`AutoresetMode.NEXT_STEP`); `infos` has the arrays that
-    gymnasium makes of B infos.
+    Actions are (B, 2); an observation has the arrays of `PeopleBoyEnv` with B as the first axis, such as
+    `thermal` (B, H, W, 1); returned arrays are never reused. Kinematic worlds are stepped together by
+    compiled kernels, see `peopleboy.sim.batch.world_batch.KinematicBatch`. World i is bit-identical to a
+    single environment with the same seed and actions. The step after an episode's end begins the next episode
+    in that world, ignores the action, and has reward 0 (`AutoresetMode.NEXT_STEP`); `infos` has the arrays
+    that gymnasium makes of B infos.
 
     Args:
         num_envs: B.
-        threads: that draw images; None for as many as there are processors. They change no byte.
-        settings: as for `PeopleBoyEnv`, but `render_mode`.
+        threads: number of threads that render images; None for one per processor. The output does not
+            depend on it.
+        settings: arguments of `PeopleBoyEnv`, except `render_mode`.
 
     Raises:
-        BadInput: an argument cannot be used.
+        BadInput: an argument is invalid.
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012
@@ -139,15 +141,15 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         if not (isinstance(num_envs, int | np.integer) and num_envs >= 1):
             raise BadInput(f"num_envs {num_envs!r}: must be 1 or more")
         if settings.get("render_mode") is not None:
-            raise BadInput("render_mode: many worlds draw no images; leave it out, or take one environment")
+            raise BadInput("render_mode: a vector environment does not render; leave it out, or make a single one")
         if "autoreset_mode" in settings:
             raise BadInput(
-                "autoreset_mode: gymnasium's own vector environments have that; "
+                "autoreset_mode: only gymnasium's own vector environments take it; "
                 "give vectorization_mode='sync' or 'async'"
             )
         if threads is not None and not (isinstance(threads, int | np.integer) and threads >= 1):
             raise BadInput(
-                f"threads {threads!r}: must be 1 or more, or None for as many as there are processors"
+                f"threads {threads!r}: must be 1 or more, or None for one per processor"
             )
         self.num_envs = num_envs
         self._crew = WorkerPool(threads)
@@ -173,16 +175,16 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         """Begin an episode in every world.
 
         Args:
-            seed: of world 0, the next ones having the next; or one for each; None goes on, as for a single
-                environment.
-            options: as for a single environment, for all of them.
+            seed: seed of world 0, with consecutive seeds for the others; or one seed per world; None samples
+                the next seeds, as in a single environment.
+            options: options of a single environment, for all worlds.
 
         Raises:
-            BadInput: options that there are not, or not a seed for each; or all this is closed.
+            BadInput: an option is invalid, the number of seeds is wrong, or the environment is closed.
         """
         self._check_open()
         seeds = self._seeds(seed)
-        self._together = None  # even if this is interrupted: worlds are made anew
+        self._together = None  # also after an interrupt: the worlds are made anew
         found = self._empty()
         infos: list[Infos] = []
         for number, (env, own) in enumerate(zip(self._envs, seeds, strict=True)):
@@ -193,10 +195,10 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         return found, join_infos(infos)
 
     def step(self, actions: NDArray[np.float32]) -> tuple[Arrays, NDArray[np.float64], Flags, Flags, Infos]:
-        """Drive every robot for one control step, and begin anew where an episode was over.
+        """Drive every robot for one control step, and begin a new episode where one was over.
 
         Raises:
-            BadInput: the actions are not (B, 2) finite numbers, or there are no episodes under way.
+            BadInput: the actions are not (B, 2) finite numbers, or no episodes are under way.
         """
         self._check_open()
         shares, is_over = check_actions(actions, (self.num_envs, 2)), self._episodes.records["is_over"].copy()
@@ -208,17 +210,17 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         ends = (results.terminations | results.truncations).tolist()
         metrics = [self._episodes.metrics(number) if is_end else None for number, is_end in enumerate(ends)]
         infos = results.infos([env.seed for env in self._envs], metrics)
-        found = self._observe(snapshot)  # at last, as images are being made meanwhile
+        found = self._observe(snapshot)  # last, because images are rendered in the meantime
         for number, observation in begun.items():
             _put(found, number, observation)
         self._keep(found)
         return found, results.rewards, results.terminations, results.truncations, infos
 
     def vary_by(self, options: dict[str, Any]) -> None:
-        """Vary every world's episodes from its next one on, as for a single environment.
+        """Vary further episodes in every world, as in a single environment.
 
         Raises:
-            BadInput: options that there are not.
+            BadInput: an option is invalid.
         """
         for env in self._envs:
             env.vary_by(options)
@@ -231,16 +233,16 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
 
     def _check_open(self) -> None:
         if self.closed:
-            raise BadInput("environment: is closed; make another one")
+            raise BadInput("environment is closed; make another one")
 
     def _seeds(self, seed: int | Sequence[int | None] | None) -> list[int | None]:
-        """Return each world's seed."""
+        """Return the seed of each world."""
         if seed is None:
             return [None] * self.num_envs
         if isinstance(seed, int | np.integer):
             return [int(seed) + number for number in range(self.num_envs)]
         if len(seed) != self.num_envs:
-            raise BadInput(f"seed: {len(seed)} seeds for {self.num_envs} worlds; give one each")
+            raise BadInput(f"seed: got {len(seed)} seeds for {self.num_envs} worlds; give one per world")
         return [int(own) if isinstance(own, np.integer) else own for own in seed]
 
     def _step_together(self, active: Numbers, shares: NDArray[np.float64]) -> list[Snapshot]:
@@ -250,7 +252,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         return self._together.step(active, (shares * self._episodes.records["limits"])[active])
 
     def _track(self, snapshot: Snapshot) -> list[int] | None:
-        """Let trackers look, if there are any; returns what `LiveEpisodes.evaluate` needs to know of them."""
+        """Update the trackers, if there are any; return the ids of tracks for `LiveEpisodes.evaluate`."""
         if not self._builder.tracks:
             return None
         return [
@@ -258,7 +260,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         ]
 
     def _begin(self, numbers: Numbers, results: StepResults) -> dict[int, Arrays]:
-        """Begin new episodes in some worlds; gives their observations."""
+        """Begin new episodes in some worlds; return their observations."""
         found = {}
         for number in numbers.tolist():
             found[number], info = self._envs[number].reset()
@@ -267,7 +269,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         return found
 
     def _observe(self, snapshot: Sequence[Snapshot]) -> Arrays:
-        """Return the observations of some snapshots; those of other worlds are not filled yet."""
+        """Return the observations of some snapshots; the rows of other worlds are not filled yet."""
         found = self._empty()
         for name, images in self._kept.items():
             found[name][:] = images
@@ -282,7 +284,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         return found
 
     def _keep(self, found: Arrays) -> None:
-        """Keep the images of cameras that do not take one at every step."""
+        """Store the images of cameras that do not take one at every step."""
         self._kept = {name: found[name].copy() for name in self._builder.slow}
 
     def _empty(self) -> Arrays:

@@ -1,4 +1,4 @@
-"""The written behaviours as controllers of an environment: observations in, actions out."""
+"""Hand-written behaviours as controllers of an environment: observations in, actions out."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,14 +13,14 @@ _DT_S = 1.0 / 15.0
 
 
 class WrittenController:
-    """Lets a behaviour drive in an environment, to be compared with controllers of other kinds.
+    """Controller that drives with a behaviour, to compare it with other controllers in an environment.
 
-    Use one for each episode, as behaviours remember. An environment has no emergency stop: there a robot
-    brakes as it always does.
+    Make a new one for each episode, because behaviours have state. An environment has no emergency stop; the
+    robot brakes with its usual deceleration.
 
     Args:
-        behaviour: fresh, such as `load_scenario("single_follow").make_behaviour()`.
-        limits: of the robot's drive, of which actions are shares.
+        behaviour: a new behaviour, such as `load_scenario("single_follow").make_behaviour()`.
+        limits: limits of the robot's drive, which actions are shares of.
     """
 
     def __init__(self, behaviour: Behaviour, limits: DriveConfig | None = None) -> None:
@@ -29,7 +29,7 @@ class WrittenController:
         self._time_s = 0.0
 
     def __call__(self, observation: Arrays) -> NDArray[np.float32]:
-        """Return the action (2,) for an observation with `tracks`; called once for every step."""
+        """Return the action (2,) for an observation with `tracks`; call it once per step."""
         rows = observation["tracks"].reshape(-1, len(COLUMNS)).tolist()
         speed, turn_rate = observation["odometry"][4:].tolist()
         percept = Percept(

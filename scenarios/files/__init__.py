@@ -1,1 +1,1 @@
-"""Scenario files: what they may say, reading, checking, and building worlds from them."""
+"""Scenario files: their keys, reading, validation, and the worlds that they describe."""

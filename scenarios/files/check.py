@@ -1,4 +1,4 @@
-"""What a schema cannot see: people in walls, robots in tables, two of one name."""
+"""Check what a schema cannot: people inside walls, a robot inside a table, two people with one name."""
 
 import math
 from collections import Counter
@@ -21,7 +21,7 @@ from peopleboy.sim.world_config import CONTROL_HZ
 from peopleboy.tracker.trackers import TRACKERS
 from peopleboy.wording import hint
 
-BODY_M = 0.2  # clearance that the middle of a person keeps from walls and things
+BODY_M = 0.2  # clearance of a person's centre from walls and objects
 ROBOT_M = 0.27  # radius of the circle around the robot
 _ONE_PLACE_M = 0.05
 
@@ -31,11 +31,11 @@ class Ground:
     """Where people can walk.
 
     Attributes:
-        plan: the floor.
-        boxes: walls and things, grown by half a person.
-        names: theirs.
-        seats: names of things that one may sit on.
-        moved: things that are not always where they are at first.
+        plan: the floor plan.
+        boxes: walls and objects, grown by half a person's width.
+        names: names of the boxes.
+        seats: names of objects to sit on.
+        moved: objects that do not stay where they start.
     """
 
     plan: FloorPlan
@@ -45,7 +45,7 @@ class Ground:
     moved: MovedThings
 
     def fault(self, person: PersonSpec) -> BadInput | None:
-        """Return what is wrong with a person's path, below its key; None if it can be walked."""
+        """Return the fault of a person's path, with keys below the person's; None for a walkable path."""
         return self._path_fault(person.path) or self.moved.fault(person, BODY_M)
 
     def _path_fault(self, path: Sequence[Waypoint]) -> BadInput | None:
@@ -71,13 +71,13 @@ class Ground:
             if crosses(box, start.at_m, end.at_m):
                 (x0, y0), (x1, y1) = start.at_m, end.at_m
                 return (
-                    f"the straight way from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}) runs through "
-                    f"or within {BODY_M:g} m of {name!r}; add a point beside it"
+                    f"the straight line from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}) runs through "
+                    f"or within {BODY_M:g} m of {name!r}; add a waypoint that leads around it"
                 )
         return None
 
     def _blocking(self, *waypoints: Waypoint) -> Iterator[tuple[Rectangle, str]]:
-        """Everything in the way; a seat is not, for who sits down or gets up."""
+        """Yield the boxes and names that block; a seat does not block a person who sits down or gets up."""
         may_sit = any(waypoint.posture == "sitting" for waypoint in waypoints)
         for box, name in zip(self.boxes, self.names, strict=True):
             if not (may_sit and name in self.seats):
@@ -85,7 +85,7 @@ class Ground:
 
 
 def make_ground(spec: ScenarioSpec, plan: FloorPlan, place: Place) -> Ground:
-    """Collect what people must walk around."""
+    """Collect everything that people must walk around."""
     return Ground(
         plan=plan,
         boxes=tuple(_rectangle(row).grown(BODY_M) for row in place.obstacles),
@@ -99,15 +99,15 @@ def make_ground(spec: ScenarioSpec, plan: FloorPlan, place: Place) -> Ground:
 
 
 def check_scenario(spec: ScenarioSpec, people: Sequence[tuple[Key, PersonSpec]], ground: Ground) -> None:
-    """Refuse what cannot be played.
+    """Refuse a scenario that cannot be run.
 
     Args:
         spec: the scenario.
-        people: everybody, groups included, each with its key in the file.
-        ground: where one can walk.
+        people: all people, including group members, each with its key in the file.
+        ground: where people can walk.
 
     Raises:
-        BadInput: with the key of what it is.
+        BadInput: the scenario is invalid; the error holds the key.
     """
     _check_duration(spec.duration_s)
     _check_order("at_s", [light.at_s for light in spec.lights], ("lights",))
@@ -127,7 +127,7 @@ def check_scenario(spec: ScenarioSpec, people: Sequence[tuple[Key, PersonSpec]],
 
 
 def crosses(box: Rectangle, start: tuple[float, float], end: tuple[float, float]) -> bool:
-    """Whether a straight line has a point inside a rectangle (slab method)."""
+    """Return whether a line segment has a point inside a rectangle (slab method)."""
     first, last = 0.0, 1.0
     spans = (box.min_x, box.max_x), (box.min_y, box.max_y)
     for (low, high), origin, goal in zip(spans, start, end, strict=True):
@@ -144,53 +144,53 @@ def crosses(box: Rectangle, start: tuple[float, float], end: tuple[float, float]
 def _check_duration(duration_s: float) -> None:
     if round(duration_s * CONTROL_HZ) < 1:
         raise BadInput(
-            f"{duration_s:g} is less than a frame; give 1/{CONTROL_HZ} s at least", key=("duration_s",)
+            f"{duration_s:g} is shorter than a frame; must be at least 1/{CONTROL_HZ} s", key=("duration_s",)
         )
 
 
 def _check_company(people: Sequence[tuple[Key, PersonSpec]], place: Place) -> None:
-    """Refuse people who cannot be there together."""
+    """Refuse people who conflict with each other or with the place."""
     _check_names(people, place)
     _check_groups(people)
     _check_starts(people)
 
 
 def _check_person(person: PersonSpec, duration_s: float, names: Sequence[str]) -> None:
-    """Refuse a person who cannot do what the script says in so many seconds, among people of these names."""
+    """Refuse a person whose script does not fit the duration or names an unknown person to face."""
     _check_times(person, duration_s)
     _check_faces(person, names)
 
 
 def _check_distance(person: PersonSpec, robot: RobotSpec) -> None:
-    """Refuse a person who starts in the robot."""
+    """Refuse a person who starts inside the robot."""
     distance = math.dist(person.path[0].at_m, robot.at_m)
     if distance < ROBOT_M + BODY_M:
         raise BadInput(
-            f"{person.name!r} starts {distance:.2g} m from the robot's middle, inside it; "
-            f"keep {ROBOT_M + BODY_M:g} m",
+            f"{person.name!r} starts {distance:.2g} m from the robot's centre, inside the robot; "
+            f"must be at least {ROBOT_M + BODY_M:g} m",
             key=("path", 0, "at_m"),
         )
 
 
 def _check_names(people: Sequence[tuple[Key, PersonSpec]], place: Place) -> None:
-    """Refuse people whom the truth could not tell from each other, or from what else it names."""
+    """Refuse names that the ground truth could not tell apart from each other or from other entities."""
     standing = {fixture.name.split("/")[0] for fixture in place.fixtures}
     seen: dict[str, Key] = {}
     for key, person in people:
         if person.name in standing:
-            raise BadInput(f"name {person.name!r} is that of something in the place; choose another", key=key)
+            raise BadInput(f"name {person.name!r} is used by an object in the place; choose another", key=key)
         if person.name == BORDER:
-            raise BadInput(f"name {BORDER!r} is taken by the image's border; choose another", key=key)
+            raise BadInput(f"name {BORDER!r} is reserved for the image border; choose another", key=key)
         if person.name == "robot":
-            raise BadInput("name 'robot' is taken by the robot; choose another", key=key)
+            raise BadInput("name 'robot' is reserved for the robot; choose another", key=key)
         if person.name in seen:
             other = dotted(seen[person.name])
-            raise BadInput(f"name {person.name!r} is also that of {other}; give each its own", key=key)
+            raise BadInput(f"name {person.name!r} is also used by {other}; names must be unique", key=key)
         seen[person.name] = key
 
 
 def _check_groups(people: Sequence[tuple[Key, PersonSpec]]) -> None:
-    """Refuse people who are to keep together and cannot compare how far they have got."""
+    """Refuse groups that cannot keep together: one member only, or paths of different lengths."""
     first: dict[str, PersonSpec] = {}
     sizes = Counter(person.group for _, person in people)
     for key, person in people:
@@ -198,26 +198,26 @@ def _check_groups(people: Sequence[tuple[Key, PersonSpec]]) -> None:
             continue
         if sizes[person.group] == 1:
             raise BadInput(
-                f"{person.group!r} has nobody but {person.name!r}; give it to others, too, or leave it out",
+                f"{person.group!r} has only one member, {person.name!r}; add others, or leave it out",
                 key=(*key, "group"),
             )
         other = first.setdefault(person.group, person)
         if len(other.path) != len(person.path):
             raise BadInput(
-                f"{person.group!r}: {person.name!r} has {len(person.path)} points of its path, and "
-                f"{other.name!r} {len(other.path)}; give them as many",
+                f"{person.group!r}: {person.name!r} has {len(person.path)} waypoints and {other.name!r} "
+                f"{len(other.path)}; all members need the same number",
                 key=(*key, "group"),
             )
 
 
 def _check_starts(people: Sequence[tuple[Key, PersonSpec]]) -> None:
-    """Refuse people who come at the same time to the same place, and would be one body."""
+    """Refuse two people who enter at the same time and place, because their bodies would coincide."""
     for index, (key, person) in enumerate(people):
         for _, other in people[:index]:
             is_there = math.dist(person.path[0].at_m, other.path[0].at_m) < _ONE_PLACE_M
             if is_there and person.enter_s == other.enter_s:
                 raise BadInput(
-                    f"{person.name!r} starts where {other.name!r} does, in the same body; move one of them",
+                    f"{person.name!r} starts at the same time and place as {other.name!r}; move one of them",
                     key=(*key, "path", 0, "at_m"),
                 )
 
@@ -229,7 +229,7 @@ def _check_times(person: PersonSpec, duration_s: float) -> None:
         )
     for index in range(1, len(person.path)):
         if math.dist(person.path[index - 1].at_m, person.path[index].at_m) < 0.05:
-            raise BadInput("it is the point before; use pause_s there to stay", key=("path", index, "at_m"))
+            raise BadInput("equals the last waypoint; use pause_s there to stay", key=("path", index, "at_m"))
 
 
 def _check_faces(person: PersonSpec, names: Sequence[str]) -> None:
@@ -262,17 +262,17 @@ def _check_start(robot: RobotSpec, ground: Ground) -> None:
 
 def _check_behaviour(robot: RobotSpec) -> None:
     if robot.commands and robot.behaviour != "scripted":
-        raise BadInput(f"a robot that is to {robot.behaviour} takes none; use 'scripted'", key=("commands",))
+        raise BadInput(f"behaviour {robot.behaviour!r} takes none; use 'scripted'", key=("commands",))
     if robot.behaviour == "scripted" and not robot.commands:
         example = "'{from_s: 0.0, linear_m_s: 0.5}'"
         raise BadInput(
-            f"a scripted robot has none; give at least one, such as {example}, or let the robot 'stand'",
+            f"a scripted robot needs at least one, such as {example}; or use behaviour 'stand'",
             key=("commands",),
         )
     if robot.keep_height is not None and robot.behaviour != "follow_person":
-        raise BadInput("only a robot that is to 'follow_person' takes it", key=("keep_height",))
+        raise BadInput("only behaviour 'follow_person' takes it; leave it out", key=("keep_height",))
     if robot.walls_by is not None and robot.behaviour != "follow_corridor":
-        raise BadInput("only a robot that is to 'follow_corridor' takes it", key=("walls_by",))
+        raise BadInput("only behaviour 'follow_corridor' takes it; leave it out", key=("walls_by",))
     if robot.tracker is not None:
         _check_tracker(robot.tracker)
 
@@ -280,7 +280,7 @@ def _check_behaviour(robot: RobotSpec) -> None:
 def _check_tracker(name: str) -> None:
     if name not in (*TRACKERS, ORACLE):
         known = ", ".join((*TRACKERS, ORACLE))
-        raise BadInput(f"unknown name {name!r}; there are {known}", key=("tracker",))
+        raise BadInput(f"unknown name {name!r}; choose from {known}", key=("tracker",))
 
 
 def _check_faults(spec: ScenarioSpec) -> None:
@@ -296,7 +296,7 @@ def _check_order(unit_key: str, times: Sequence[float], key: Key) -> None:
     for index in range(1, len(times)):
         if times[index] <= times[index - 1]:
             raise BadInput(
-                f"{times[index]:g} must be after {times[index - 1]:g} before it", key=(*key, index, unit_key)
+                f"{times[index]:g} must be after {times[index - 1]:g}", key=(*key, index, unit_key)
             )
 
 

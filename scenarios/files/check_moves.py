@@ -1,4 +1,4 @@
-"""What moved things may not do: sweep through people, the robot or each other, or be out of reach."""
+"""Check moved objects: they must be in reach and may not pass through people, the robot or each other."""
 
 import math
 from collections.abc import Sequence
@@ -15,15 +15,15 @@ from peopleboy.sim.places.extent import BoxSet, boxes_of, overlaps
 from peopleboy.sim.places.moving import Action, Mover
 from peopleboy.sim.places.place import HEAD_M, STEP_M, Place
 
-REACH_M = 0.75  # from a person's middle, on the floor, to what the hand holds, leaning included
-_HOLDS_M = 0.08  # to what one moves
+REACH_M = 0.75  # on the floor, from a person's centre to the object in the hand, including leaning
+_HOLDS_M = 0.08  # clearance from an object that the person moves
 _STEP_S = 0.1
-_DEEP_M = 0.03  # how far things may reach into each other: feet sink in, and boxes stand for round shapes
+_DEEP_M = 0.03  # allowed overlap of objects: feet sink in, and boxes approximate round shapes
 
 
 @dataclass(frozen=True, slots=True)
 class _Spot:
-    """A person at an instant: x, y [m], and whether it sits, or is about to."""
+    """A person's position at one instant: x, y [m], and whether the person sits or is about to sit."""
 
     at: tuple[float, float]
     sits: bool
@@ -31,11 +31,11 @@ class _Spot:
 
 @dataclass(frozen=True)
 class MovedThings:
-    """The things of a place that are moved, and how much room they take at a time.
+    """The objects of a place that are moved, and the space that they occupy at each time.
 
     Attributes:
-        place: in which they are.
-        duration_s: of a run.
+        place: the place that contains them.
+        duration_s: [s] duration of a run.
     """
 
     place: Place
@@ -43,13 +43,13 @@ class MovedThings:
     _boxes: dict[str, BoxSet] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Measure the things once."""
+        """Compute the boxes of the objects once."""
         for mover in self.place.movers:
             own = [f for f in self.place.fixtures if f.name.split("/")[0] == mover.name]
             self._boxes[mover.name] = boxes_of(own, mover.start)
 
     def fault(self, person: PersonSpec, clearance_m: float) -> BadInput | None:
-        """Return what is wrong with a person's way, below its key, because of what is moved; else None."""
+        """Return the fault of a person's path due to moved objects, with keys below the person's, or None."""
         if not self.place.movers:
             return None
         for time_s, standing in _walk(person, self.duration_s):
@@ -60,7 +60,7 @@ class MovedThings:
                     x, y = standing.at
                     return BadInput(
                         f"at {time_s:.1f} s {person.name!r} is at ({x:.2f}, {y:.2f}), in or within "
-                        f"{near_m:g} m of {mover.name!r}, which is there then; move one of them",
+                        f"{near_m:g} m of {mover.name!r}, which is there at that time; move one of them",
                         key=("path",),
                     )
         return None
@@ -68,15 +68,15 @@ class MovedThings:
     def check(
         self, people: Sequence[tuple[Key, PersonSpec]], robot: tuple[float, float], robot_m: float
     ) -> None:
-        """Refuse what sweeps through the robot start position, or through things, and hands that cannot be.
+        """Refuse moves through the robot's start position or through objects, and moves out of reach.
 
         Args:
-            people: everybody, groups included, each with its key in the file.
-            robot: where its middle starts [m].
-            robot_m: its radius.
+            people: all people, including group members, each with its key in the file.
+            robot: x, y [m] of the robot's centre at the start.
+            robot_m: [m] radius of the robot.
 
         Raises:
-            BadInput: with the key of the action.
+            BadInput: a move is invalid; the error holds the key of the action.
         """
         held: dict[str, list[tuple[Mover, Action]]] = {}
         for mover in self.place.movers:
@@ -126,11 +126,11 @@ class MovedThings:
             hit = overlaps(own, boxes, _DEEP_M).any(axis=0)
             if hit.any():
                 what = str(called[hit][0])
-                raise BadInput(f"{mover.name!r} would sweep through {what!r} at {time_s:.1f} s", key=key)
+                raise BadInput(f"{mover.name!r} would pass through {what!r} at {time_s:.1f} s", key=key)
 
     @cached_property
     def _still(self) -> tuple[list[str], BoxSet]:
-        """Names and boxes of all solid shapes that nobody moves, floor and ceiling aside."""
+        """Names and boxes of all solid shapes that are never moved, except floor and ceiling."""
         moved = {mover.name for mover in self.place.movers} | {"floor", "ceiling"}
         fixtures = [f for f in self.place.fixtures if f.is_solid and f.name.split("/")[0] not in moved]
         names = [f.name.split("/")[0] for f in fixtures for _ in boxes_of([f]).heading]
@@ -142,7 +142,7 @@ def _check_hand(mover: Mover, action: Action, person: PersonSpec, key: Key) -> N
     is_moved = person.yields or person.reacts or person.leads or person.group or waits
     if is_moved or person.jitter_m or person.speed_jitter or person.enter_jitter_s:
         raise BadInput(
-            f"{person.name!r} must be where the file says, to the moment, to move {mover.name!r}: "
+            f"{person.name!r} must follow an exact script to move {mover.name!r}: "
             "without yields, reacts, leads, group, until_robot_within_m, jitter_m, speed_jitter and "
             "enter_jitter_s",
             key=(*key, "by"),
@@ -151,30 +151,30 @@ def _check_hand(mover: Mover, action: Action, person: PersonSpec, key: Key) -> N
     for time_s in _times(action):
         nearest = min(ways, key=lambda t: abs(t - time_s), default=None)
         if nearest is None or abs(nearest - time_s) > _STEP_S:
-            raise BadInput(f"{person.name!r} is not there at {time_s:.1f} s", key=(*key, "by"))
+            raise BadInput(f"{person.name!r} is not present at {time_s:.1f} s", key=(*key, "by"))
         at = ways[nearest].at
         grip = mover.grip(action, time_s, at)
         gap = math.dist(at, grip[:2].tolist())
         if gap > REACH_M:
             raise BadInput(
                 f"{person.name!r} is {gap:.2f} m from {mover.name!r} at {time_s:.1f} s, at ({at[0]:.2f}, "
-                f"{at[1]:.2f}); it must be {REACH_M:g} m or nearer",
+                f"{at[1]:.2f}); must be within {REACH_M:g} m",
                 key=(*key, "by"),
             )
 
 
 def _key(place: Place, mover: Mover) -> Key:
-    """Where the scenario file declares a thing."""
+    """Return the key of an object in the scenario file."""
     return ("things", place.things.index(mover.name))
 
 
 def _check_free(mover: Mover, action: Action, before: list[tuple[Mover, Action]], key: Key) -> None:
-    """Refuse an action by a person who moves another thing at that time."""
+    """Refuse an action by a person who moves another object at that time."""
     for other, busy in before:
         if other is not mover and action.at_s < busy.ends_s and busy.at_s < action.ends_s:
             raise BadInput(
                 f"{action.by!r} moves {other.name!r} from {busy.at_s:g} to {busy.ends_s:g} s; "
-                "one thing at a time",
+                "a person can move only one object at a time",
                 key=(*key, "by"),
             )
     before.append((mover, action))
@@ -186,7 +186,7 @@ def _times(action: Action) -> list[float]:
 
 
 def _walk(person: PersonSpec, until_s: float) -> list[tuple[float, _Spot]]:
-    """Where a person whom nobody disturbs is, every tenth of a second."""
+    """Return the positions of an undisturbed person, at intervals of 0.1 s."""
     path = person.path
     walker = Walker(path, yields=False, radius_m=0.0)
     end = until_s if person.leave_s is None else min(until_s, person.leave_s)

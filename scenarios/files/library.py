@@ -1,4 +1,4 @@
-"""The scenarios and suites that come with PeopleBoy, listed without loading what they need."""
+"""List the scenarios and suites that come with PeopleBoy, without loading their dependencies."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -16,12 +16,12 @@ class LibraryEntry:
     """A scenario, or a suite of scenarios.
 
     Attributes:
-        name: as commands take it.
+        name: the name that commands accept.
         kind: "scenario" or "suite".
-        duration_s: of the scenario; None for a suite.
-        people: how many there are; None for a suite.
-        runs: of the suite; None for a scenario.
-        description: in one line.
+        duration_s: duration of the scenario; None for a suite.
+        people: number of people; None for a suite.
+        runs: number of runs of the suite; None for a scenario.
+        description: description on one line.
     """
 
     name: str
@@ -54,7 +54,7 @@ def suites() -> dict[str, LibraryEntry]:
 
 
 def _read(path: Path) -> dict[str, Any]:
-    # The loader in C takes a seventh of the time of `read_yaml`, whose checks these files have passed.
+    # The C loader takes a seventh of the time of `read_yaml`, and these files have passed its checks.
     data: dict[str, Any] = yaml.load(path.read_text(encoding="utf-8"), Loader=yaml.CSafeLoader)
     return data
 

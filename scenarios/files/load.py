@@ -1,4 +1,4 @@
-"""Find scenarios, by name in the library or by path, and read them."""
+"""Find scenarios by library name or path, and read them."""
 
 import logging
 from pathlib import Path
@@ -16,10 +16,10 @@ _LOG = logging.getLogger(__name__)
 
 
 def load_scenario(name_or_path: str | Path | Scenario) -> Scenario:
-    """Load a scenario by its library name, or by the path of a YAML file; one that is loaded is returned.
+    """Load a scenario by its library name or by the path of a YAML file; return a loaded one unchanged.
 
     Raises:
-        BadInput: there is no such scenario, or the file is wrong: file, key, value and what would be right.
+        BadInput: the scenario does not exist, or the file is invalid.
     """
     if isinstance(name_or_path, Scenario):
         return name_or_path
@@ -32,29 +32,29 @@ def parse_scenario(data: dict[Any, Any], *, source: str, folder: Path) -> Scenar
     """Check the data of a scenario file.
 
     Args:
-        data: what the file holds.
-        source: the file's name, for messages.
-        folder: where URDF files of the scenario's own lie.
+        data: contents of the file.
+        source: name of the file, for messages.
+        folder: folder that contains the scenario's own URDF files.
 
     Raises:
-        BadInput: the data are wrong.
+        BadInput: the data are invalid.
     """
     with found_in(file=source):
         return make_scenario(validated(ScenarioSpec, _filled_in(data)), folder)
 
 
 def _filled_in(data: dict[Any, Any], via: tuple[str, ...] = ()) -> dict[Any, Any]:
-    """The data with the keys of the scenario that it is like; its own replace them whole.
+    """Return the data, with omitted keys taken from the library scenario named by `like`.
 
     Raises:
-        BadInput: there is no such scenario in the library, or it is in the end like itself.
+        BadInput: the library has no such scenario, or `like` leads back to the scenario itself.
     """
     if not isinstance(data.get("like"), str):
         return data
     with found_in("like"):
-        path = _find_in_library(data["like"], "only those can be named here, no file")
+        path = _find_in_library(data["like"], "`like` takes a library name, not a file")
         if path.stem in via:
-            raise BadInput(f"{path.stem!r} is like itself, by way of {', '.join(via)}; leave it out of one")
+            raise BadInput(f"{path.stem!r} is like itself, via {', '.join(via)}; remove one of these keys")
     model = _filled_in(read_yaml(path), (*via, path.stem))
     return {key: value for key, value in (model | data).items() if key != "like"}
 
@@ -63,19 +63,19 @@ def _find(name_or_path: str | Path) -> Path:
     text = str(name_or_path)
     if "/" in text or text.endswith((".yaml", ".yml")) or isinstance(name_or_path, Path):
         return Path(name_or_path)
-    return _find_in_library(text, "a file's path ends in .yaml")
+    return _find_in_library(text, "the path of a file must end in .yaml")
 
 
 def _find_in_library(name: str, otherwise: str) -> Path:
     known = [path.stem for path in LIBRARY.glob("*.yaml")]
     if (SUITES / f"{name}.yaml").is_file():
-        raise BadInput(f"{name} is a suite of scenarios, which only `peopleboy run` takes whole")
+        raise BadInput(f"{name} is a suite of scenarios; only `peopleboy run` accepts suites")
     if name not in known:
-        which = hint(name, known, "`peopleboy list` names those that there are")
+        which = hint(name, known, "`peopleboy list` shows all")
         raise BadInput(f"unknown scenario {name!r}; {which}; {otherwise}")
     return LIBRARY / f"{name}.yaml"
 
 
 def _shown(path: Path) -> str:
-    """The path as the user gave it; a library file as library/NAME.yaml."""
+    """Return the path as the user gave it; for a library file, library/NAME.yaml."""
     return f"library/{path.name}" if path.parent == LIBRARY else str(path)

@@ -1,4 +1,4 @@
-"""Files of a scenario's own that it names: a run keeps copies, so that its folder can be played by itself."""
+"""Copy the files that a scenario refers to into the run's folder, so that the run can be replayed from it."""
 
 import os
 from collections.abc import Mapping
@@ -10,17 +10,17 @@ from peopleboy.sim.physics.urdf import files_of, is_in_data
 
 
 def read_own_files(spec: ScenarioSpec, folder: Path) -> dict[str, bytes]:
-    """Read the URDF files that lie beside a scenario, with their meshes, materials and textures.
+    """Read a scenario's own URDF files, with their meshes, materials and textures.
 
     Args:
-        spec: what the scenario says; its URDF files are known to be usable.
-        folder: where its file lies.
+        spec: the scenario, with validated URDF files.
+        folder: folder of the scenario file.
 
     Returns:
-        Contents by path within the folder.
+        Contents by path relative to the folder.
 
     Raises:
-        BadInput: a URDF takes a mesh from outside the folder.
+        BadInput: a URDF refers to a mesh outside the folder.
     """
     found: dict[str, bytes] = {}
     for index, thing in enumerate(spec.things):
@@ -29,14 +29,14 @@ def read_own_files(spec: ScenarioSpec, folder: Path) -> dict[str, bytes]:
         for path in files_of(folder / thing.urdf):
             if not path.resolve().is_relative_to(folder.resolve()):
                 raise BadInput(
-                    f"{path.resolve()} lies outside the scenario's own folder", key=("things", index, "urdf")
+                    f"{path.resolve()} lies outside the scenario's folder", key=("things", index, "urdf")
                 )
             found[Path(os.path.relpath(path, folder)).as_posix()] = path.read_bytes()
     return found
 
 
 def keep_own_files(files: Mapping[str, bytes], folder: Path) -> None:
-    """Write copies where a scenario file in this folder looks for them."""
+    """Write copies to the paths that a scenario file in this folder refers to."""
     for name, content in files.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -44,7 +44,7 @@ def keep_own_files(files: Mapping[str, bytes], folder: Path) -> None:
 
 
 def are_kept(files: Mapping[str, bytes], folder: Path) -> bool:
-    """Return whether a folder has copies of these very files."""
+    """Return whether a folder has identical copies of these files."""
     return all(
         (folder / name).is_file() and (folder / name).read_bytes() == content
         for name, content in files.items()

@@ -1,4 +1,4 @@
-"""What a scenario file says about people, and what the seed decides about them: bodies, clothes, detours."""
+"""Keys of a scenario file for people, and what is sampled from the seed: bodies, clothes, detours."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -23,7 +23,7 @@ _SHORTEST_M, _TALLEST_M = 1.5, 2.0
 _BUILDS: Final = {"slim": 0.3, "average": 0.5, "stout": 0.2}
 _TRIES: Final = 50
 
-# Colours that differ clearly from each other in hue or brightness; a white top stays apart from yellow ones.
+# Colours that differ clearly in hue or brightness, a white top from a yellow one too.
 _TOP_COLOURS: Final = ("white", "black", "red", "yellow", "green", "blue", "pink", "orange")
 _BOTTOM_COLOURS: Final = ("black", "khaki", "blue", "white", "red", "green", "light_grey", "purple")
 
@@ -36,7 +36,7 @@ GivenClothes = Annotated[
 
 @dataclass(frozen=True, kw_only=True)
 class _Variations(WalkConfig):
-    """A path that the seed varies."""
+    """Settings of a path that are varied by the seed."""
 
     jitter_m: Annotated[
         float, Field(ge=0.0, le=2.0, description="radius within which the seed moves each waypoint")
@@ -86,7 +86,7 @@ class GroupSpec(_Variations):
     spacing_m: Annotated[float, Field(ge=0.5, le=3.0, description="distance between neighbours")] = 0.75
 
     def members(self) -> tuple[PersonSpec, ...]:
-        """Return the people of the group, each on a path of its own, the first on the right."""
+        """Return the members of the group, each with its own path, starting from the right."""
         points = [waypoint.at_m for waypoint in self.path]
         middle = (len(self.names) - 1) / 2.0
         shared = {one.name: getattr(self, one.name) for one in fields(_Variations)}
@@ -108,17 +108,17 @@ def resolve_person(
     can_walk: Callable[[PersonSpec], bool],
     usual_air_c: float | None = None,
 ) -> PersonSpec:
-    """Decide everything about a person that the file leaves to the seed.
+    """Sample everything about a person that the file leaves to the seed.
 
-    Each person has random streams of its own, so that another person in the file changes nothing for it.
-    What the file says stays; the result has nothing left to draw, and resolving it again returns it.
+    Each person has separate random streams, so that adding a person to the file does not change the others.
+    Values given in the file stay. The result is fully specified; resolving it again returns it unchanged.
 
     Args:
-        person: as in the file.
-        seed: of the run.
-        can_walk: whether a person can walk the way that it has; one that the seed moves into a wall is drawn
+        person: the person as given in the file.
+        seed: seed of the run.
+        can_walk: whether a person's path is walkable; a path that the seed moves into a wall is sampled
             again, and after many tries the file's own path is kept.
-        usual_air_c: [degC] air for which people dress as is usual; None draws from the whole catalogue.
+        usual_air_c: [degC] air temperature for which people dress normally; None samples from all clothes.
     """
     drawn = _draw_person(stream(seed, f"scenario.{person.name}.looks"), person)
     if usual_air_c is not None:
@@ -136,16 +136,16 @@ def resolve_person(
 
 
 def make_config(person: PersonSpec) -> PersonConfig:
-    """Return the settings of a person of whom nothing is left to draw."""
+    """Return the settings of a resolved person."""
     given = {one.name: getattr(person, one.name) for one in fields(PersonConfig)}
     return PersonConfig(**given | {"clothes": Clothes(**person.clothes or {})})
 
 
 def assign_distinct_colours(people: Sequence[PersonSpec], rng: np.random.Generator) -> tuple[PersonSpec, ...]:
-    """Return each person a top and a bottom of colours that no other one wears, as far as there are colours.
+    """Give each person a top and a bottom in colours that no other person wears, as far as possible.
 
-    Colours that a person has already stay, and are not avoided by others. With more than eight people the
-    colours begin again.
+    Colours that a person has already stay, and others may get them too. With more than eight people,
+    colours repeat.
     """
     tops, bottoms = rng.permutation(_TOP_COLOURS), rng.permutation(_BOTTOM_COLOURS)
     colours = [
@@ -169,7 +169,7 @@ def _moved(path: Path, points: Sequence[tuple[float, float]]) -> Path:
 
 
 def _draw_person(rng: np.random.Generator, person: PersonSpec) -> dict[str, Any]:
-    """Sex, build, height and clothes; each is drawn even where the file gives it, so the others stay."""
+    """Sample sex, build, height and clothes; sampling given values too keeps the others unchanged."""
     sex = str(rng.choice(list(_STATURE_M)))
     build = str(rng.choice(list(_BUILDS), p=list(_BUILDS.values())))
     above = float(rng.normal())
@@ -186,7 +186,7 @@ def _draw_person(rng: np.random.Generator, person: PersonSpec) -> dict[str, Any]
 
 
 def _keep_given(drawn: Clothes, person: PersonSpec) -> dict[str, Any]:
-    """Clothes that were drawn, but what the file says."""
+    """Return the sampled clothes, with values given in the file in their place."""
     worn = {key: value for key, value in asdict(drawn).items() if value is not None}
     return _in_order(worn | (person.clothes or {}))
 
@@ -211,12 +211,12 @@ def _vary_path(person: PersonSpec, rng: np.random.Generator, can_walk: Callable[
 
 
 def _near(point: tuple[float, float], radius_m: float, rng: np.random.Generator) -> tuple[float, float]:
-    """A point drawn evenly from the disc around another."""
+    """Return a point sampled uniformly from the disc around another point."""
     distance = radius_m * math.sqrt(rng.uniform())
     angle = rng.uniform(0.0, 2.0 * math.pi)
     return point[0] + distance * math.cos(angle), point[1] + distance * math.sin(angle)
 
 
 def _rounded(value: float) -> float:
-    """To a tenth of a millimetre or millisecond: a file shows it in full."""
+    """Round to a tenth of a millimetre or millisecond, so that a file shows the value in full."""
     return round(float(value), 4)

@@ -1,4 +1,4 @@
-"""Read YAML files as plain data: no tags, no aliases, no key twice, and one-line errors."""
+"""Read YAML files as plain data: no tags, aliases or duplicate keys, and errors on one line."""
 
 import re
 from pathlib import Path
@@ -10,7 +10,7 @@ from yaml.composer import Composer
 from peopleboy.bad_input import BadInput, found_in
 
 _LARGEST_BYTES = 1_000_000
-# As in YAML 1.2: in plain YAML 1.1, 045 is thirty-seven, 1:30 is ninety, and 1e3 is a word.
+# As in YAML 1.2. In YAML 1.1, 045 is octal (37), 1:30 is sexagesimal (90), and 1e3 is a string.
 _WHOLE: Final = r"[-+]?(0|[1-9][0-9]*)"
 _NUMBERS: Final = {
     "tag:yaml.org,2002:int": re.compile(rf"{_WHOLE}$"),
@@ -22,18 +22,18 @@ _NUMBERS: Final = {
 
 
 class _Loader(Composer, yaml.CSafeLoader):
-    """Reads YAML as a person expects it: only true and false are booleans; nothing is repeated or shared.
+    """Load YAML strictly: only true and false are booleans, and keys and nodes are never repeated or shared.
 
-    libyaml parses, and its events are composed here, where each node can be looked at.
+    libyaml parses the text; its events are composed here, where each node can be checked.
     """
 
     def __init__(self, text: str) -> None:
-        """Begin to read a text."""
+        """Create a loader for a text."""
         Composer.__init__(self)
         yaml.CSafeLoader.__init__(self, text)
 
     def compose_node(self, parent: Any, index: Any) -> Any:
-        """Refuse aliases, which let a short file stand for endless data, and tags, which make objects."""
+        """Refuse aliases, which let a short file expand without limit, and tags, which create objects."""
         event: Any = self.peek_event()
         fault = None
         if isinstance(event, yaml.AliasEvent):
@@ -45,11 +45,11 @@ class _Loader(Composer, yaml.CSafeLoader):
         return super().compose_node(parent, index)
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        """Refuse a key that is given twice, of which plain YAML would keep the last."""
+        """Refuse duplicate keys; PyYAML would keep the last one."""
         seen: set[str] = set()
         for key, _ in node.value:
             if not isinstance(key, yaml.ScalarNode):
-                raise yaml.MarkedYAMLError(problem="a key must be a word", problem_mark=key.start_mark)
+                raise yaml.MarkedYAMLError(problem="a key must be a string", problem_mark=key.start_mark)
             if key.value in seen:
                 raise yaml.MarkedYAMLError(
                     problem=f"key {key.value!r} is given twice; keep one", problem_mark=key.start_mark
@@ -59,7 +59,7 @@ class _Loader(Composer, yaml.CSafeLoader):
 
 
 def _is_plain(tag: str, letter: str) -> bool:
-    """Whether a word that starts so may become a value of this tag; other words stay text."""
+    """Return whether a scalar that starts with this letter may be resolved to the tag; others stay text."""
     kind = tag.rsplit(":", 1)[-1]
     return kind not in ("timestamp", "merge") and not (kind == "bool" and letter not in "tTfF")
 
@@ -71,10 +71,10 @@ _Loader.yaml_implicit_resolvers = {
 
 
 def read_yaml(path: Path) -> dict[Any, Any]:
-    """Read a file that holds one YAML mapping.
+    """Read a file that contains one YAML mapping.
 
     Raises:
-        BadInput: the file cannot be read, is not YAML, or holds something else.
+        BadInput: the file cannot be read, is not YAML, or does not contain a mapping.
     """
     with found_in(file=str(path)):
         return _parse(_read_text(path))
@@ -87,34 +87,34 @@ def _parse(text: str) -> dict[Any, Any]:
         mark = error.problem_mark
         line = f"line {mark.line + 1}: " if mark else ""
         is_tab = mark and "".join(text.split("\n")[mark.line : mark.line + 1])[mark.column :][:1] == "\t"
-        problem = "a tab, which YAML does not take; indent by spaces" if is_tab else str(error.problem)
+        problem = "a tab, which YAML does not allow; indent with spaces" if is_tab else str(error.problem)
         raise BadInput(f"{line}{_one_line(problem)}") from error
     except RecursionError as error:
-        raise BadInput("it is nested too deeply to be a scenario") from error
+        raise BadInput("nested too deeply for a scenario") from error
     except (yaml.YAMLError, ValueError, OverflowError) as error:
         raise BadInput(f"not YAML: {_one_line(str(error))}") from error
     if data is None:
         raise BadInput("the file is empty; it must hold keys such as 'name' and 'place'")
     if not isinstance(data, dict):
-        raise BadInput(f"it holds a {type(data).__name__}, not keys such as 'name' and 'place'")
+        raise BadInput(f"must contain keys such as 'name' and 'place', got a {type(data).__name__}")
     return data
 
 
 def _read_text(path: Path) -> str:
     if path.is_dir():
-        raise BadInput("it is a folder; give a scenario file that ends in .yaml")
+        raise BadInput("is a folder; give a scenario file that ends in .yaml")
     try:
         data = path.read_bytes()
     except FileNotFoundError as error:
-        raise BadInput("there is no such file") from error
+        raise BadInput("file not found") from error
     except OSError as error:
-        raise BadInput(f"it cannot be read: {error.strerror}") from error
+        raise BadInput(f"cannot be read: {error.strerror}") from error
     if len(data) > _LARGEST_BYTES:
-        raise BadInput(f"it has {len(data)} bytes; a scenario file has at most {_LARGEST_BYTES}")
+        raise BadInput(f"has {len(data)} bytes; a scenario file has at most {_LARGEST_BYTES}")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise BadInput(f"it is not UTF-8 text (byte {error.start})") from error
+        raise BadInput(f"is not UTF-8 text (byte {error.start})") from error
 
 
 def _one_line(text: str) -> str:

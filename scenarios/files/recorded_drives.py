@@ -1,4 +1,4 @@
-"""Recorded drives: the commands of a robot that followed people, repeated without a tracker."""
+"""Recorded drives: commands of a robot that followed people, replayed without a tracker."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -14,7 +14,7 @@ from peopleboy.behaviours.behaviour import STOP, Command
 from peopleboy.behaviours.percept import Percept
 
 KEPT: Final = "drive.parquet"
-"""Where a run keeps the drive that its robot repeated."""
+"""File name in a run's folder of the drive that the robot replayed."""
 _STEPS = pa.schema(
     [
         pa.field("linear_m_s", pa.float64()),
@@ -25,7 +25,7 @@ _STEPS = pa.schema(
 
 
 class Repeat:
-    """Gives recorded commands one after the other, and looks at nothing; after the last it stops."""
+    """Behaviour that replays recorded commands, ignores all sensors, and stops after the last command."""
 
     mode = "repeat"
     reason = ""
@@ -40,12 +40,12 @@ class Repeat:
 
 
 def write_drive(path: Path, drive: Sequence[Command]) -> None:
-    """Write commands, one a control step."""
+    """Write commands, one per control step."""
     path.write_bytes(pack_drive(drive))
 
 
 def pack_drive(drive: Sequence[Command]) -> bytes:
-    """Return the file that holds these commands."""
+    """Return the contents of a file with these commands."""
     packed = BytesIO()
     rows = [asdict(command) for command in drive]
     pq.write_table(pa.Table.from_pylist(rows, schema=_STEPS), packed, compression="zstd")
@@ -53,7 +53,7 @@ def pack_drive(drive: Sequence[Command]) -> bytes:
 
 
 def read_drive(path: Path) -> tuple[Command, ...]:
-    """Read commands, one a control step; they are the same to the bit as those written.
+    """Read commands, one per control step, bit-identical to those written.
 
     Raises:
         BadInput: the file cannot be read as a drive.

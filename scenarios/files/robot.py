@@ -1,4 +1,4 @@
-"""What a scenario file says about the robot: its start, its cameras, and what drives it."""
+"""Keys of a scenario file for the robot: its start, its cameras, and its behaviour."""
 
 import math
 from collections.abc import Mapping
@@ -16,24 +16,24 @@ from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world_config import CONTROL_HZ
 
 ORACLE: Final = "truth"
-"""Name of the tracker that is given the true positions."""
+"""Name of the tracker that receives the ground-truth positions."""
 
-# Names that cameras must leave to other folders, entities and arrays.
+# Camera names that would clash with other folders, entities and arrays.
 _TAKEN: Final = ("truth", "tracks", "scene", "body", "sonar", "odometry")
-_MOST_PIXELS: Final = 1 << 23  # that trackers sum up
+_MOST_PIXELS: Final = 1 << 23  # limit of the trackers' integral images
 
 CameraName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CommandSpec:
-    """From a time on, a scripted robot drives at this velocity, or as near to it as its drive comes.
+    """A velocity command of a scripted robot, valid from a given time; the drive approximates it.
 
-    The drive does at most 0.8 m/s and 150 deg/s, and accelerates by 0.6 m/s2 and 200 deg/s2. The guard,
-    which keeps 0.45 m to what the sonars see, stops it before walls and people as it does any robot.
+    The drive reaches at most 0.8 m/s and 150 deg/s, and accelerates by 0.6 m/s2 and 200 deg/s2. The guard,
+    which keeps 0.45 m from obstacles detected by sonar, also stops a scripted robot before walls and people.
     """
 
-    from_s: Annotated[Seconds, Field(description="time from which the command holds")]
+    from_s: Annotated[Seconds, Field(description="time from which the command is valid")]
     linear_m_s: Annotated[
         float, Field(ge=-2.0, le=2.0, description="forward speed; negative is backwards")
     ] = 0.0
@@ -50,14 +50,14 @@ else:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotSpec:
-    """The robot: start position and what it does."""
+    """The robot: start position, cameras and behaviour."""
 
     at_m: Annotated[Point, meaning_of(RobotConfig, "at_m")]
     heading_deg: Annotated[float, meaning_of(RobotConfig, "heading_rad")] = 0.0
     behaviour: Annotated[
         BehaviourName,
         Field(
-            description="what drives it: "
+            description="behaviour that drives the robot: "
             + "; ".join(f"`{name}` {entry.summary}" for name, entry in BEHAVIOURS.shipped.items())
         ),
     ] = "stand"
@@ -70,48 +70,48 @@ class RobotSpec:
         Field(
             gt=0.05,
             le=1.5,
-            description="of a following robot: the person's height in the image [image heights] where it "
+            description="for a following robot: the person's height in the image [image heights] where it "
             "stops",
         ),
     ] = None
     walls_by: Annotated[
         Literal["sonar", "image"] | None,
-        Field(description="for a robot in corridors: sensor for the walls; default `sonar`"),
+        Field(description="for a robot in corridors: sensor that measures the walls; default `sonar`"),
     ] = None
     tracker: Annotated[
         str | None,
         Field(
             pattern="^[a-z][a-z0-9_-]*$",
-            description="name of the tracker by which the robot sees people, which `--tracker` overrules; "
+            description="name of the tracker that detects people for the robot; `--tracker` overrides it; "
             "if omitted, `detection`",
         ),
     ] = None
     cameras: Annotated[
         dict[CameraName, Annotated[dict[str, Any], GivenCamera()]],
         Field(
-            description="by name; `thermal` and `colour` are there anyway, and what is said of them is what "
-            "differs from the usual; any other name is a further camera"
+            description="cameras by name; `thermal` and `colour` always exist, and their entries list only "
+            "values that differ from the defaults; any other name adds a camera"
         ),
     ] = field(default_factory=dict)
 
     @model_validator(mode="before")
     @classmethod
     def _say_where_cameras_are(cls, data: Any) -> Any:
-        """Help a user who writes a camera beside `cameras`."""
+        """Explain where cameras belong if a camera is given next to `cameras`."""
         for name in ("thermal", "colour"):
             if isinstance(data, dict) and name in data:
                 raise ValueError(f"{name!r} is a camera: write cameras: {{{name}: {{kind: {name}, ...}}}}")
         return data
 
     def with_cameras(self, cameras: Mapping[str, Mapping[str, Any]]) -> "RobotSpec":
-        """Return the same robot with further cameras, or others in their place."""
+        """Return the same robot with these cameras added; cameras of the same name are replaced."""
         return replace(self, cameras={**self.cameras, **{name: dict(one) for name, one in cameras.items()}})
 
     def config(self) -> RobotConfig:
-        """Return the robot's settings: the usual ones, but for what the file changes.
+        """Return the robot's settings: the defaults, with the changes given in the file.
 
         Raises:
-            BadInput: cameras clash, or the values of one do not fit each other.
+            BadInput: cameras clash, or the values of a camera contradict each other.
         """
         usual = RobotConfig()
         own = {}
@@ -127,23 +127,23 @@ class RobotSpec:
 
 
 def check_cameras(robot: RobotSpec) -> None:
-    """Refuse cameras whose names, kinds, rates or sizes something else cannot take in later.
+    """Refuse cameras with reserved names, or with kinds, rates or sizes that trackers cannot use.
 
     Raises:
-        BadInput: with the key below `robot.cameras`.
+        BadInput: a camera is invalid; the error holds the key below `robot.cameras`.
     """
     usual = RobotConfig().cameras
     for name, given in robot.cameras.items():
         with found_in(name):
             if name in _TAKEN:
-                raise BadInput("the name is taken in what a run leaves; choose another")
+                raise BadInput("the name is reserved for files of a run; choose another")
             if name in usual and given["kind"] != name:
                 raise BadInput(
-                    f"must be {name!r}, as the tracker wants it; choose another name", key=("kind",)
+                    f"must be {name!r}, which the tracker needs; choose another name", key=("kind",)
                 )
             if name in usual and given.get("rate_hz", CONTROL_HZ) != CONTROL_HZ:
                 raise BadInput(
-                    f"must be {CONTROL_HZ}, as the tracker wants it; leave it out", key=("rate_hz",)
+                    f"must be {CONTROL_HZ}, which the tracker needs; leave it out", key=("rate_hz",)
                 )
     cameras = robot.config().cameras
     colour_from_thermal(cameras)
@@ -151,5 +151,5 @@ def check_cameras(robot: RobotSpec) -> None:
         width, height = camera.camera.width, camera.camera.height
         if width * height > _MOST_PIXELS:
             raise BadInput(
-                f"{width} x {height} pixels are too many; at most {_MOST_PIXELS} in all", key=(name,)
+                f"{width} x {height} pixels are too many; at most {_MOST_PIXELS} in total", key=(name,)
             )

@@ -1,4 +1,4 @@
-"""A scenario that was read and checked, ready to be played with any seed."""
+"""A validated scenario, ready to run with any seed."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -35,16 +35,16 @@ RENDERERS = ("raycast", "bullet")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scenario:
-    """What is to be played: a place, things, people, and a robot that does something.
+    """A scenario: a place, objects, people, and a robot with a behaviour.
 
     Attributes:
-        spec: what the file says.
-        plan: the floor.
-        place: everything that stands still.
+        spec: contents of the file.
+        plan: the floor plan.
+        place: all static objects.
         ground: where people can walk.
-        files: contents of the files of its own that it names, by path from its own folder.
-        drive: commands, one a control step, that the robot repeats instead of behaving; None to behave.
-        own_behaviour: module:Class of a user's own that drives in place of what the file says; None for that.
+        files: contents of the scenario's own files, by path relative to its folder.
+        drive: commands, one per control step, that replace the robot's behaviour; None for the behaviour.
+        own_behaviour: module:Class of a user's behaviour that replaces the file's; None for the file's.
     """
 
     spec: ScenarioSpec
@@ -56,13 +56,13 @@ class Scenario:
     own_behaviour: str | None = None
 
     def __repr__(self) -> str:
-        """Say name, duration and number of people."""
+        """Show name, duration and number of people."""
         people = counted(len(_everybody(self.spec)), "person", "people")
         return f"Scenario({self.name!r}, {self.duration_s:g} s, {people}, robot: {self.robot.behaviour})"
 
     def _repr_png_(self) -> bytes:
         """Draw the plan, for notebooks."""
-        # By name, as drawings import scenarios, and scenarios load without matplotlib.
+        # Imported late: drawings import scenarios, and scenarios must load without matplotlib.
         draw_plan = import_module("peopleboy.scenarios.drawing.draw_plan").draw_plan
         with TemporaryDirectory() as folder:
             path = Path(folder) / "plan.png"
@@ -71,41 +71,41 @@ class Scenario:
 
     @property
     def name(self) -> str:
-        """One word, for folders."""
+        """Name of the scenario, one word that is also used for folders."""
         return self.spec.name
 
     @property
     def description(self) -> str:
-        """What happens, in a sentence or two."""
+        """What happens, in one or two sentences."""
         return " ".join(self.spec.description.split())
 
     @property
     def duration_s(self) -> float:
-        """Seconds from start to end."""
+        """[s] Duration of a run."""
         return self.spec.duration_s
 
     @property
     def seed(self) -> int:
-        """The seed that everything was drawn from, in a run's own scenario file; 0 in any other."""
+        """The seed of the run that wrote this scenario file; 0 for any other file."""
         return 0 if self.spec.drawn is None else self.spec.drawn.seed
 
     @property
     def robot(self) -> RobotSpec:
-        """What the file says about the robot."""
+        """Settings of the robot in the file."""
         return self.spec.robot
 
     @property
     def tracker(self) -> str:
-        """Name of the tracker that sees people unless another one is asked for."""
-        from peopleboy.tracker.trackers import DEFAULT_TRACKER  # here, as it takes a second to load
+        """Name of the tracker that is used unless another is requested."""
+        from peopleboy.tracker.trackers import DEFAULT_TRACKER  # here, as it takes a second to import
 
         return self.robot.tracker or DEFAULT_TRACKER
 
     def people(self, seed: int) -> tuple[PersonSpec, ...]:
-        """Everybody, groups included, with all that the seed decides.
+        """Return all people, including group members, resolved with a seed.
 
         Raises:
-            BadInput: a negative seed.
+            BadInput: the seed is negative.
         """
         if seed < 0:
             raise BadInput(f"seed {seed} must be 0 or more")
@@ -119,10 +119,10 @@ class Scenario:
         )
 
     def world(self, seed: int, renderer: str = "raycast") -> WorldConfig:
-        """Settings of the world; the same seed gives equal settings.
+        """Return the settings of the world; the same seed gives equal settings.
 
         Raises:
-            BadInput: a negative seed or an unknown renderer.
+            BadInput: the seed is negative, or the renderer is unknown.
         """
         if renderer not in RENDERERS:
             raise BadInput(f"unknown renderer {renderer!r}; choose from {', '.join(RENDERERS)}")
@@ -137,13 +137,13 @@ class Scenario:
         )
 
     def mounting(self, cameras: Sequence[str]) -> "Scenario":
-        """The same scenario, but its robot also carries these cameras: those that it lacks, with defaults.
+        """Return the same scenario with these cameras mounted on the robot; new ones get default settings.
 
         Args:
-            cameras: names, each of a camera that the robot carries or of a kind of camera.
+            cameras: names, each of a camera on the robot or of a kind of camera.
 
         Raises:
-            BadInput: the robot has no camera of a name, and there is no such kind.
+            BadInput: a name is neither a camera of the robot nor a kind of camera.
         """
         lacking = [name for name in dict.fromkeys(cameras) if name not in self.robot.config().cameras]
         if not lacking:
@@ -151,30 +151,30 @@ class Scenario:
         for name in lacking:
             if name not in KINDS:
                 raise BadInput(
-                    f"camera {name!r}: the tracker wants it, but no kind of camera has that name "
-                    f"({', '.join(KINDS)} have); mount one in robot.cameras"
+                    f"camera {name!r}: the tracker needs it, but there is no kind of camera with that name "
+                    f"(kinds: {', '.join(KINDS)}); mount one in robot.cameras"
                 )
         return self.with_cameras({name: {"kind": name} for name in lacking})
 
     def with_cameras(self, cameras: Mapping[str, Mapping[str, object]]) -> "Scenario":
-        """The same scenario, but its robot carries these cameras, in place of any that have their names."""
+        """Return the same scenario with these cameras on the robot; cameras of the same name are replaced."""
         return replace(self, spec=replace(self.spec, robot=self.robot.with_cameras(cameras)))
 
     def lasting(self, duration_s: float) -> "Scenario":
-        """The same scenario, but shorter or longer."""
+        """Return the same scenario with another duration."""
         return replace(self, spec=replace(self.spec, duration_s=duration_s))
 
     def driven(self, drive: Sequence[Command]) -> "Scenario":
-        """The same scenario, but the robot repeats recorded commands."""
+        """Return the same scenario with a robot that replays recorded commands."""
         return replace(self, drive=tuple(drive))
 
     def steered_by(self, behaviour: str) -> "Scenario":
-        """The same scenario, but another behaviour drives the robot.
+        """Return the same scenario with another behaviour for the robot.
 
-        One of your own, by module:Class, does not get into the file: its task is that of the file's.
+        A user's behaviour, given as module:Class, is not written to the file; the task stays the file's.
 
         Raises:
-            BadInput: there is no such behaviour.
+            BadInput: the behaviour is unknown.
         """
         make_behaviour(behaviour)  # refuses an unknown name
         if is_own(behaviour):
@@ -183,17 +183,17 @@ class Scenario:
         return replace(self, spec=replace(self.spec, robot=robot), drive=None, own_behaviour=None)
 
     def moved_by(self, physics: PhysicsName | str) -> "Scenario":
-        """The same scenario, but other physics move the robot.
+        """Return the same scenario with other physics for the robot.
 
         Raises:
-            BadInput: there are no such physics.
+            BadInput: the physics are unknown.
         """
         if physics not in PHYSICS:
             raise BadInput(f"unknown physics {physics!r}; choose from {', '.join(PHYSICS)}")
         return replace(self, spec=replace(self.spec, physics=physics))
 
     def make_behaviour(self) -> Behaviour:
-        """What drives the robot, fresh from the start."""
+        """Return a new instance of the behaviour that drives the robot."""
         if self.drive is not None:
             return Repeat(self.drive)
         script = [
@@ -208,22 +208,22 @@ class Scenario:
         )
 
     def follow_config(self) -> FollowConfig:
-        """Gains and heights of a robot that follows a person."""
+        """Return gains and heights of a robot that follows a person."""
         keep_height = self.robot.keep_height
         return FollowConfig() if keep_height is None else FollowConfig(keep_height=keep_height)
 
     def corridor_config(self) -> FollowCorridorConfig:
-        """The sensor that measures the walls of a corridor, and its colour camera."""
+        """Return the settings for following a corridor: the sensor that measures walls, and the camera."""
         camera = flat_geometry(self.robot.config().cameras, "colour")
         view = CorridorCamera(focal_px=camera.focal_px, position_m=camera.position_m)
         return FollowCorridorConfig(sense=self.robot.walls_by or "sonar", camera=view)
 
     def resolved(self, seed: int, versions: dict[str, str] | None = None) -> dict[str, Any]:
-        """The scenario as plain data with everything drawn; beside `kept_files` it gives the same world.
+        """Return the resolved scenario as plain data; together with `kept_files` it gives the same world.
 
         Args:
-            seed: of the run.
-            versions: of the packages, by name, to be kept beside the seed.
+            seed: seed of the run.
+            versions: package versions by name, stored with the seed.
         """
         drawn = DrawnSpec(
             seed=seed,
@@ -233,7 +233,7 @@ class Scenario:
         return to_data(replace(self.spec, people=self.people(seed), groups=(), drawn=drawn))
 
     def kept_files(self) -> dict[str, bytes]:
-        """Contents of all files that must lie beside the resolved scenario, by path from it."""
+        """Return the contents of all files that the resolved scenario refers to, by relative path."""
         return dict(self.files) | ({} if self.drive is None else {KEPT: pack_drive(self.drive)})
 
 
@@ -241,11 +241,11 @@ def make_scenario(spec: ScenarioSpec, folder: Path) -> Scenario:
     """Build and check everything that does not depend on the seed.
 
     Args:
-        spec: what the file says.
-        folder: where the file lies.
+        spec: contents of the file.
+        folder: folder of the file.
 
     Raises:
-        BadInput: something cannot be; the message begins with the key, or is about a file beside.
+        BadInput: the scenario is invalid; the message starts with the key or with the file it refers to.
     """
     everybody = _everybody(spec)
     with found_in("place"):
@@ -273,7 +273,7 @@ def make_scenario(spec: ScenarioSpec, folder: Path) -> Scenario:
 
 
 def _everybody(spec: ScenarioSpec) -> tuple[tuple[Key, PersonSpec], ...]:
-    """All people with the keys that stand for them in the file."""
+    """Return all people with their keys in the file."""
     found: list[tuple[Key, PersonSpec]] = [
         (("people", index), person) for index, person in enumerate(spec.people)
     ]

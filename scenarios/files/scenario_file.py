@@ -1,7 +1,7 @@
-"""The whole of a scenario file: every key with its unit, its limits, its default and its meaning.
+"""Schema of a scenario file: every key with its unit, limits, default and description.
 
-Lengths in metres, angles in degrees, times in seconds, temperatures in degC: the key's last letters say so.
-x points forward from where the place begins, y to the left; headings count from x to the left.
+Lengths are in metres, angles in degrees, times in seconds, temperatures in degC; keys end in their unit.
+x points forward from the start of the place, y to the left; headings are counted from x to the left.
 """
 
 from dataclasses import dataclass, field
@@ -23,7 +23,7 @@ Failure = Literal["camera_frozen", "camera_black", "tracker_raises", "sonar_maxi
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LightSpec:
-    """Level of the room's light from a time on."""
+    """A change of the room's light."""
 
     at_s: Annotated[Seconds, Field(description="time of the change")]
     level: Annotated[float, Field(ge=0.0, le=2.0, description="0 is dark, 1 is full light")]
@@ -31,27 +31,29 @@ class LightSpec:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FaultSpec:
-    """A temporary failure."""
+    """A temporary failure of a sensor or of the tracker."""
 
     kind: Annotated[
         Failure,
         Field(
-            description="`camera_frozen`: the cameras give the last images again and again; `camera_black`: "
-            "they give black ones; `tracker_raises`: the tracker fails at every image; `sonar_maximum`: all "
-            "sonars say that there is nothing; `odometry_jumps`: the odometry's pose jumps at once, and "
-            "again every second"
+            description="`camera_frozen`: the cameras repeat their last images; `camera_black`: the cameras "
+            "give black images; `tracker_raises`: the tracker raises an error at every image; "
+            "`sonar_maximum`: all sonars report their maximum range; `odometry_jumps`: the odometry pose "
+            "jumps at once, and again every second"
         ),
     ]
-    from_s: Annotated[Seconds, Field(description="when it begins")]
-    lasts_s: Annotated[Seconds | None, Field(description="if omitted, it lasts to the end")] = None
+    from_s: Annotated[Seconds, Field(description="start of the failure")]
+    lasts_s: Annotated[
+        Seconds | None, Field(description="duration of the failure; if omitted, until the end of the run")
+    ] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrawnSpec:
-    """In a run folder: where sampled values come from."""
+    """Written by a run: the origin of the sampled values."""
 
-    seed: Annotated[int, Field(ge=0, description="of the run")]
-    versions: Annotated[dict[str, str], Field(description="of the packages on which the bytes depend")] = (
+    seed: Annotated[int, Field(ge=0, description="seed of the run")]
+    versions: Annotated[dict[str, str], Field(description="versions of packages that affect the output")] = (
         field(default_factory=dict)
     )
     drive: Annotated[
@@ -68,7 +70,7 @@ class DrawnSpec:
 class ScenarioSpec:
     """A scenario file."""
 
-    name: Annotated[Word, Field(description="one word, for folders")]
+    name: Annotated[Word, Field(description="name of the scenario, one word; also used for folders")]
     description: Annotated[
         str,
         Field(
@@ -79,21 +81,21 @@ class ScenarioSpec:
     ]
     like: Annotated[
         Word | None,
-        Field(description="a scenario of the library, whose keys replace those that this file omits"),
+        Field(description="library scenario that supplies the keys omitted in this file"),
     ] = None
     duration_s: Annotated[float, Field(gt=0.0, le=36000.0, description="duration of a run")]
-    place: Annotated[PlaceConfig, Field(description="the room or corridor")]
+    place: Annotated[PlaceConfig, Field(description="the room, corridor or street")]
     things: Annotated[
         tuple[ThingConfig, ...],
         Field(strict=False, max_length=300, description="objects in the place"),
     ] = ()
     people: Annotated[
         tuple[PersonSpec, ...],
-        Field(strict=False, max_length=60, description="people who walk through the place"),
+        Field(strict=False, max_length=60, description="people in the place"),
     ] = ()
     groups: Annotated[
         tuple[GroupSpec, ...],
-        Field(strict=False, max_length=20, description="people who walk side by side"),
+        Field(strict=False, max_length=20, description="groups of people who walk side by side"),
     ] = ()
     clothes_differ: Annotated[
         bool,
@@ -102,16 +104,16 @@ class ScenarioSpec:
     detail: Annotated[
         Detail,
         Field(
-            description="how finely people and surfaces are drawn: `full` is nearer to real images, "
-            "`plain` is quicker and keeps the bytes of older files"
+            description="level of detail of people and surfaces: `full` is closer to real images, "
+            "`plain` is faster and reproduces the images of older files"
         ),
     ] = "plain"
     physics: Annotated[
         PhysicsName,
         Field(
-            description="what moves the robot: `bullet` has the dynamics of PyBullet, which must be "
-            "installed; `kinematic` lets it roll without slip, needs no PyBullet and is quicker; if omitted, "
-            "it is `bullet`, or `kinematic` where PyBullet is not installed",
+            description="physics of the robot: `bullet` simulates dynamics and needs PyBullet; `kinematic` "
+            "rolls without slip, is faster and does not need PyBullet; if omitted, `bullet` if PyBullet is "
+            "installed, otherwise `kinematic`",
             json_schema_extra={"default": "bullet"},
         ),
     ] = field(default_factory=default_physics)
@@ -119,10 +121,10 @@ class ScenarioSpec:
         tuple[LightSpec, ...],
         Field(
             strict=False,
-            description="steps of the room's light, in the order of time; if omitted, it is full light",
+            description="changes of the room's light, in order of time; if omitted, full light",
         ),
     ] = ()
-    robot: Annotated[RobotSpec, Field(description="start position and what it does")]
+    robot: Annotated[RobotSpec, Field(description="start position, cameras and behaviour of the robot")]
     faults: Annotated[
         tuple[FaultSpec, ...],
         Field(strict=False, max_length=50, description="sensor and tracker failures, to test a controller"),
@@ -131,7 +133,7 @@ class ScenarioSpec:
 
 
 def to_data(spec: ScenarioSpec) -> dict[str, Any]:
-    """Return a scenario as plain data, as its file may hold it; keys without a value are left out."""
+    """Return a scenario as plain data for a file; keys without a value are left out."""
     data: dict[str, Any] = TypeAdapter(ScenarioSpec).dump_python(
         spec, mode="json", by_alias=True, exclude_none=True
     )
@@ -139,7 +141,7 @@ def to_data(spec: ScenarioSpec) -> dict[str, Any]:
 
 
 def json_schema() -> dict[str, Any]:
-    """Return the JSON schema of scenario files, for editors; one that is `like` another leaves keys out."""
+    """Return the JSON schema of scenario files, for editors; with `like`, required keys may be omitted."""
     schema = TypeAdapter(ScenarioSpec).json_schema()
     required = schema.pop("required")
     return schema | {"anyOf": [{"required": required}, {"required": ["name", "description", "like"]}]}

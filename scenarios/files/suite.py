@@ -1,4 +1,4 @@
-"""Suites: lists of scenarios with seeds, such as the data sets that stand for those of the thesis."""
+"""Suites: lists of scenarios with seeds, such as the data sets modelled on those of the thesis."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -22,18 +22,19 @@ DRIVES = SUITES / "drives"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EntrySpec:
-    """A scenario of a suite, played once with each seed."""
+    """A scenario of a suite, run once with each seed."""
 
     scenario: Annotated[Word, Field(description="name in the library")]
     seeds: Annotated[
-        tuple[Annotated[int, Field(ge=0)], ...], Field(strict=False, min_length=1, description="of the runs")
+        tuple[Annotated[int, Field(ge=0)], ...],
+        Field(strict=False, min_length=1, description="seeds of the runs"),
     ]
     duration_s: Annotated[
-        float | None, Field(gt=0.0, le=36000.0, description="where the scenario's own will not do")
+        float | None, Field(gt=0.0, le=36000.0, description="duration that replaces the scenario's own")
     ] = None
     repeats_drive: Annotated[
         bool,
-        Field(description="whether the robot repeats the drive kept for this suite, scenario and seed"),
+        Field(description="whether the robot replays the drive stored for this suite, scenario and seed"),
     ] = False
 
 
@@ -42,21 +43,21 @@ class EntrySpec:
 class SuiteSpec:
     """A suite file."""
 
-    name: Annotated[Word, Field(description="one word, for folders")]
-    description: Annotated[str, Field(min_length=1, max_length=1000, description="what it is for")]
-    runs: Annotated[tuple[EntrySpec, ...], Field(strict=False, min_length=1, description="what is played")]
+    name: Annotated[Word, Field(description="name of the suite, one word; also used for folders")]
+    description: Annotated[str, Field(min_length=1, max_length=1000, description="purpose of the suite")]
+    runs: Annotated[tuple[EntrySpec, ...], Field(strict=False, min_length=1, description="scenarios to run")]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SuiteRun:
-    """One run of a suite: a scenario, as long as the suite wants it, with a seed."""
+    """One run of a suite: a scenario, with the suite's duration, and a seed."""
 
     scenario: Scenario
     seed: int
 
     @property
     def name(self) -> str:
-        """Its folder's name."""
+        """Name of the run's folder."""
         return f"{self.scenario.name}-{self.seed}"
 
 
@@ -64,7 +65,7 @@ def load_suite(name: str) -> SuiteSpec:
     """Read a suite by its name.
 
     Raises:
-        BadInput: there is no such suite, or its file is wrong.
+        BadInput: the suite is unknown, or its file is invalid.
     """
     if name not in suite_names():
         raise BadInput(f"unknown suite {name!r}; {hint(name, suite_names())}")
@@ -77,8 +78,8 @@ def runs_of(suite: SuiteSpec, *, with_drives: bool = True) -> Iterator[SuiteRun]
     """Yield every run of a suite.
 
     Args:
-        suite: which.
-        with_drives: whether robots repeat recorded drives, where the suite says so.
+        suite: the suite.
+        with_drives: whether robots replay recorded drives where the suite asks for it.
 
     Raises:
         BadInput: a scenario or a drive is missing.
@@ -94,5 +95,5 @@ def runs_of(suite: SuiteSpec, *, with_drives: bool = True) -> Iterator[SuiteRun]
 
 
 def drive_path(suite: str, scenario: str, seed: int) -> Path:
-    """Where the drive of a suite's run is kept."""
+    """Return the path of the recorded drive of a suite's run."""
     return DRIVES / f"{suite}-{scenario}-{seed}.parquet"

@@ -1,4 +1,4 @@
-"""Make settings of the plain data of a file, and explain in one line what is wrong with them."""
+"""Make settings from the plain data of a file, and explain errors in one line."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -28,7 +28,7 @@ M = TypeVar("M")
 
 _MOST_FAULTS = 3
 _UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
-_TAGS = ("word", "list")  # of the settings' own unions
+_TAGS = ("word", "list")  # tags of the unions that the settings declare
 
 _LIMITS = {
     "greater_than": "must be greater than {gt:g}",
@@ -52,38 +52,38 @@ _LIMITS = {
 }
 
 STRICT: Final = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
-"""Refuses unknown keys, numbers written as text, NaN and infinity."""
+"""Configuration that refuses unknown keys, numbers written as text, NaN and infinity."""
 
 
 class Strict(BaseModel):
-    """A model of data that are no settings of a simulator, as strict as those."""
+    """A strict model for data that are not settings of the simulator."""
 
     model_config = STRICT
 
 
 class Given:
-    """Marks a mapping that holds those keys of a settings class that a file gives, and no others."""
+    """Mark a mapping that holds only those keys of a settings class that the file gives."""
 
     def __init__(self, config: type[Any], what: str, *, shows_defaults: bool) -> None:
         settings = settings_of(config)
         self.models = (_keys_model(config.__name__, what, settings, shows_defaults=shows_defaults),)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Take a mapping as its model does, and keep what is given."""
+        """Validate a mapping with the model, and keep only the given keys."""
         del source
         return _kept(handler.generate_schema(self.models[0]))
 
 
 class GivenCamera:
-    """Marks a mapping that holds the keys of a camera that a file gives: `kind`, and others of that kind."""
+    """Mark a mapping that holds only the given keys of a camera: `kind`, and keys of that kind."""
 
     @property
     def models(self) -> tuple[type[BaseModel], ...]:
-        """The keys of each kind of camera that there is now."""
+        """One model for each registered kind of camera."""
         return tuple(_camera_model(name, kind) for name, kind in KINDS.items())
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        """Take a mapping as the model of its kind does, and keep what is given."""
+        """Validate a mapping with the model of its kind, and keep only the given keys."""
         del source
         kinds: Any = Union[self.models]  # noqa: UP007
         return _kept(handler.generate_schema(Annotated[kinds, Field(discriminator="kind")]))
@@ -102,7 +102,7 @@ def _camera_model(name: str, kind: CameraKind) -> type[BaseModel]:
     about = (kind.config.__doc__ or "").partition("\n")[0]
     own = settings_of(kind.config)
     camera = kind.config().camera
-    # A kind's usual geometry may differ from what the class of geometries takes for usual.
+    # The default geometry of a kind may differ from the defaults of its geometry class.
     geometry = [
         replace(one, default=one.to_key(getattr(camera, one.field))) for one in settings_of(type(camera))
     ]
@@ -122,7 +122,7 @@ def _keys_model(
     shows_defaults: bool,
     extra: Mapping[str, Any] | None = None,
 ) -> type[BaseModel]:
-    """Make a model of the keys of settings, all of which may be left out."""
+    """Make a model of the keys of some settings; every key is optional."""
     fields = {
         setting.key: (
             _type_of(setting) | None,
@@ -152,7 +152,7 @@ def _type_of(setting: Setting) -> Any:
 
 
 def _plain(setting: Setting) -> Any:
-    """A default as JSON has it; None where it is no plain value."""
+    """Return a default as plain JSON data; None if it has no plain form."""
     default = setting.default
     if isinstance(default, float):
         return round(default, 4)
@@ -162,17 +162,17 @@ def _plain(setting: Setting) -> Any:
 
 
 def validated(kind: type[M], data: object) -> M:
-    """Make settings of plain data.
+    """Make settings from plain data.
 
     Args:
         kind: a dataclass with settings, or a model.
-        data: what a file says, or settings that are checked already.
+        data: contents of a file, or settings that are already validated.
 
     Raises:
-        BadInput: with where and what the faults are, at most three, misspelt keys first.
+        BadInput: the data are invalid; the message locates up to three faults, misspelt keys first.
     """
     try:
-        # Packages may register kinds of cameras while a program runs, and a kind may be replaced.
+        # Kinds of cameras can be registered or replaced at run time, so they are part of the cache key.
         settings: M = _validator(cast(Any, kind), tuple(KINDS.items())).validate_python(data)
     except ValidationError as error:
         raise _explain(error, kind) from error
@@ -186,13 +186,13 @@ def _validator(kind: Any, cameras: tuple[tuple[str, CameraKind], ...]) -> Schema
 
 
 def config_of(kind: Any) -> ConfigDict | None:
-    """Return what `TypeAdapter` needs to know; classes say themselves how strict they are."""
+    """Return the configuration for a `TypeAdapter`; None for classes, which have their own."""
     is_class = isinstance(kind, type) and (is_dataclass(kind) or issubclass(kind, BaseModel))
     return None if is_class else STRICT
 
 
 def _takes_mappings(schema: Any) -> Any:
-    """Let dataclasses be made of mappings, which a strict one refuses, while their values stay strict."""
+    """Allow dataclasses to be made from mappings, which strict mode refuses; their values stay strict."""
     if isinstance(schema, dict):
         inner = {key: value if key == "metadata" else _takes_mappings(value) for key, value in schema.items()}
         return inner | {"strict": False} if schema.get("type") == "dataclass" else inner
@@ -211,7 +211,7 @@ def _explain(error: ValidationError, model: Any) -> BadInput:
 
 
 def _is_echo(fault: Any, faults: Sequence[Any]) -> bool:
-    """Whether a list only seems too short because an entry of it is wrong."""
+    """Return whether a list only seems too short because one of its entries is invalid."""
     place = fault["loc"]
     return any(len(other["loc"]) > len(place) and other["loc"][: len(place)] == place for other in faults)
 
@@ -228,7 +228,7 @@ def _explain_one(fault: Any, model: Any) -> BadInput:
         return BadInput(f"unknown key {steps[-1]!r}; {hint(str(steps[-1]), owner)}", key=steps[:-1])
     if kind == "value_error" and isinstance(context["error"], BadInput):
         return context["error"].within(*steps)
-    if steps and steps[-1] == "[key]":  # pydantic's, of a key that is wrong itself
+    if steps and steps[-1] == "[key]":  # pydantic appends it if a key itself is invalid
         steps = steps[:-1]
     label = next((step for step in reversed(steps) if isinstance(step, str)), "value")
     if "colours" in steps:
@@ -246,7 +246,7 @@ def _what(kind: str, context: Any, fault: Any, label: str) -> str:
         what = context.get("discriminator", label).strip("'")
         return f"unknown {what} {word!r}; {hint(str(word), known)}"
     if kind == "string_pattern_mismatch" and label in ("tracker", "behaviour") and ":" in fault["input"]:
-        return f"{value} is a class of your own, which no file names; give --{label} {fault['input']} instead"
+        return f"{value} is your own class, which a file cannot name; give --{label} {fault['input']} instead"
     if kind == "string_pattern_mismatch":
         return f"{value} is not a name: use letters, digits, _ and start with a letter"
     if kind == "missing":
@@ -264,7 +264,7 @@ def _shown(value: Any) -> str:
 
 
 def _follow(loc: Sequence[str | int], model: Any) -> tuple[Key, list[str], list[str], list[str]]:
-    """Drop pydantic's tags of unions from a path, and list the keys, kinds and words known at its end."""
+    """Drop pydantic's union tags from a path, and list the keys, kinds and words valid at its end."""
     steps: list[str | int] = []
     known: list[str] = []
     types: list[Any] = list(_inside(model))
@@ -280,7 +280,7 @@ def _follow(loc: Sequence[str | int], model: Any) -> tuple[Key, list[str], list[
             known = [key for candidate in models for key in _keys(candidate)]
             fields = [_keys(candidate)[step] for candidate in models if step in _keys(candidate)]
             types = [inner for annotation in fields for inner in _inside(annotation)] if fields else types
-            # What follows is a key, however much it looks like a tag, and then inside its value.
+            # In a mapping the next step is a key, even if it equals a tag; the step after it is in the value.
             is_key = any(_is_mapping(annotation) for annotation in fields)
         else:
             is_key = False
@@ -289,7 +289,7 @@ def _follow(loc: Sequence[str | int], model: Any) -> tuple[Key, list[str], list[
 
 
 def _keys(candidate: Any) -> Mapping[str, Any]:
-    """The types of the keys of settings or of a model, by key; none of anything else."""
+    """Return the types of the keys of settings or of a model, by key; empty for anything else."""
     if not isinstance(candidate, type):
         return {}
     if is_dataclass(candidate):
@@ -300,7 +300,7 @@ def _keys(candidate: Any) -> Mapping[str, Any]:
 
 
 def _is_mapping(annotation: Any) -> bool:
-    """Whether a value is a mapping of names to values, not one of a known few keys."""
+    """Return whether a value is a mapping with arbitrary keys."""
     kind = get_args(annotation)[0] if get_origin(annotation) is Annotated else annotation
     return get_origin(kind) is dict and not _given(annotation)
 
@@ -316,7 +316,7 @@ def _given(annotation: Any) -> tuple[type[BaseModel], ...]:
 
 
 def _inside(annotation: Any) -> list[Any]:
-    """All types that an annotation is made of."""
+    """Return all types that an annotation consists of."""
     if given := _given(annotation):
         return list(given)
     arguments = getattr(annotation, "__args__", ())
