@@ -96,9 +96,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         render_mode: "rgb_array" for `render`; "human" to show every step in rerun's viewer, a window, or a
             page whose address is printed if there is no screen; or None.
         physics: "bullet", or "kinematic", which is faster and needs no PyBullet; None for the scenario's.
-        physics_hz: physics steps per second, a multiple of 15; None for that of a run, 240. For the speedup
-            at 60, and the resulting deviation of the robot's path, run `python -m
-            benchmarks.speed.environments`.
+        physics_hz: physics steps per second, a multiple of 15; None for that of a run, 240. The benchmark
+            `benchmarks.speed.environments` prints the speedup at 60 and the error of the robot's path.
         normalise: whether to scale numbers to -1..1, see `Normaliser` in
             `peopleboy.scenarios.environments.observations`.
         max_episode_steps: steps after which an episode is truncated, if the scenario does not end before;

@@ -16,8 +16,8 @@ action:
     collision = -10                                          once; the episode ends
     lost      = -10                                          once; the episode ends
 
-"follow" includes keep and face, "corridor" includes progress and centre, "patrol" includes keep and face while
-the person is seen, and progress and centre otherwise; all three include the other terms.
+"follow" includes keep and face, "corridor" includes progress and centre, "patrol" includes keep and face
+while the person is seen, and progress and centre otherwise; all three include the other terms.
 """
 
 import math

@@ -141,7 +141,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         if not (isinstance(num_envs, int | np.integer) and num_envs >= 1):
             raise BadInput(f"num_envs {num_envs!r}: must be 1 or more")
         if settings.get("render_mode") is not None:
-            raise BadInput("render_mode: a vector environment does not render; leave it out, or make a single one")
+            raise BadInput("render_mode: a vector environment does not render; leave it out")
         if "autoreset_mode" in settings:
             raise BadInput(
                 "autoreset_mode: only gymnasium's own vector environments take it; "

@@ -1,1 +1,1 @@
-"""The closed loop, tick by tick, with its events, faults and the oracle."""
+"""The closed loop, step by step, with its events, faults and the oracle tracker."""

@@ -1,4 +1,4 @@
-"""Faults of sensors and tracker that a scenario asks for, to see what a controller makes of them."""
+"""Simulate the sensor and tracker faults of a scenario, to test how controllers cope with them."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -23,7 +23,7 @@ JUMP = Pose2(x=0.7, y=-0.4, heading=math.radians(50.0))
 
 
 class FaultySensors:
-    """A world whose sensors fail as a scenario says; the truth stays the truth."""
+    """A world whose sensors fail as the scenario asks; the ground truth stays correct."""
 
     def __init__(self, world: Stage, faults: Sequence[FaultSpec], sonar_reach_m: float) -> None:
         self._world = world
@@ -33,7 +33,7 @@ class FaultySensors:
         self._last: Mapping[str, NDArray[Any]] = {}
 
     def observe(self) -> Observation:
-        """Read every sensor once, and spoil what is to be spoilt."""
+        """Read every sensor once, and apply the active faults."""
         seen = self._world.observe()
         now = active(self._faults, seen.time_s)
         if self._may_freeze:
@@ -49,11 +49,11 @@ class FaultySensors:
 
     @property
     def cameras(self) -> Mapping[str, CameraConfig]:
-        """What the robot carries, by name."""
+        """Cameras of the robot, by name."""
         return self._world.cameras
 
     def truths(self) -> Mapping[str, Truth]:
-        """Return what is true at this instant, by camera that takes an image."""
+        """Return the ground truth of this instant, by camera that takes an image."""
         return self._world.truths()
 
     def step(self, linear_m_s: float, angular_rad_s: float, *, is_emergency: bool = False) -> None:
@@ -61,7 +61,7 @@ class FaultySensors:
         self._world.step(linear_m_s, angular_rad_s, is_emergency=is_emergency)
 
     def _freeze(self, images: Mapping[str, NDArray[Any]], *, is_frozen: bool) -> Mapping[str, NDArray[Any]]:
-        """Return the images of now, or those that each camera gave last; these must all be read in time."""
+        """Return current or frozen images; reads all images, to have the last ones when a freeze begins."""
         old = self._last if is_frozen else {}
         now = {name: old[name] if name in old else images[name] for name in images}
         self._last = {**self._last, **now}
@@ -69,7 +69,7 @@ class FaultySensors:
 
 
 class FaultyTracker:
-    """A tracker that raises an error at every image for as long as a scenario says."""
+    """A tracker that raises an error at every image while the scenario's fault is active."""
 
     def __init__(self, tracker: Tracker, faults: Sequence[FaultSpec]) -> None:
         self._tracker = tracker
@@ -77,24 +77,24 @@ class FaultyTracker:
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """Those of the tracker."""
+        """Cameras that the wrapped tracker needs."""
         return self._tracker.cameras
 
     @property
     def knows_again(self) -> bool:
-        """Whether the tracker does."""
+        """Whether the wrapped tracker re-identifies people."""
         return knows_again(self._tracker)
 
     @property
     def explanation(self) -> object:
-        """That of the tracker."""
+        """Explanation of the wrapped tracker."""
         return explanation_of(self._tracker)
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Take in the next frame, or fail.
+        """Update the tracker with the next frame, or fail.
 
         Raises:
-            TrackerDown: the scenario wants it.
+            TrackerDown: the fault is active.
         """
         if "tracker_raises" in active(self._faults, frame.time_s):
             raise TrackerDown("RuntimeError: as the scenario asks")
@@ -102,7 +102,7 @@ class FaultyTracker:
 
 
 def active(faults: Sequence[FaultSpec], time_s: float) -> dict[str, float]:
-    """Return which faults there are at a time, and for how long [s] each has lasted."""
+    """Return the faults that are active at a time, with the time [s] since each began."""
     return {
         fault.kind: time_s - fault.from_s
         for fault in faults
@@ -111,15 +111,15 @@ def active(faults: Sequence[FaultSpec], time_s: float) -> dict[str, float]:
 
 
 def _blackened(image: NDArray[Any]) -> NDArray[Any]:
-    """Darken an 8-bit image, and let depth read nothing; what has numbers beside an image stays."""
+    """Blacken an 8-bit or 16-bit image; images with other values, such as temperatures, stay."""
     if image.dtype not in (np.uint8, np.uint16):
         return image
     is_grey = image.ndim == 2 and image.dtype == np.uint8
-    return image & np.uint8(1) if is_grey else np.zeros_like(image)  # dead grey still flickers
+    return image & np.uint8(1) if is_grey else np.zeros_like(image)  # a dead grey camera still has noise
 
 
 def _jumped(pose: Pose2, lasted_s: float) -> Pose2:
-    """Return an odometry that has jumped once, and again every second."""
+    """Return the odometry after a jump at the start of the fault and one every second since."""
     jumps = 1 + int(lasted_s / JUMP_EVERY_S)
     return Pose2(
         pose.x + jumps * JUMP.x,

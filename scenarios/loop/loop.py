@@ -1,4 +1,4 @@
-"""The closed loop: senses become tracks, tracks become a command, and the command moves the world."""
+"""The closed loop: the tracker processes images, the behaviour chooses a command, the world advances."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -25,14 +25,15 @@ from peopleboy.tracker.trackers import Tracker, explanation_of, knows_again, mak
 
 
 def thermal_box(track: Track, calibration: Calibration) -> Box | None:
-    """Return a track's own box, or that of a person who stands at its place; None for one without a place.
+    """Return a track's box in the thermal image, or the box of a standing person at its floor position.
 
     Args:
-        track: whose.
-        calibration: of the thermal camera.
+        track: the track.
+        calibration: calibration of the thermal camera.
 
     Returns:
-        left, top, width, height [px], which may lie outside the image: to that side the person is then.
+        left, top, width, height [px], possibly outside the image, on the side where the person is; None
+        without box and floor position.
     """
     if THERMAL in track.boxes:
         return track.boxes[THERMAL]
@@ -44,19 +45,19 @@ Images = Mapping[str, NDArray[Any]]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Tick:
-    """One turn of the loop: everything that was sensed, true, tracked and decided at one instant.
+    """One step of the loop: everything sensed, true, tracked and decided at one instant.
 
     Attributes:
         frame: 1, 2, ...
-        observation: what the robot sensed.
-        truths: what was true, by camera that took an image at this instant; those of other cameras than
-            `thermal` are made when first asked for, which must be before the next tick.
-        tracks: what the tracker made of the images.
-        explanation: its explanation beyond its tracks, to be drawn by its type; None for nothing.
-        mode: what the behaviour was doing, such as "search" or "follow".
+        observation: the robot's sensor readings.
+        truths: ground truth by camera that took an image at this instant; for cameras other than `thermal` it
+            is computed when first accessed, which must be before the next tick.
+        tracks: output of the tracker.
+        explanation: the tracker's explanation, drawn according to its type; None for none.
+        mode: mode of the behaviour, such as "search" or "follow".
         command: the robot's next command.
-        reason: why the behaviour was doing that.
-        following: number of the track that the robot follows; None if it follows nobody.
+        reason: reason for the mode.
+        following: id of the track that the robot follows; None for none.
     """
 
     frame: int
@@ -71,12 +72,12 @@ class Tick:
 
     @property
     def truth(self) -> Truth:
-        """What was true, boxes and masks in the thermal image."""
+        """Ground truth for the thermal camera, with its boxes and masks."""
         return self.truths["thermal"]
 
 
 class Stage(Protocol):
-    """Where the robot is: a world, or one whose sensors have faults."""
+    """A world to run the loop in, possibly with sensor faults."""
 
     def observe(self) -> Observation:
         """Read every sensor once."""
@@ -84,11 +85,11 @@ class Stage(Protocol):
 
     @property
     def cameras(self) -> Mapping[str, CameraConfig]:
-        """What the robot carries, by name."""
+        """Cameras of the robot, by name."""
         ...
 
     def truths(self) -> Mapping[str, Truth]:
-        """Return what is true at this instant, by camera that takes an image."""
+        """Return the ground truth of this instant, by camera that takes an image."""
         ...
 
     def step(self, linear_m_s: float, angular_rad_s: float, *, is_emergency: bool = False) -> None:
@@ -97,14 +98,14 @@ class Stage(Protocol):
 
 
 class TrackerDown(RuntimeError):  # noqa: N818
-    """A tracker is out of order, which the robot is to get over: it drives on without anybody in sight."""
+    """The tracker fails temporarily; the robot must continue without tracks."""
 
 
 class Perception:
-    """The tracker, and whether what it says can be relied on: images may stay out, and it may be down.
+    """Run the tracker, and detect missing images and tracker failures.
 
     Attributes:
-        tracks: those of the newest image that was understood.
+        tracks: tracks of the last image that was processed.
     """
 
     def __init__(self, tracker: Tracker, calibrations: Mapping[str, Calibration]) -> None:
@@ -116,10 +117,11 @@ class Perception:
         self.tracks: tuple[Track, ...] = ()
 
     def perceive(self, observation: Observation) -> Percept:
-        """Let the tracker see the images if they are new, and tell the behaviour.
+        """Update the tracker if the images are new, and return the input of the behaviour.
 
-        Images equal to the last ones to the bit are no new ones: the noise of a camera never repeats. Before
-        a wall colder than the thermal camera's span there is none, though: an image of one grey may be new.
+        Images that are bit-identical to the last ones are not new, because camera noise never repeats. The
+        exception is a view colder than the thermal camera's span, which has no noise: a uniform image may be
+        new.
         """
         newest = self._newest
         tell = partial(
@@ -137,7 +139,7 @@ class Perception:
             self.tracks = self._tracker.update(
                 Frame.from_observation(observation, before, self._calibrations)
             )
-        except TrackerDown as error:  # a robot among people outlives its tracker
+        except TrackerDown as error:  # the robot must keep driving safely without its tracker
             self.tracks = ()
             return tell((), fault=f"the tracker failed: {error}")
         return tell(self.tracks)
@@ -146,17 +148,17 @@ class Perception:
 def closed_loop(
     world: Stage, tracker: Tracker | str, behaviour: Behaviour | str, frames: int
 ) -> Iterator[Tick]:
-    """Run the loop for a number of frames, from the world's present instant on.
+    """Run the loop for a number of frames, starting at the current instant of the world.
 
     Args:
-        world: such as `World("crossing_2")`.
+        world: the world, such as `World("crossing_2")`.
         tracker: a tracker, or the name of one, made with seed 0.
         behaviour: a behaviour, or the name of one.
-        frames: how many, at 15 a second.
+        frames: number of frames, at 15 per second.
 
     Raises:
-        BadInput: tracker or behaviour gave what cannot be used; it is said at which frame.
-        OwnCodeFailed: one that is checked failed.
+        BadInput: the tracker or the behaviour returned an invalid value; the message states the frame.
+        OwnCodeFailed: a checked tracker or behaviour raised an error.
     """
     tracker = make_tracker(tracker) if isinstance(tracker, str) else tracker
     behaviour = make_behaviour(behaviour) if isinstance(behaviour, str) else behaviour
@@ -190,7 +192,7 @@ def make_percept(
     knows_again: bool = False,
     fault: str = "",
 ) -> Percept:
-    """Return the behaviour what it steers by: confirmed tracks, sonar and the wheels' speed."""
+    """Return the input of the behaviour: confirmed tracks, sonar ranges and speeds from the wheels."""
     height, width = observation.images[THERMAL].shape
     people = tuple(
         see_person(track, box, width, height)
@@ -218,7 +220,7 @@ def _are_same(old: Images, new: Images) -> bool:
 
 
 def see_person(track: Track, box: Box, width: int, height: int) -> SeenPerson:
-    """Express a track's box [px] in shares of the image."""
+    """Convert a track's box [px] to shares of the image size."""
     shares = image_shares(box, width, height)
     return SeenPerson(
         id=track.id,

@@ -1,4 +1,4 @@
-"""Log the events of a run: what happens in the world, to the tracks, and to the behaviour; and word them."""
+"""Log and describe the events of a run: events in the world, of the tracks, and of the behaviour."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,24 +15,24 @@ from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.frame import THERMAL
 from peopleboy.tracker.track import Box, Status, Track
 
-OUT_SHARE = 0.3  # of a box's width outside the image, from which who is lost there has left it
-_INSIDE: Box = (0.0, 0.0, 0.0, 0.0)  # who has no box left no image
-PAUSE_S = 1.0  # an occlusion that goes on after less is the same one
+OUT_SHARE = 0.3  # share of a box's width outside the image from which a lost track has left the image
+_INSIDE: Box = (0.0, 0.0, 0.0, 0.0)  # stands for a missing box, which has not left the image
+PAUSE_S = 1.0  # an occlusion that resumes after a shorter gap is the same one
 KNOWN = "re-identified"
-SAME_IOU = 0.5  # of the boxes of one person in two images that follow each other
-SAME_M = 0.3  # on the floor, where there are no boxes
+SAME_IOU = 0.5  # minimum IoU of one person's boxes in two consecutive images
+SAME_M = 0.3  # maximum floor distance in two consecutive images, for tracks without boxes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrackEvent:
-    """One thing that happened to a track.
+    """One event of a track.
 
     Attributes:
         kind: "detected", "occluded", "hidden", "lost" or "re-identified".
-        track: its id; of a person who was known again under another one, the one until then.
-        by: id of the track that occludes or hides it, or under which it goes on as a person known again; None
-            if there is none, or none known.
-        why: of "lost", the reason as the tracker sees it; of "re-identified", for how long it was gone.
+        track: id of the track; for a person re-identified under another id, the earlier id.
+        by: id of the track that occludes or hides it, or the new id after a re-identification; None if there
+            is none, or it is unknown.
+        why: for "lost", the reason according to the tracker; for "re-identified", the time of absence.
     """
 
     kind: str
@@ -42,7 +42,7 @@ class TrackEvent:
 
 
 class TrackEvents:
-    """Compares the tracks of one frame after another; tentative ones are none yet, or no longer."""
+    """Compare the tracks of consecutive frames; tentative tracks are ignored."""
 
     def __init__(self) -> None:
         self._now: Mapping[int, Track] = {}
@@ -50,7 +50,7 @@ class TrackEvents:
         self._occluded_s: dict[tuple[int, int], float] = {}
 
     def update(self, tracks: tuple[Track, ...], time_s: float, width_px: int) -> list[TrackEvent]:
-        """Return what is new, track by track."""
+        """Return the new events, track by track."""
         before, every = self._now, {track.id: track for track in tracks}
         self._now = {track.id: track for track in tracks if track.status is not Status.TENTATIVE}
         heirs = self._heirs(before, every)
@@ -71,7 +71,7 @@ class TrackEvents:
         return found
 
     def _heirs(self, before: Mapping[int, Track], every: Mapping[int, Track]) -> dict[int, int]:
-        """Find the tracks that have another number from this frame on: gone where the other one came."""
+        """Map each track id that vanished to a new id at the same place."""
         gone = [track for number, track in before.items() if number not in every]
         come = [
             track
@@ -83,7 +83,7 @@ class TrackEvents:
         return {was: now for now, was in origins.items()}
 
     def _absence(self, number: int, time_s: float) -> str:
-        """Say for how long a track was gone, which it is no more."""
+        """Describe how long a track was gone, and forget its absence."""
         return f"after {time_s - self._gone_s.pop(number):.1f} s"
 
     def _seen_again(
@@ -109,7 +109,7 @@ class TrackEvents:
 
 
 def _is_at_one_place(was: Track, now: Track) -> bool:
-    """Whether two tracks of two frames that follow each other are on the same person."""
+    """Return whether two tracks of two consecutive frames are on the same person."""
     cameras = was.boxes.keys() & now.boxes.keys()
     if cameras:
         return all(iou(np.array(was.boxes[name]), np.array(now.boxes[name])) > SAME_IOU for name in cameras)
@@ -119,13 +119,13 @@ def _is_at_one_place(was: Track, now: Track) -> bool:
 
 
 def why_lost(now: Track, was: Track, width_px: int, heir: int | None = None) -> str:
-    """Say why a track was lost, as the tracker sees it.
+    """Describe why a track was lost, according to the tracker.
 
     Args:
-        now: the track as it is, in doubt, or as it was last if it is gone.
-        was: as it was before.
-        width_px: of the thermal image.
-        heir: id of the new track that is there instead; None if there is none.
+        now: the track with its new status, or its last state if it is gone.
+        was: the track in the frame before.
+        width_px: width of the thermal image.
+        heir: id of a new track in its place; None for none.
     """
     if heir is not None:
         return f"track {heir} is there instead"
@@ -148,13 +148,13 @@ class LogLine:
     Attributes:
         frame: 1, 2, ...
         time_s: [s] since the start.
-        kind: what happened; those of `peopleboy.sim.truth.events.Event`, `ThingEvent` and `TrackEvent`,
-            "mode", "fault starts" and "fault ends".
-        who: a person, a thing, "robot", "track 3", or a kind of fault.
-        other: who or what else takes part: an occluder, what is touched, who moves it, the new mode, or under
-            which number a track goes on that is a person known again.
-        why: of a change of mode and of a lost track, the reason; of a re-identified one, since when.
-        move: of a thing that was moved, from where to where.
+        kind: kind of event: one of `peopleboy.sim.truth.events.Event`, `ThingEvent` and `TrackEvent`, or
+            "mode", "fault starts", "fault ends".
+        who: a person, an object, "robot", "track 3", or a kind of fault.
+        other: the other party: an occluder, a touched object, the person who moves it, the new mode, or the
+            new id of a re-identified track.
+        why: reason of a change of mode or of a lost track; time of absence of a re-identified track.
+        move: movement of a moved object.
     """
 
     frame: int
@@ -166,7 +166,7 @@ class LogLine:
     move: Move | None = None
 
     def to_json(self) -> dict[str, Any]:
-        """Return the line as a JSON object; `why` and `move` are left out where there is none."""
+        """Return the line as a JSON object; `why` and `move` are omitted if empty."""
         line = asdict(self)
         if not self.why:
             del line["why"]
@@ -176,20 +176,20 @@ class LogLine:
 
     @classmethod
     def from_json(cls, line: Mapping[str, Any]) -> Self:
-        """Read back what `to_json` gave.
+        """Read a line from the output of `to_json`.
 
         Raises:
-            TypeError: it is no such object.
+            TypeError: the object does not have this form.
         """
         move = line.get("move")
         return cls(**{**line, "move": None if move is None else Move(**move)})
 
 
 class RunEvents:
-    """Collects the events of one tick after another.
+    """Collect the events of consecutive ticks.
 
     Args:
-        faults: that the scenario asks for.
+        faults: faults of the scenario.
     """
 
     def __init__(self, faults: Sequence[FaultSpec] = ()) -> None:
@@ -201,7 +201,7 @@ class RunEvents:
         self._mode = ""
 
     def update(self, tick: Tick) -> list[LogLine]:
-        """Return what is new at this tick."""
+        """Return the new events at this tick."""
         time_s, width = tick.truth.time_s, tick.truth.camera.width
         found = [(kind, fault, "", "") for kind, fault in self._of_faults(time_s)]
         found += [(event.kind, event.person, event.other, "") for event in self._world.update(tick.truth)]
@@ -228,7 +228,7 @@ class RunEvents:
         ]
 
     def _of_faults(self, time_s: float) -> Iterator[tuple[str, str]]:
-        """Yield which faults start and end."""
+        """Yield the faults that start or end."""
         before, self._broken = self._broken, tuple(active(self._faults, time_s))
         yield from (("fault starts", fault) for fault in self._broken if fault not in before)
         yield from (("fault ends", fault) for fault in before if fault not in self._broken)
@@ -238,7 +238,7 @@ _WORTH_DEG = 10.0
 
 
 def describe(line: LogLine) -> str:
-    """Describe what happened in a few words, such as "anna: total occlusion by ben starts"."""
+    """Describe an event in a few words, such as "anna: total occlusion by ben starts"."""
     if line.kind == "mode":
         return f"{line.who}: {line.other}"
     if line.kind.startswith("fault "):
@@ -256,7 +256,7 @@ def describe(line: LogLine) -> str:
 
 
 def _describe_thing(line: LogLine) -> str:
-    """Describe what became of a thing, such as "chair_1: moved 1.10 m by anna"."""
+    """Describe an event of an object, such as "chair_1: moved 1.10 m by anna"."""
     what = line.kind.removeprefix("thing ")
     how = "" if line.move is None else f" {describe_move(line.move)}"
     by = {"appeared": ", brought by", "vanished": ", taken by"}.get(what, " by")
@@ -264,11 +264,11 @@ def _describe_thing(line: LogLine) -> str:
 
 
 def describe_move(move: Move) -> str:
-    """Return how far something was moved, such as "1.10 m" or "0.66 m, turned 90°"."""
+    """Describe how far an object was moved, such as "1.10 m" or "0.66 m, turned 90°"."""
     turn = f", turned {abs(move.turned_deg):.0f}°" if abs(move.turned_deg) >= _WORTH_DEG else ""
     return f"{move.distance_m:.2f} m{turn}"
 
 
 def describe_fully(line: LogLine) -> str:
-    """Describe what happened and why, such as "track 2: lost (left the image on the left)"."""
+    """Describe an event and its reason, such as "track 2: lost (left the image on the left)"."""
     return f"{describe(line)} ({line.why})" if line.why else describe(line)

@@ -1,4 +1,4 @@
-"""The simulated world of a scenario, by the scenario's name."""
+"""The simulated world of a scenario, made from the scenario's name."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,7 +13,7 @@ from peopleboy.sim.world_config import WorldConfig
 class World(SimulatedWorld):
     """A simulated world; use it as a context manager.
 
-    `observe` returns what the robot senses now, `truth` the ground truth of the same instant; `step` drives
+    `observe` returns the robot's sensor readings, `truth` the ground truth of the same instant; `step` drives
     the robot for one control step, 1/15 s.
 
         with World("crossing_2", seed=3) as world:
@@ -23,13 +23,13 @@ class World(SimulatedWorld):
                 world.step(0.2, 0.0)
 
     Args:
-        scenario: a name from the library, the path of a YAML file, a loaded scenario, or settings of a world.
-        seed: of everything random; None for that of the scenario, which is 0 unless a run has written it.
-        cameras: further cameras that the robot is to carry, such as `tracker.cameras`; mounted with defaults.
+        scenario: a library name, the path of a YAML file, a loaded scenario, or the settings of a world.
+        seed: seed of all random numbers; None for that of the scenario, which is 0 unless a run wrote it.
+        cameras: additional cameras for the robot, such as `tracker.cameras`; mounted with default settings.
         renderer: "raycast", or "bullet", a slow reference.
 
     Raises:
-        BadInput: there is no such scenario, or an argument cannot be used.
+        BadInput: the scenario does not exist, or an argument is invalid.
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class World(SimulatedWorld):
     ) -> None:
         if isinstance(scenario, WorldConfig):
             if seed is not None or cameras:
-                raise BadInput("the settings of a world hold its seed and cameras; leave both out")
+                raise BadInput("the settings of a world include seed and cameras; leave both out")
             super().__init__(scenario)
             return
         loaded = load_scenario(scenario).mounting(cameras)

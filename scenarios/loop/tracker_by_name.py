@@ -1,4 +1,4 @@
-"""Make trackers by the names that `--tracker` takes: those that see images, and the oracle."""
+"""Make trackers from the names that `--tracker` accepts: image-based trackers, and the oracle."""
 
 from collections.abc import Callable, Mapping
 
@@ -15,9 +15,9 @@ from peopleboy.tracker.trackers import TRACKERS, ChecksCameras, Tracker, is_own,
 
 
 class OracleTracker:
-    """Gives everybody's true box under the person's own number, as long as enough of it is to be seen.
+    """Return every person's true box under the person's own number, while enough of it is visible.
 
-    Who is hidden in the image goes on as a totally occluded track; who is out of the image has none.
+    A person who is occluded in the image is a totally occluded track; a person outside the image has none.
     """
 
     def __init__(self, truth: Callable[[], Truth]) -> None:
@@ -26,11 +26,11 @@ class OracleTracker:
 
     @property
     def cameras(self) -> tuple[str, ...]:
-        """None: it looks at no image."""
+        """Empty: this tracker needs no images."""
         return ()
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
-        """Look at the truth instead of the frame."""
+        """Return tracks from the ground truth; the frame's images are ignored."""
         truth = self._truth()
         return tuple(
             self._track(person, truth.robot, frame.time_s)
@@ -55,10 +55,10 @@ def _place(person: PersonTruth, robot: Pose2) -> FloorPlace:
 
 
 def make_named_tracker(name: str, seed: int, truth: Callable[[], Truth]) -> Tracker:
-    """Make a tracker by its name; "truth" is none, but knows.
+    """Make a tracker from its name; "truth" gives the oracle.
 
     Raises:
-        BadInput: an unknown name, or a tracker of your own that cannot be made.
+        BadInput: the name is unknown, or your own tracker cannot be made.
     """
     return OracleTracker(truth) if name == ORACLE else _make(name, seed)
 
@@ -66,10 +66,10 @@ def make_named_tracker(name: str, seed: int, truth: Callable[[], Truth]) -> Trac
 def make_checked_tracker(
     name: str, seed: int, truth: Callable[[], Truth], cameras: Mapping[str, CameraConfig]
 ) -> Tracker:
-    """Make a tracker by its name, which may refuse the cameras; each answer of one of your own is looked at.
+    """Make a tracker from its name, and check the cameras; the output of your own tracker is validated.
 
     Raises:
-        BadInput: an unknown name, or a tracker of your own that cannot be made, or cameras that it refuses.
+        BadInput: the name is unknown, your own tracker cannot be made, or the tracker refuses the cameras.
     """
     tracker = make_named_tracker(name, seed, truth)
     check_cameras(tracker, cameras)
@@ -77,20 +77,20 @@ def make_checked_tracker(
 
 
 def check_cameras(tracker: Tracker, cameras: Mapping[str, CameraConfig]) -> None:
-    """Let a tracker refuse the robot's cameras before anything is begun.
+    """Let a tracker refuse the robot's cameras before the run begins.
 
     Raises:
-        BadInput: it does.
+        BadInput: the tracker refuses them.
     """
     if isinstance(tracker, ChecksCameras):
         tracker.check_cameras(calibrations_of(cameras))
 
 
 def tracker_cameras(name: str) -> tuple[str, ...]:
-    """Name the cameras that the tracker of a name wants.
+    """Return the names of the cameras that a tracker needs.
 
     Raises:
-        BadInput: an unknown name, or a tracker of your own that cannot be made.
+        BadInput: the name is unknown, or your own tracker cannot be made.
     """
     return () if name == ORACLE else _make(name, seed=0).cameras
 
@@ -98,5 +98,5 @@ def tracker_cameras(name: str) -> tuple[str, ...]:
 def _make(name: str, seed: int) -> Tracker:
     if ":" not in name and name not in TRACKERS:
         known = ", ".join((*TRACKERS, ORACLE))
-        raise BadInput(f"unknown tracker {name!r}; there are: {known}, and your own as module:Class")
+        raise BadInput(f"unknown tracker {name!r}; available: {known}, or your own as module:Class")
     return make_tracker(name, seed)

@@ -1,1 +1,1 @@
-"""Run scenarios: one, many seeds, suites, compared controllers, and cached sequences of frames."""
+"""Run scenarios: single runs, seeds, suites, controller comparisons, and cached sequences of frames."""

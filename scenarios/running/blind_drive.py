@@ -1,4 +1,4 @@
-"""Play a scenario without a tracker, for what its robot's sensors observe."""
+"""Play a scenario without a tracker, to get the observations of its robot's sensors."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
 
 
 def blind_drive(scenario: Scenario, seed: int) -> "Iterator[tuple[World, Observation]]":
-    """Yield the world and what was observed, instant by instant; images that nobody asks for are never made.
+    """Yield the world and its observation at each instant; images are rendered only when accessed.
 
     Raises:
-        BadInput: the robot needs eyes to drive.
+        BadInput: the robot's behaviour needs a tracker.
     """
-    from peopleboy.sim.world import World  # here, as what was made before can be read without PyBullet
+    from peopleboy.sim.world import World  # here, so that cached data can be read without PyBullet
 
     if scenario.robot.behaviour not in ("stand", "scripted"):
-        raise BadInput(f"{scenario.name}: take a scenario whose robot stands or is scripted")
+        raise BadInput(f"{scenario.name}: its robot needs a tracker; give one that stands or is scripted")
     config, drive = scenario.world(seed), scenario.make_behaviour()
     with World(config) as world:
         for _ in range(round(scenario.duration_s * config.control_hz)):
@@ -33,7 +33,7 @@ def blind_drive(scenario: Scenario, seed: int) -> "Iterator[tuple[World, Observa
 
 
 def _blind_percept(observation: Observation) -> Percept:
-    """Tell a drive by the clock all that it asks for: the time, and what its guard does, sonars and speed."""
+    """Return all that a scripted drive needs: the time, and for the guard, sonar ranges and speed."""
     left, right = observation.wheel_speeds_m_s
     return Percept(
         time_s=observation.time_s,

@@ -27,18 +27,18 @@ from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, is_own
 
-GROUPS = ("following", "corridor", "comfort")  # of metrics.json: how the robot drove
+GROUPS = ("following", "corridor", "comfort")  # groups of metrics.json on how the robot drove
 
 
 @dataclass(frozen=True, slots=True)
 class Controller:
-    """A behaviour by name or module:Class, and the tracker that is its eyes; written behaviour@tracker."""
+    """A behaviour by name or module:Class, and the tracker that it uses; written behaviour@tracker."""
 
     behaviour: str
     eyes: str
 
     def __str__(self) -> str:
-        """Leave the usual tracker out."""
+        """Return the name, without the tracker if it is the default."""
         return self.behaviour if self.eyes == DEFAULT_TRACKER else f"{self.behaviour}@{self.eyes}"
 
 
@@ -46,15 +46,15 @@ Figures = Mapping[str, float]
 
 
 def parse_controller(text: str) -> Controller:
-    """Read behaviour or behaviour@tracker.
+    """Parse a controller from behaviour or behaviour@tracker.
 
     Raises:
-        BadInput: there is no such behaviour or tracker.
+        BadInput: the behaviour or the tracker is unknown.
     """
     behaviour, at, eyes = text.strip().partition("@")
     make_behaviour(behaviour)
     controller = Controller(behaviour, eyes if at else DEFAULT_TRACKER)
-    tracker_cameras(controller.eyes)  # refuses an unknown name
+    tracker_cameras(controller.eyes)  # raises for an unknown name
     return controller
 
 
@@ -65,30 +65,30 @@ def compare(
     options: RunOptions,
     workers: Workers,
 ) -> dict[Controller, list[Figures]]:
-    """Run a scenario with every controller and seed, and collect how the robot drove.
+    """Run a scenario with every controller and seed, and collect the metrics of how the robot drove.
 
-    A comparison that was killed goes on where it was.
+    A killed comparison resumes when it is called again.
 
     Args:
         scenario: name or path.
-        controllers: who drives.
-        seeds: the same for all of them.
-        options: as for one run; `out` is the folder of all runs, each in CONTROLLER-SEED, and `boxes` is for
-            trackers of your own, as those of ours enclose torsos.
-        workers: who does the runs.
+        controllers: the controllers to compare.
+        seeds: seeds, the same for all controllers.
+        options: options of a run; `out` is the folder of all runs, each in CONTROLLER-SEED, and `boxes` is
+            for your own trackers, because the shipped ones give torso boxes.
+        workers: workers that execute the runs.
 
     Returns:
-        For each controller the figures of each seed, NaN for what is undefined.
+        For each controller, the metrics of each seed; undefined ones are NaN.
 
     Raises:
-        BadInput: as for a single run, a controller is named twice, no tracker is one of your own whose
-            boxes are round whole people, or a complete run in the place of one is another one.
+        BadInput: a run is invalid, a controller is given twice, `boxes` asks for whole people but no tracker
+            is your own, or the folder of a run holds another complete run.
         TasksFailed: some runs failed.
     """
     if len(set(controllers)) < len(controllers):
-        raise BadInput(f"--controllers {','.join(map(str, controllers))}: each may be there once only")
+        raise BadInput(f"--controllers {','.join(map(str, controllers))}: give each only once")
     if options.boxes is not BoxKind.TORSO and not any(is_own(controller.eyes) for controller in controllers):
-        raise BadInput(f"--boxes {options.boxes}: no controller sees by a tracker of your own; leave it out")
+        raise BadInput(f"--boxes {options.boxes}: no controller uses your own tracker; leave it out")
     loaded = load_scenario(scenario)
     tasks = {
         (controller, seed): RunTask(loaded, _options(options, controller, seed))
@@ -115,13 +115,13 @@ def _options(options: RunOptions, controller: Controller, seed: int) -> RunOptio
 
 
 def intervals(runs: Sequence[Figures], rng: np.random.Generator) -> dict[str, Interval]:
-    """Return every figure's mean over some runs, with its interval."""
+    """Return the mean of every metric over some runs, with its confidence interval."""
     names = list(dict.fromkeys(name for figures in runs for name in figures))
     return {name: bootstrap([figures.get(name, math.nan) for figures in runs], rng) for name in names}
 
 
 def figures_of(folder: Path) -> dict[str, float]:
-    """Read from a run's folder how the robot drove; yes and no are 1 and 0."""
+    """Read the metrics of how the robot drove from a run's folder; booleans become 1 and 0."""
     metrics = json.loads((folder / "metrics.json").read_text(encoding="utf-8"))
     groups = [metrics[name] for name in GROUPS if name in metrics]
     return {
@@ -129,7 +129,7 @@ def figures_of(folder: Path) -> dict[str, float]:
     }
 
 
-# A comparison of controllers as a table, a picture and a file of figures.
+# Output of a comparison: a table, a plot and a JSON file.
 
 _SHARES = {
     "found", "followed", "in_band", "facing", "in_band_and_facing", "followed_to_end", "path_efficiency"
@@ -142,7 +142,7 @@ def show_comparison(scenario: str, runs: Mapping[Controller, Sequence[Figures]])
     """Print the table."""
     means = _means(runs)
     seeds = len(next(iter(runs.values())))
-    amount = f"{seeds} seeds: mean [95 % interval]" if seeds > 1 else "one seed, which has no interval"
+    amount = f"{seeds} seeds: mean [95 % interval]" if seeds > 1 else "one seed, without an interval"
     table = Table(title=f"{scenario}, {amount}", title_justify="left", box=None)
     table.add_column("figure")
     for controller in means:
@@ -155,7 +155,7 @@ def show_comparison(scenario: str, runs: Mapping[Controller, Sequence[Figures]])
 def keep_comparison(
     scenario: str, runs: Mapping[Controller, Sequence[Figures]], out: Path
 ) -> Mapping[str, Any]:
-    """Write comparison.png and comparison.json, and give what the latter says."""
+    """Write comparison.png and comparison.json, and return the contents of the latter."""
     means = _means(runs)
     content = _content(scenario, runs, means)
     (out / "comparison.json").write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
@@ -173,7 +173,7 @@ def _names(means: Mapping[Controller, Mapping[str, Interval]]) -> list[str]:
 
 
 def _label(name: str) -> str:
-    """Turn a key of metrics.json into words with a unit; those of comfort are called as everywhere else."""
+    """Return a label with a unit for a key of metrics.json; comfort metrics use their usual labels."""
     if name in ComfortScore.metrics():
         return ComfortScore.metrics()[name].label
     stem, unit = name, "%" if name in _SHARES else ""
@@ -224,7 +224,7 @@ def _draw(
     runs: Mapping[Controller, Sequence[Figures]],
     means: Mapping[Controller, Mapping[str, Interval]],
 ) -> None:
-    """Draw a panel for each figure: every seed as a dot, the mean with its interval beside."""
+    """Draw a panel for each metric: a dot for every seed, and the mean with its interval next to them."""
     rows = max(math.ceil(len(names) / _COLUMNS), 1)
     figure = Figure(figsize=(3.6 * _COLUMNS, 0.8 + rows * (1.1 + 0.32 * len(runs))), layout="constrained")
     FigureCanvasAgg(figure)
@@ -252,7 +252,7 @@ def _draw(
 
 
 def _limit(axes: Axes, values: Sequence[float]) -> None:
-    """Say that nothing is defined, and show a figure that is the same in all runs beside 0."""
+    """Mark a panel without defined values, and include 0 in the axis if a metric is the same in all runs."""
     known = [value for value in values if not math.isnan(value)]
     if not known:
         axes.text(0.5, 0.5, "not defined in any run", ha="center", va="center", transform=axes.transAxes)

@@ -1,4 +1,4 @@
-"""Run a tracker on a scenario with some seeds, and score it: one call."""
+"""Run a tracker on a scenario with several seeds, and score it, in one call."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -23,16 +23,16 @@ def evaluate_run(
     """Run a scenario with each seed and score the tracker against the ground truth.
 
     Args:
-        scenario: a name from the library, the path of a YAML file, or a loaded scenario.
-        tracker: a name, "module:Class", or a class of your own; None for the scenario's, or the default.
-        seeds: such as range(10).
-        boxes: what the boxes of a tracker of your own enclose: "torso" or "whole".
+        scenario: a library name, the path of a YAML file, or a loaded scenario.
+        tracker: a name, "module:Class", or your own class; None for the scenario's, or the default.
+        seeds: seeds of the runs, such as range(10).
+        boxes: what the boxes of your own tracker enclose: "torso" or "whole".
 
     Returns:
         The scores over the frames of all runs.
 
     Raises:
-        BadInput: there is no such scenario or tracker, or no seed.
+        BadInput: the scenario or the tracker is unknown, or there are no seeds.
     """
     loaded = load_scenario(scenario)
     name = f"{tracker.__module__}:{tracker.__qualname__}" if isinstance(tracker, type) else tracker
@@ -44,5 +44,5 @@ def evaluate_run(
             )
             scores.append(run(loaded, options).people)
     if not scores:
-        raise BadInput("seeds: at least one is needed, such as range(10), got none")
+        raise BadInput("seeds: must have at least one seed, such as range(10), got none")
     return combine(scores)

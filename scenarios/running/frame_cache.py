@@ -1,7 +1,7 @@
-"""Rendered frames cached on disk, so that every tracker sees the same ones and none is rendered twice.
+"""Cache rendered frames on disk, so that all trackers get the same frames and each is rendered only once.
 
-They hold what trackers are given, the images of `thermal` and `colour`. Those of further cameras are not
-kept, but a film is another one as soon as any camera is.
+A sequence stores the images of `thermal` and `colour`, which trackers use. Images of other cameras are not
+stored, but a change of any camera makes a new sequence.
 """
 
 import hashlib
@@ -37,8 +37,8 @@ from peopleboy.tracker.frame import Frame, Odometry
 from peopleboy.tracker.track import Track
 
 MOTION = ("advance_m", "aside_m", "turn_rad")
-SEEN = ("thermal", "colour")  # cameras whose images trackers are given
-_GROUP = 16  # frames that are read or written at once
+SEEN = ("thermal", "colour")  # cameras whose images are cached
+_GROUP = 16  # frames that are read or written together
 _FRAMES = with_metadata(
     pa.schema(
         [
@@ -56,15 +56,15 @@ _LOG = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class Film:
-    """One run's frames and truth on disk.
+    """Frames and ground truth of one run on disk.
 
     Attributes:
-        folder: where frames.parquet, truth.parquet and gt.txt lie.
-        scenario: the scenario's name.
-        seed: of the run.
-        frames: how many.
-        shapes: of the images, by camera: (height, width) or (height, width, 3) [px].
-        calibrations: of the cameras.
+        folder: folder with frames.parquet, truth.parquet and gt.txt.
+        scenario: name of the scenario.
+        seed: seed of the run.
+        frames: number of frames.
+        shapes: image shapes by camera: (height, width) or (height, width, 3) [px].
+        calibrations: calibrations of the cameras.
     """
 
     folder: Path
@@ -75,41 +75,41 @@ class Film:
     calibrations: Mapping[str, Calibration] = field(compare=False)
 
     def truth(self, boxes: BoxKind = BoxKind.TORSO) -> TrueBoxes:
-        """Read who was there, as the evaluation wants it; boxes round torsos, or round whole people."""
+        """Read the ground truth for the evaluation, with boxes around torsos or whole people."""
         return true_boxes(self.folder / "gt.txt", self.folder / "truth.parquet", boxes)
 
     def people(self) -> pa.Table:
-        """Read the whole truth: one row per frame and person (`run_folder.run_tables.TRUTH`)."""
+        """Read the whole ground truth: one row per frame and person (`run_folder.run_tables.TRUTH`)."""
         return pq.read_table(self.folder / "truth.parquet")
 
 
 def film(
     scenario: str | Path | Scenario, seed: int, folder: Path, report: Callable[[int, int], None] | None = None
 ) -> Film:
-    """Find the frames of a run, or render them.
+    """Return the cached frames of a run, rendering them if necessary.
 
-    What is found was made by the same scenario, seed, packages and simulator source. A film that was not
-    finished is made anew; several processes may make the same one.
+    Cached frames are used only if scenario, seed, packages and simulator source are the same. An unfinished
+    sequence is rendered again; several processes may render the same one.
 
     Args:
         scenario: a name, a path or a loaded scenario, whose robot does not depend on a tracker.
-        seed: of the run.
-        folder: where films are kept, each in a folder of its own.
-        report: called with the number of frames rendered and of all frames.
+        seed: seed of the run.
+        folder: cache folder, with one subfolder per sequence.
+        report: called with the number of frames rendered and the total.
 
     Raises:
-        BadInput: the robot follows what a tracker sees, and has no recorded drive.
+        BadInput: the robot follows tracked people, and has no recorded drive.
     """
     scenario = load_scenario(scenario)
     goes_by_sight = scenario.own_behaviour or scenario.robot.behaviour not in ("stand", "scripted")
     if goes_by_sight and scenario.drive is None:
         raise BadInput(
-            f"{scenario.name}: its robot goes where the tracker sees a person, so frames cannot be kept; "
-            "take a scenario whose robot stands or is scripted"
+            f"{scenario.name}: its robot depends on a tracker, so its frames cannot be cached; "
+            "give a scenario whose robot stands or is scripted"
         )
     home = folder / f"{scenario.name}-{seed}-{film_key(scenario, seed)[:12]}"
     if (home / "about.json").is_file():
-        _LOG.info("frames of %s, seed %d, are in %s", scenario.name, seed, home)
+        _LOG.info("frames of %s, seed %d, are cached in %s", scenario.name, seed, home)
     else:
         _LOG.info("rendering the frames of %s, seed %d", scenario.name, seed)
         _shoot(scenario, seed, home, report)
@@ -117,10 +117,10 @@ def film(
 
 
 def open_film(folder: Path) -> Film:
-    """Open a finished film by its folder.
+    """Open a finished sequence by its folder.
 
     Raises:
-        BadInput: there is none.
+        BadInput: the folder does not contain one.
     """
     try:
         about = json.loads((folder / "about.json").read_text(encoding="utf-8"))
@@ -135,11 +135,11 @@ def open_film(folder: Path) -> Film:
 
 
 def frames_of(shot: Film, cameras: Collection[str] = SEEN) -> Iterator[Frame]:
-    """Yield a film's frames, equal to the byte to those of the run; a few are in memory at a time.
+    """Yield the frames, byte-identical to those of the run; only a few are in memory at a time.
 
     Args:
-        shot: the film.
-        cameras: whose images are wanted; others, and those that no film has, are left out.
+        shot: the cached sequence.
+        cameras: cameras whose images to read; cameras that are not cached are ignored.
     """
     wanted = {camera: shape for camera, shape in shot.shapes.items() if camera in cameras}
     columns = ["time_s", *MOTION, *wanted]
@@ -157,7 +157,7 @@ def frames_of(shot: Film, cameras: Collection[str] = SEEN) -> Iterator[Frame]:
 
 
 def film_key(scenario: Scenario, seed: int) -> str:
-    """A hash of all that the frames depend on."""
+    """Return a hash of everything that the frames depend on."""
     drive = [] if scenario.drive is None else [astuple(command) for command in scenario.drive]
     files = {name: hashlib.sha256(content).hexdigest() for name, content in scenario.files.items()}
     parts = [_FRAMES.names, scenario.resolved(seed), seed, versions(), _source_digest(), drive, files]
@@ -165,7 +165,7 @@ def film_key(scenario: Scenario, seed: int) -> str:
 
 
 class _Blind:
-    """A tracker that sees nobody."""
+    """A tracker that never returns a track."""
 
     cameras = SEEN
 
@@ -174,8 +174,8 @@ class _Blind:
 
 
 def _shoot(scenario: Scenario, seed: int, home: Path, report: Callable[[int, int], None] | None) -> None:
-    """Render a film beside its place, and put it there when it is whole."""
-    with atomic(home, stays=(home / "about.json").is_file) as part:  # another process may be quicker
+    """Render a sequence next to its final place, and move it there when it is complete."""
+    with atomic(home, stays=(home / "about.json").is_file) as part:  # another process may finish first
         with writing_to(home.parent, "--frame-cache"):
             part.mkdir(parents=True)
         about = _render(scenario, seed, part, report)
@@ -185,7 +185,7 @@ def _shoot(scenario: Scenario, seed: int, home: Path, report: Callable[[int, int
 def _render(
     scenario: Scenario, seed: int, part: Path, report: Callable[[int, int], None] | None
 ) -> dict[str, Any]:
-    from peopleboy.sim.world import World  # here, as films that are there can be shown without PyBullet
+    from peopleboy.sim.world import World  # here, so that cached frames can be read without PyBullet
 
     config = scenario.world(seed)
     count = round(scenario.duration_s * config.control_hz)
@@ -231,7 +231,7 @@ def _row(senses: Observation, frame: Frame) -> dict[str, Any]:
 
 
 def _pack(image: NDArray[np.uint8]) -> bytes:
-    """An image as differences between its rows, which compress better than the rows."""
+    """Encode an image as differences between its rows, which compress better than the rows."""
     rows = image.copy()
     rows[1:] -= image[:-1]
     return rows.tobytes()
@@ -247,7 +247,7 @@ def _unpack(packed: bytes, shape: tuple[int, ...]) -> NDArray[np.uint8]:
 
 @cache
 def _source_digest() -> str:
-    """A hash of the simulator's own source, which may change within a version."""
+    """Return a hash of the simulator's source, which may change within a version."""
     digest = hashlib.sha256()
     for path in sorted(Path(sim.__path__[0]).rglob("*.py")):
         digest.update(path.name.encode() + b"\0" + path.read_bytes())

@@ -21,19 +21,19 @@ from peopleboy.scenarios.running.run import is_finished, run, tracker_name
 from peopleboy.scenarios.running.run_options import RunOptions
 
 _RATE_HZ = 15
-_ARRIVAL_S = 30.0  # [s] for a run of another machine to be seen in a folder that both share
+_ARRIVAL_S = 30.0  # [s] timeout for a run of another machine to appear in a shared folder
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RunTask:
-    """A scenario, and how to run it."""
+    """A scenario with the options to run it with."""
 
     scenario: Scenario
     options: RunOptions
 
     @property
     def name(self) -> str:
-        """That of the run's folder."""
+        """Name of the run's folder."""
         return self.options.out.name
 
     @property
@@ -42,7 +42,7 @@ class RunTask:
         return round(self.scenario.duration_s * _RATE_HZ)
 
     def __call__(self, tell: Tell) -> None:
-        """Run it, unless it is there; what was cut off is replaced."""
+        """Run the scenario unless the run is complete; an unfinished run is replaced."""
         if not is_finished(self.scenario, self.options):
             options = replace(self.options, overwrite=True)
             run(self.scenario, options, lambda tick, _frames: tell(tick.frame))
@@ -52,13 +52,13 @@ _LOG = logging.getLogger(__name__)
 
 
 def unfinished(tasks: Sequence[RunTask]) -> list[RunTask]:
-    """Leave out the runs that are there already, so that a killed call goes on.
+    """Return the runs that are not complete, so that a killed command resumes.
 
     Raises:
-        BadInput: a run cannot be done, or something else is in its place.
+        BadInput: a run is invalid, or its folder contains something else.
     """
     for task in tasks:
-        tracker_cameras(tracker_name(task.scenario, task.options))  # refuses an unknown name
+        tracker_cameras(tracker_name(task.scenario, task.options))  # raises for an unknown name
     waiting = [task for task in tasks if not is_finished(task.scenario, task.options)]
     _LOG.info("%d of %d runs are complete already", len(tasks) - len(waiting), len(tasks))
     for task in waiting:
@@ -67,11 +67,11 @@ def unfinished(tasks: Sequence[RunTask]) -> list[RunTask]:
 
 
 def play(tasks: Sequence[RunTask], workers: Workers, title: str) -> None:
-    """Do all runs, with a bar on standard error.
+    """Execute all runs, with a progress bar on standard error.
 
     Raises:
-        BadInput: as for a single run, or the cluster cannot be used.
-        TasksFailed: some runs failed, after all others were done.
+        BadInput: a run is invalid, or the cluster cannot be used.
+        TasksFailed: some runs failed, after all others were completed.
     """
 
     def keep(task: Task[None], _result: None) -> None:
@@ -83,47 +83,47 @@ def play(tasks: Sequence[RunTask], workers: Workers, title: str) -> None:
 
 
 def _claimed(task: RunTask) -> RunTask:
-    """Remove an earlier run that is to be replaced, so that one in its place is always the new one."""
+    """Remove an earlier run that is to be replaced, so that a run in its folder is always the new one."""
     if task.options.overwrite and task.options.out.exists():
         shutil.rmtree(task.options.out)
     return replace(task, options=replace(task.options, overwrite=False))
 
 
 def _from_anywhere(task: RunTask) -> RunTask:
-    """Make it independent of the working directory, which workers keep from when they were started."""
+    """Make a task's paths absolute, because workers keep the working directory they were started in."""
     return replace(task, options=replace(task.options, out=task.options.out.resolve()))
 
 
 def _see(folder: Path) -> None:
-    """Wait until a worker's run can be seen here.
+    """Wait until a worker's run is visible on this machine.
 
     Raises:
-        BadInput: it cannot.
+        BadInput: the run does not appear in time.
     """
     until = time.monotonic() + _ARRIVAL_S
     while not (folder / "run.json").is_file():
         if time.monotonic() > until:
             raise BadInput(
-                f"{folder}: is not where the cluster's workers write; give an --out that all share"
+                f"{folder}: is not where the cluster's workers write; give an --out that all machines share"
             )
         time.sleep(0.2)
 
 
 def run_suite(name: str, options: RunOptions, workers: Workers) -> list[Path]:
-    """Run a suite, with a bar on standard error; a suite that was killed goes on where it was.
+    """Run a suite, with a progress bar on standard error; a killed suite resumes when it is called again.
 
-    Complete runs stay; those that were cut off are done again.
+    Complete runs stay; unfinished runs are repeated.
 
     Args:
-        name: of the suite.
-        options: as for one run; `out` is the folder of the whole suite, and the suite has seeds of its own.
-        workers: who does it.
+        name: name of the suite.
+        options: options of a run; `out` is the folder of the suite, and the suite has its own seeds.
+        workers: workers that execute the runs.
 
     Returns:
         The runs' folders, in the suite's order.
 
     Raises:
-        BadInput: there is no such suite, or a complete run in its place is another one.
+        BadInput: the suite is unknown, or the folder of a run holds another complete run.
         TasksFailed: some runs failed.
     """
     runs = runs_of(load_suite(name))
@@ -133,7 +133,7 @@ def run_suite(name: str, options: RunOptions, workers: Workers) -> list[Path]:
 def _run_all(
     runs: Iterable[tuple[Scenario, int, str]], options: RunOptions, workers: Workers, title: str
 ) -> list[Path]:
-    """Run scenarios, each with a seed and in a folder of a name, without recordings; return the folders."""
+    """Run scenarios with seeds into named folders, without recordings; return the folders."""
     tasks = [
         RunTask(
             options.applied_to(scenario), replace(options, seed=seed, out=options.out / name, record=False)
@@ -145,25 +145,25 @@ def _run_all(
 
 
 def films_of(name: str, folder: Path) -> Iterator[Film]:
-    """Yield the frames of every run of a suite; each is rendered once and then kept."""
+    """Yield the cached frames of every run of a suite; each run is rendered only once."""
     for one in runs_of(load_suite(name)):
         yield film(one.scenario, one.seed, folder)
 
 
 def sweep(scenario: str, seeds: Iterable[int], options: RunOptions, workers: Workers) -> list[Path]:
-    """Run a scenario once per seed, without recordings; a sweep that was killed goes on where it was.
+    """Run a scenario once per seed, without recordings; a killed sweep resumes when it is called again.
 
     Args:
         scenario: name or path.
-        seeds: one for each run.
-        options: as for one run; `out` is the folder of the whole sweep, and `seed` is not used.
-        workers: who does it.
+        seeds: seeds, one per run.
+        options: options of a run; `out` is the folder of the sweep, and `seed` is not used.
+        workers: workers that execute the runs.
 
     Returns:
         The folders out/SCENARIO-SEED, in the order of the seeds.
 
     Raises:
-        BadInput: as for a single run, or a complete run in its place is another one.
+        BadInput: a run is invalid, or the folder of a run holds another complete run.
         TasksFailed: some runs failed.
     """
     loaded = load_scenario(scenario)
@@ -172,7 +172,7 @@ def sweep(scenario: str, seeds: Iterable[int], options: RunOptions, workers: Wor
 
 
 def sweep_worlds(seeds: Iterable[int], options: RunOptions, workers: Workers) -> list[Path]:
-    """Run worlds drawn at random, one for each seed, otherwise as `sweep`.
+    """Run one random world per seed, otherwise like `sweep`.
 
     Returns:
         The folders out/world_SEED, in the order of the seeds.

@@ -1,7 +1,7 @@
 """Record the drives of a suite: `python -m peopleboy.scenarios.running.record_drives dataset2`.
 
-A robot that follows people goes where its tracker sees them. For the frames of a data set to be the same for
-every tracker, the contour tracker drives it once, and the commands are kept.
+A robot that follows people depends on its tracker. To give all trackers the same frames of a data set, the
+contour tracker drives the robot once, and its commands are stored.
 """
 
 import sys
@@ -16,7 +16,7 @@ from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
 
 def record(run: SuiteRun) -> Iterator[Command]:
-    """Play a run with the contour tracker, and yield the robot's command at each step."""
+    """Run a scenario of a suite with the contour tracker, and yield the robot's command at each step."""
     config = run.scenario.world(run.seed)
     tracker = make_tracker(CONTOUR_TRACKER, run.seed)
     frames = round(run.scenario.duration_s * config.control_hz)
@@ -26,7 +26,7 @@ def record(run: SuiteRun) -> Iterator[Command]:
 
 
 def main(suite: str) -> None:
-    """Record every drive of a suite that is not there yet."""
+    """Record all missing drives of a suite."""
     for run in runs_of(load_suite(suite), with_drives=False):
         path = drive_path(suite, run.scenario.name, run.seed)
         if not path.exists():

@@ -1,4 +1,4 @@
-"""Run one scenario: build its world, close the loop, record it, and write its folder."""
+"""Run one scenario: build its world, run the closed loop, record it, and write its folder."""
 
 import logging
 import time
@@ -45,15 +45,15 @@ _LOG = logging.getLogger(__name__)
 
 
 class Watchers:
-    """Hands each tick to all who look on; a recorder only if there is one.
+    """Pass each tick to the event log, the metrics, the contact sheet and, if there is one, the recorder.
 
     Args:
-        config: of the world.
-        title: of the run.
-        recorder: of it, if there is one.
-        boxes: what the tracker's boxes are drawn round.
-        faults: that the scenario asks for.
-        is_secret: whether nobody knows whom the robot goes after, as commands alone do not tell.
+        config: settings of the world.
+        title: title of the run.
+        recorder: recorder of the run; None for none.
+        boxes: what the tracker's boxes enclose.
+        faults: faults of the scenario.
+        is_secret: whether the person that the robot follows is unknown, as with recorded commands.
     """
 
     def __init__(
@@ -72,10 +72,10 @@ class Watchers:
         self._recorder = recorder
         self._boxes = boxes
         self._is_secret = is_secret
-        self._track = 0  # that lay on the person to follow last
+        self._track = 0  # id of the last track on the person to follow
 
     def update(self, tick: Tick) -> list[LogLine]:
-        """Look at one tick and return what happened at it."""
+        """Process one tick, and return its events."""
         events = self._events.update(tick)
         track, is_wrong = tracks_on_target(tick, self._boxes, self._track)
         self._track = track or self._track
@@ -86,7 +86,7 @@ class Watchers:
         return events
 
     def save(self, folder: Path) -> None:
-        """Save what is drawn at the end."""
+        """Write the files that are drawn at the end."""
         self._sheet.save(folder / "contact_sheet.png")
 
 
@@ -94,7 +94,7 @@ FOLLOWERS = ("follow_person", "patrol")
 
 
 def tracker_name(scenario: Scenario, options: RunOptions) -> str:
-    """Name the tracker of a run: the one asked for, or else the scenario's."""
+    """Return the name of a run's tracker: the requested one, or the scenario's."""
     return scenario.tracker if options.tracker is None else options.tracker
 
 
@@ -106,17 +106,17 @@ def run(
     """Run a scenario from start to end and write its folder.
 
     Args:
-        scenario: a name from the library, the path of a YAML file, or a loaded scenario.
-        options: how to run it; None for the scenario's own seed and the folder runs/SCENARIO-SEED.
-        report: called after every tick with the number of all ticks, such as by a progress bar.
+        scenario: a library name, the path of a YAML file, or a loaded scenario.
+        options: options of the run; None for the scenario's seed and the folder runs/SCENARIO-SEED.
+        report: called after every tick with the total number of ticks, for example to move a progress bar.
 
     Returns:
-        The scores, as metrics.json has them.
+        The scores, as in metrics.json.
 
     Raises:
-        BadInput: an option cannot be used, and nothing is written then; or tracker or behaviour gave what
-            cannot be used, and the folder says that the run failed.
-        OwnCodeFailed: tracker or behaviour raised an error; the folder says so, with the traceback.
+        BadInput: an option is invalid, and nothing is written; or the tracker or the behaviour returned an
+            invalid value, and run.json marks the run as failed.
+        OwnCodeFailed: the tracker or the behaviour raised an error; run.json has the traceback.
     """
     scenario = load_scenario(scenario)
     if options is None:
@@ -124,7 +124,7 @@ def run(
     if options.seed < 0:
         raise BadInput(f"--seed {options.seed}: must be 0 or more")
     scenario = options.applied_to(scenario)
-    world: World  # the oracle looks at it only once it is built
+    world: World  # the oracle accesses it only after it is built
     name, given = tracker_name(scenario, options), scenario.robot.cameras
     tracker = make_named_tracker(name, options.seed, lambda: world.truth())
     scenario = scenario.mounting(tracker.cameras)
@@ -211,20 +211,20 @@ def run(
 def save_episode(
     scenario: Scenario, commands: Sequence[Command], frames: int, options: RunOptions, rate_hz: int
 ) -> RunScores:
-    """Write an episode as a run's folder: the same world once more, in which the robot repeats its commands.
+    """Write an episode as a run's folder, by replaying its commands in the same world.
 
     Args:
-        scenario: what was played.
-        commands: the robot's commands, one a step.
-        frames: how many images there were.
-        options: of the run.
-        rate_hz: steps a second.
+        scenario: scenario of the episode.
+        commands: the robot's commands, one per step.
+        frames: number of images.
+        options: options of the run.
+        rate_hz: steps per second.
 
     Raises:
         BadInput: the folder cannot be written to.
     """
     lasted_s = frames / rate_hz
-    # Whoever was still to come must be able to; the robot waits for them.
+    # People who enter after the episode's end must still be able to enter; the robot waits for them.
     latest_s = max((person.enter_s for person in scenario.people(options.seed)), default=0.0)
     if latest_s >= lasted_s:
         lasted_s = min(latest_s + 1.0 / rate_hz, scenario.duration_s)
@@ -233,13 +233,13 @@ def save_episode(
 
 
 def is_finished(scenario: Scenario, options: RunOptions) -> bool:
-    """Return whether the folder holds this very run, complete, with its images if they are wanted.
+    """Return whether the folder holds this run, complete, and with images if the options ask for them.
 
-    Never, if it is to be replaced.
+    False if the run is to be replaced.
 
     Raises:
-        BadInput: it holds a complete run of another scenario, seed, tracker, kind of boxes or version, or a
-            spoilt one.
+        BadInput: the folder holds a complete run of another scenario, seed, tracker, kind of boxes or
+            version, or a damaged run.
     """
     if options.overwrite or not _is_complete(options.out):
         return False

@@ -1,4 +1,4 @@
-"""How scenarios are run: tracker, behaviour, physics, and which files are written."""
+"""Options of a run: seed, tracker, behaviour, physics, and the files to write."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 class RunOptions:
     """How to run a scenario.
 
-    Suites, sweeps and comparisons use the same options, and choose `seed` and `out` for each run.
+    Suites, sweeps and comparisons use the same options, and set `seed` and `out` for each run.
 
     Attributes:
         viewer: address of a viewer that shows the recording during the run; None for none.
@@ -29,8 +29,8 @@ class RunOptions:
     boxes: Annotated[
         BoxKind,
         Field(
-            description="What the tracker's boxes enclose, and the ground-truth boxes to score them by: the "
-            "torso, or the whole person, as most detectors do."
+            description="What the tracker's boxes enclose, which selects the ground-truth boxes for scoring: "
+            "the torso, or the whole person, as with most detectors."
         ),
     ] = BoxKind.TORSO
     behaviour: Annotated[str | None, Field(description="Behaviour that drives the robot.")] = None
@@ -46,7 +46,7 @@ class RunOptions:
     lossless: Annotated[
         bool,
         Field(
-            description="Store the recording's images without loss, in 12 times the space; otherwise as "
+            description="Store the recording's images losslessly, in 12 times the space; by default they are "
             "JPEG of quality 45."
         ),
     ] = False
@@ -57,7 +57,7 @@ class RunOptions:
         """Return a scenario with the behaviour and the physics of these options.
 
         Raises:
-            BadInput: there is no such behaviour.
+            BadInput: the behaviour or the physics are unknown.
         """
         steered = scenario if self.behaviour is None else scenario.steered_by(self.behaviour)
         return steered if self.physics is None else steered.moved_by(self.physics)

@@ -1,1 +1,1 @@
-"""Resumable tasks, in processes of this machine or on a Dask cluster."""
+"""Resumable tasks, executed in local processes or on a Dask cluster."""

@@ -1,4 +1,4 @@
-"""Results of finished tasks, one JSON line each, from which a killed command resumes."""
+"""Store results of finished tasks, one JSON line each, from which a killed command resumes."""
 
 import json
 import os
@@ -16,17 +16,17 @@ Result = dict[str, Any]
 
 
 class Store(Mapping[str, Result]):
-    """Results by key, on disk as soon as they are added.
+    """Results by key, written to disk as soon as they are added.
 
-    A line that was cut off by a kill is left out, and so are results of other code.
+    Lines cut off by a kill, and results of other versions of the code, are ignored.
     """
 
     def __init__(self, path: Path, code: str) -> None:
-        """Open it, or make it.
+        """Open the file, or create it.
 
         Args:
-            path: of the file.
-            code: on which results depend, as a hash.
+            path: path of the file.
+            code: hash of the code that results depend on.
 
         Raises:
             BadInput: the file's folder cannot be written to.
@@ -52,11 +52,11 @@ class Store(Mapping[str, Result]):
         return len(self._results)
 
     def spent_s(self, key: str) -> float:
-        """Return the processor's time [s] that a result took; 0 where nobody said."""
+        """Return the processor time [s] that a result took; 0 if unknown."""
         return self._spent_s.get(key, 0.0)
 
     def add(self, key: str, result: Result, spent_s: float = 0.0) -> None:
-        """Keep a result, with the processor's time [s] that it took; it is on disk when this returns."""
+        """Store a result, and the processor time [s] that it took; it is on disk when this returns."""
         entry: dict[str, Any] = {
             "key": key,
             "code": self._code,
@@ -83,7 +83,7 @@ class Store(Mapping[str, Result]):
 
 @cache
 def code_digest(*further: Path) -> str:
-    """Hash what results depend on: trackers, simulator, packages, and files that say how they come about."""
+    """Hash what results depend on: trackers, simulator, packages, and the given files."""
     digest = sha256(json.dumps(versions(), sort_keys=True).encode())
     roots = [Path(tracker.__path__[0]), Path(sim.__path__[0])]
     files = [path for root in roots for path in root.rglob("*") if path.suffix in (".py", ".yaml")]

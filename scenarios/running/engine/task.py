@@ -1,4 +1,4 @@
-"""Tasks, their outcome, and the workers that run them."""
+"""Tasks, their results, and the workers that execute them."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -14,35 +14,35 @@ from peopleboy.own_code import OwnCodeFailed, in_one_line
 Result_co = TypeVar("Result_co", covariant=True)
 
 Tell = Callable[[int], None]
-"""Receives how much of a task is done."""
+"""Receives the number of finished units of a task."""
 
 
 class Task(Protocol[Result_co]):
-    """A piece of work: a value that any process can do, and do again if the one that did it was killed."""
+    """A piece of work that any process can execute, and repeat if the process that executed it was killed."""
 
     @property
     def name(self) -> str:
-        """What users know it by."""
+        """Name shown to users."""
         ...
 
     @property
     def size(self) -> int:
-        """How far it moves a progress bar."""
+        """Number of units by which it moves a progress bar."""
         ...
 
     def __call__(self, tell: Tell) -> Result_co:
-        """Do it; what an earlier attempt has finished on disk is not done again."""
+        """Execute the task; parts that an earlier attempt left on disk are not repeated."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """A task that could not be done.
+    """A task that failed.
 
     Attributes:
-        name: of the task.
-        why: in one line.
-        is_refused: whether it was bad input.
+        name: name of the task.
+        why: reason on one line.
+        is_refused: whether the cause was bad input.
     """
 
     name: str
@@ -51,18 +51,18 @@ class Failure:
 
 
 class TasksFailed(Exception):  # noqa: N818
-    """Some tasks failed, and all others are done."""
+    """Some tasks failed, and all others are complete."""
 
     def __init__(self, title: str, failures: Sequence[Failure], total: int) -> None:
         count = (
-            f"{len(failures)} of {total} failed; what is done stays, and the same command tries these again"
+            f"{len(failures)} of {total} failed; the others are complete; run the command again to retry"
         )
         super().__init__("\n".join([f"{title}: {count}", *(f"  {one.name}: {one.why}" for one in failures)]))
         self.failures = tuple(failures)
 
 
 def attempt(task: Task[Any], tell: Tell) -> Any:
-    """Do a task, and give its result, or a `Failure` if an error ends it."""
+    """Execute a task, and return its result, or a `Failure` if it raises an error."""
     try:
         return task(tell)
     except BadInput as error:
@@ -75,11 +75,11 @@ def attempt(task: Task[Any], tell: Tell) -> Any:
 
 @dataclass(frozen=True, slots=True)
 class Workers:
-    """Who does the work.
+    """Workers that execute tasks.
 
     Attributes:
-        count: processes of this machine; with one, everything is done in the process that asks for it.
-        scheduler: address of a Dask scheduler whose workers do it instead; None for this machine.
+        count: number of local processes; with one, tasks run in the calling process.
+        scheduler: address of a Dask scheduler whose workers are used instead; None for this machine.
     """
 
     count: int = 1
@@ -87,14 +87,14 @@ class Workers:
 
 
 def chosen_workers(count: int | None, scheduler: str | None) -> Workers:
-    """Take what the user gave; without it, one process a core.
+    """Return the workers that the user asked for; by default, one process per core.
 
     Raises:
-        BadInput: both are given.
+        BadInput: both count and scheduler are given.
     """
     if scheduler is not None and count is not None:
-        raise BadInput(f"--workers {count}: the cluster of --scheduler has workers of its own; leave one out")
-    from joblib import cpu_count  # here, as loading it takes half as long as all of `peopleboy --help`
+        raise BadInput(f"--workers {count}: not with --scheduler, whose cluster has its own; leave one out")
+    from joblib import cpu_count  # here, as importing it takes half as long as all of `peopleboy --help`
 
     return Workers(cpu_count() if count is None else count, scheduler)
 
@@ -104,11 +104,11 @@ Source = dict[str, str]
 
 @cache
 def running_source() -> Source:
-    """Return the versions of packages by name, and under "source" a hash of PeopleBoy's own files.
+    """Return package versions by name, and under "source" a hash of PeopleBoy's own files.
 
-    Workers of a cluster must have the same, since bytes depend on them.
+    Workers of a cluster must have the same, because the output depends on them.
     """
-    from peopleboy.scenarios.run_folder.folder import versions  # here, as the command line loads this module
+    from peopleboy.scenarios.run_folder.folder import versions  # here, as the command line imports this module
 
     digest = sha256()
     root = Path(__file__).parents[3]

@@ -1,6 +1,6 @@
-"""Work through tasks in one or several processes, keep each result at once, and show progress.
+"""Execute tasks in one or several processes, store each result at once, and show progress.
 
-Processes are joblib's; one that is killed costs only its current task.
+joblib provides the processes; if one is killed, only its current task is lost.
 """
 
 import os
@@ -25,13 +25,13 @@ from peopleboy.scenarios.run_folder.atomic_output import left_by_sigterm
 from peopleboy.scenarios.running.engine.task import Failure, Task, TasksFailed, Tell, Workers, attempt
 
 ATTEMPTS = 3  # how often a task's process may be killed
-GRACE_S = 10.0  # [s] for processes to write down that their work was cut off
+GRACE_S = 10.0  # [s] for processes to mark their work as cut off
 
 Outcomes = Generator[tuple[int, Any], None, None]
 
 
 def in_processes(tasks: Sequence[Task[Any]], count: int) -> Outcomes:
-    """Yield the number of each task with its result or failure, as they are finished."""
+    """Yield the number of each task with its result or failure, in the order of completion."""
     waiting, deaths = dict(enumerate(tasks)), Counter[int]()
     while waiting:
         begun: list[int] = []
@@ -41,7 +41,7 @@ def in_processes(tasks: Sequence[Task[Any]], count: int) -> Outcomes:
                     del waiting[number]
                     yield number, outcome
         except BrokenProcessPool:
-            # One of these killed its process, nobody knows which: each is tried by itself from now on.
+            # One of these tasks killed its process; to find out which, each is now tried alone.
             for number in [number for number in begun if number in waiting]:
                 task = waiting.pop(number)
                 deaths[number] += 1
@@ -52,24 +52,24 @@ def in_processes(tasks: Sequence[Task[Any]], count: int) -> Outcomes:
 
 
 def _next_turn(waiting: Mapping[int, Task[Any]], deaths: Counter[int]) -> Mapping[int, Task[Any]]:
-    """Return what is done together next: all that was never cut off, then the others one by one."""
+    """Return the next tasks to execute together: all that were never cut off, then the others one by one."""
     never = {number: task for number, task in waiting.items() if not deaths[number]}
     return never or dict([next(iter(waiting.items()))])
 
 
-_KILLED = f"its process was killed {ATTEMPTS} times, perhaps for want of memory; give fewer --workers"
+_KILLED = f"its process was killed {ATTEMPTS} times, possibly for lack of memory; give fewer --workers"
 
 
 def _begin(waiting: Mapping[int, Task[Any]], count: int, begun: list[int]) -> Outcomes:
-    """Begin tasks as processes get free, and note their numbers."""
+    """Start tasks as processes become free, and append their numbers to `begun`."""
 
     def calls() -> Iterator[Any]:
         for number, task in list(waiting.items()):
             begun.append(number)
             yield joblib.delayed(_attempt_as_worker)(number, task, os.getpid())
 
-    # A batch is one task, and none is sent early, so that it is known at once what is finished and what was
-    # cut off. With a single process joblib would work in this one, which a task may kill.
+    # One task per batch and no pre-dispatch, so that it is always known which tasks are finished and which
+    # were cut off. With n_jobs=1, joblib would execute tasks in this process, which a task may kill.
     parallel = joblib.Parallel(
         n_jobs=max(2, min(count, len(waiting))),
         backend="loky",
@@ -84,7 +84,7 @@ def _begin(waiting: Mapping[int, Task[Any]], count: int, begun: list[int]) -> Ou
 
 @contextmanager
 def _workers_end_first() -> Iterator[None]:
-    """At Ctrl-C and SIGTERM let the workers clean up before joblib kills them."""
+    """On Ctrl-C and SIGTERM, let the workers clean up before joblib kills them."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -111,27 +111,27 @@ def _workers_end_first() -> Iterator[None]:
 
 @contextmanager
 def _renewed_in_silence() -> Iterator[None]:
-    """Say nothing of a process that joblib replaces, since it holds 300 MB more than after its first task."""
+    """Suppress the warning when joblib replaces a process that holds 300 MB more than after its first task."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "A worker stopped while some jobs were given", UserWarning)
         yield
 
 
 def _attempt_as_worker(number: int, task: Task[Any], parent: int) -> tuple[int, Any]:
-    # Ctrl-C reaches all processes of a terminal; the parent decides for its workers.
+    # Ctrl-C reaches all processes of a terminal; the parent decides when its workers end.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _end_with(parent)
     try:
         with left_by_sigterm():
             return number, attempt(task, lambda _part: None)
     except SystemExit as leaving:
-        # Joblib would go on with the next task.
+        # Otherwise joblib would continue with the next task.
         os._exit(leaving.code if isinstance(leaving.code, int) else 1)
 
 
 @cache
 def _end_with(parent: int) -> None:
-    """Let this process end when its parent is no more, whose next call would write to the same folders."""
+    """End this process with its parent; a repeated call of the parent writes to the same folders."""
 
     def watch() -> None:
         while os.getppid() == parent:
@@ -142,7 +142,7 @@ def _end_with(parent: int) -> None:
 
 
 class Tally:
-    """Counts tasks, and moves a bar by their sizes."""
+    """Count tasks, and move a progress bar by their sizes."""
 
     def __init__(self, tasks: Sequence[Task[Any]], show: Show) -> None:
         self._show = show
@@ -151,12 +151,12 @@ class Tally:
         self._done = self._failed = 0
 
     def tell(self, part: int) -> None:
-        """Show that so much of the task that is going on is done."""
+        """Show that `part` units of the current task are done."""
         failed = f", {self._failed} failed" if self._failed else ""
         self._show(self._moved + part, self._total, f"{self._done} done, {self._left} left{failed}")
 
     def count(self, task: Task[Any], *, is_failed: bool) -> None:
-        """Show that a task has come to its end."""
+        """Show that a task has ended."""
         self._moved += task.size
         self._left -= 1
         self._done += not is_failed
@@ -166,7 +166,7 @@ class Tally:
 
 @contextmanager
 def tally(title: str, tasks: Sequence[Task[Any]], unit: str | None) -> Iterator[Tally]:
-    """Have such a bar on a terminal."""
+    """Yield a tally with a progress bar on a terminal."""
     with progress_bar(title, unit) as show:
         yield Tally(tasks, show)
 
@@ -182,21 +182,21 @@ def work_through(
     *,
     unit: str | None = None,
 ) -> None:
-    """Do all tasks, with a bar on standard error.
+    """Execute all tasks, with a progress bar on standard error.
 
-    One that fails stops no other. One whose worker is killed is done again, and none that is finished. Ctrl-C
-    and SIGTERM end the workers first, and leave what is finished.
+    A failed task does not stop the others. A task whose worker is killed is repeated, finished tasks are not.
+    Ctrl-C and SIGTERM end the workers first, and keep what is finished.
 
     Args:
-        tasks: in any order, since they are finished in any.
-        workers: who does them.
-        title: stands before the bar.
+        tasks: the tasks; they may finish in any order.
+        workers: workers that execute them.
+        title: label of the progress bar.
         keep: called in this process with each task and its result, as soon as it is finished.
-        unit: in which the tasks' sizes are counted, if the bar is to tell how many a second.
+        unit: unit of the tasks' sizes, to show a rate per second; None shows no rate.
 
     Raises:
-        BadInput: the cluster cannot be used, or every single task was refused as bad input.
-        TasksFailed: some failed, after all others were done.
+        BadInput: the cluster cannot be used, or every task was refused as bad input.
+        TasksFailed: some tasks failed, after all others were completed.
     """
     failures: list[Failure] = []
     with (
@@ -219,11 +219,11 @@ def work_through(
 def _outcomes(
     tasks: Sequence[Task[Result]], workers: Workers, tell: Tell
 ) -> Generator[tuple[int, Any], None, None]:
-    """Yield the number of each task with its result or failure, as they are finished."""
+    """Yield the number of each task with its result or failure, in the order of completion."""
     if not tasks:
         return
     if workers.scheduler is not None:
-        from peopleboy.scenarios.running.engine.cluster import on_cluster  # here, as Dask is an extra
+        from peopleboy.scenarios.running.engine.cluster import on_cluster  # here, as Dask is optional
 
         yield from on_cluster(tasks, workers.scheduler)
     elif min(workers.count, len(tasks)) > 1:
