@@ -97,7 +97,7 @@ def scene_model(folder: Path, no_thermal: bool, given: "GivenOptions[RunOptions]
 @click.argument("words", metavar="[WORD...]", nargs=-1)
 @output_options
 def list_command(words: tuple[str, ...], output: Output) -> None:
-    """List scenarios and suites with their duration and number of people.
+    """List scenarios and suites with duration and people.
 
     With WORDs, lists only entries whose name or description contains all of them, for example
     `peopleboy list crossing` or `peopleboy list suite`.

@@ -1,1 +1,1 @@
-"""Worlds drawn at random from a distribution that is written down, as scenario data."""
+"""Random worlds as scenario data, sampled from a declared distribution."""

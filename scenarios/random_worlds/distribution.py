@@ -1,4 +1,4 @@
-"""The distribution of random worlds: every range and every share, by name, and how to narrow it."""
+"""The distribution of random worlds: all ranges and probabilities, by name, and how to narrow it."""
 
 import math
 from collections.abc import Mapping
@@ -13,7 +13,7 @@ from peopleboy.wording import hint
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Range:
-    """A uniform distribution from `low` to `high`, both in `unit`, of `what`."""
+    """A uniform distribution of the quantity `what`, from `low` to `high`, in `unit`."""
 
     low: float
     high: float
@@ -140,7 +140,7 @@ ODDS: Final[Mapping[str, tuple[float, str]]] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Distribution:
-    """What is drawn, and how often; `ranges`, `shares` and `odds` as above, each with all names."""
+    """A distribution of worlds; `ranges`, `shares` and `odds` are as above, each with all names."""
 
     ranges: Mapping[str, Range] = field(default_factory=lambda: RANGES)
     shares: Mapping[str, Mapping[str, float]] = field(default_factory=lambda: SHARES)
@@ -148,43 +148,43 @@ class Distribution:
 
 
 class Draws:
-    """Draws from a distribution, and from nothing else."""
+    """Sample from a distribution."""
 
     def __init__(self, rng: np.random.Generator, distribution: Distribution | None = None) -> None:
-        """Draw from a distribution, the one above if None."""
+        """Use this distribution, or the default one above if None."""
         self.rng = rng
         self._of = Distribution() if distribution is None else distribution
 
     def number(self, name: str) -> float:
-        """Draw from a range, to a hundredth; dead pixels and emissivities finer."""
+        """Sample from a range, rounded to a hundredth; dead pixels and emissivities are finer."""
         spread = self._of.ranges[name]
         if spread.is_whole:
             return int(self.rng.integers(int(spread.low), int(spread.high), endpoint=True))
         return round(float(self.rng.uniform(spread.low, spread.high)), 2 if spread.high > 0.7 else 6)
 
     def count(self, name: str) -> int:
-        """Draw from a range of whole numbers."""
+        """Sample from a range of whole numbers."""
         return int(self.number(name))
 
     def one_of(self, name: str) -> str:
-        """Draw from a few by their shares."""
+        """Sample from a categorical distribution."""
         shares = self._of.shares[name]
         return str(self.rng.choice(list(shares), p=list(shares.values())))
 
     def happens(self, name: str) -> bool:
-        """Draw whether something is so."""
+        """Sample whether an event occurs."""
         return bool(self.rng.random() < self._of.odds[name][0])
 
 
 def narrowed(given: object) -> Distribution:
-    """Return the distribution of random worlds with what is given in the place of its own.
+    """Return the distribution of random worlds, with some parts replaced.
 
     Args:
-        given: by name of `RANGES` a number, or a pair within its limits; by name of `SHARES` one of its
-            words; by name of `ODDS` how often, 0..1.
+        given: for a name in `RANGES`, a number, or a pair within its limits; for a name in `SHARES`, one of
+            its values; for a name in `ODDS`, a probability, 0..1.
 
     Raises:
-        BadInput: there is no such name, or its value is beyond the limits.
+        BadInput: a name is unknown, or a value is outside its limits.
     """
     if not isinstance(given, Mapping):
         raise BadInput(f"{given!r}: must be a mapping of names to values, such as {{'people': [1, 2]}}")
@@ -199,7 +199,7 @@ def narrowed(given: object) -> Distribution:
             elif name in ODDS:
                 odds[name] = (_odds(value), ODDS[name][1])
             else:
-                raise BadInput(f"there is no such; {hint(str(name), [*RANGES, *SHARES, *ODDS])}")
+                raise BadInput(f"unknown name; {hint(str(name), [*RANGES, *SHARES, *ODDS])}")
     return Distribution(ranges=ranges, shares=shares, odds=odds)
 
 
@@ -221,7 +221,7 @@ def _share(usual: Mapping[str, float], value: Any) -> Mapping[str, float]:
 
 def _odds(value: Any) -> float:
     if not is_number(value, is_whole=False) or not 0.0 <= value <= 1.0:
-        raise BadInput(f"{value!r} must be how often that is so, 0 .. 1")
+        raise BadInput(f"{value!r} must be a probability, 0 .. 1")
     return float(value)
 
 

@@ -1,4 +1,4 @@
-"""Draw the place and the robot of a random world, and test whether a scene can be played."""
+"""Sample the place and the robot of a random world, and test whether a scene is a valid scenario."""
 
 import math
 from collections.abc import Callable
@@ -20,20 +20,20 @@ from peopleboy.sim.shapes.materials import COLOURS
 Data = dict[str, Any]
 
 TRIES: Final = 30
-"""How often something is drawn again that stands in the way."""
+"""Number of attempts to sample a valid element."""
 
 
 def until_valid(draw: Callable[[], Data], scene: Data) -> Data:
-    """Draw parts of a scene again until it can be played."""
+    """Sample parts of a scene until it is a valid scenario."""
     for _ in range(TRIES):
         drawn = draw()
         if is_valid(scene | drawn):
             return drawn
-    raise AssertionError(f"{scene['name']}: no start was found for the robot")
+    raise AssertionError(f"{scene['name']}: found no start position for the robot")
 
 
 def with_one_more(scene: Data, key: str, draw: Callable[[], Data], tries: int = TRIES) -> Data:
-    """Add one to a list of a scene; none, if all that are drawn stand in the way."""
+    """Add an element to a list of a scene; add none if no sampled element is valid."""
     for _ in range(tries):
         fuller = scene | {key: [*scene.get(key, []), draw()]}
         if is_valid(fuller):
@@ -42,7 +42,7 @@ def with_one_more(scene: Data, key: str, draw: Callable[[], Data], tries: int = 
 
 
 def is_valid(scene: Data) -> bool:
-    """Return whether a scene can be played."""
+    """Return whether a scene is a valid scenario."""
     try:
         parse_scenario(scene, source=scene["name"], folder=Path())
     except BadInput:
@@ -51,7 +51,7 @@ def is_valid(scene: Data) -> bool:
 
 
 def colour(rng: np.random.Generator) -> str | list[float]:
-    """Draw a colour: one with a name, or a grey with a tint."""
+    """Sample a colour: a named one, or a tinted grey."""
     if rng.random() < 0.3:
         return str(rng.choice(list(COLOURS)))
     level = math.exp(rng.uniform(math.log(0.03), math.log(0.75)))
@@ -59,7 +59,7 @@ def colour(rng: np.random.Generator) -> str | list[float]:
 
 
 def rounded(value: float) -> float:
-    """Round to a hundredth, as files have it."""
+    """Round to a hundredth, as in scenario files."""
     return round(float(value), 2)
 
 
@@ -67,11 +67,11 @@ _LENGTHS: Final = {
     "room": ("length_m",), "street": ("length_m",), "corridor": ("length_m",),
     "l_corridor": ("first_m", "second_m"), "t_corridor": ("stem_m", "bar_m"),
 }  # fmt: skip
-_MARGIN_M: Final = 0.4  # from walls, so that a robot has room
+_MARGIN_M: Final = 0.4  # distance from walls, so that a robot fits
 
 
 def draw_place(draws: Draws) -> Data:
-    """Draw a place without doors."""
+    """Sample a place without doors."""
     kind = draws.one_of("place")
     size = kind if kind in ("room", "street") else "corridor"
     air = draws.number("air")
@@ -113,7 +113,7 @@ def draw_place(draws: Draws) -> Data:
 
 
 def draw_door(draws: Draws, place: Data) -> Data:
-    """Draw a door in one of the walls; it may not fit."""
+    """Sample a door in one of the walls; it may not fit."""
     walls = plan_of(place).walls()
     wall = walls[int(draws.rng.integers(len(walls)))]
     low, high = wall.side.span(wall.area)
@@ -126,7 +126,7 @@ def draw_door(draws: Draws, place: Data) -> Data:
 
 
 def plan_of(place: Data) -> FloorPlan:
-    """Lay out the floor of a place."""
+    """Return the floor plan of a place."""
     config: PlaceConfig = validated(PlaceConfig, place)  # type: ignore[arg-type]
     return lay_out(config)
 
@@ -137,7 +137,7 @@ def air_of(place: Data) -> float:
 
 
 def draw_point(draws: Draws, place: Data) -> list[float]:
-    """Draw a point of the floor, away from walls, evenly over its rectangles."""
+    """Sample a point uniformly over the rectangles of the floor, away from walls."""
     areas = [area for _, area in plan_of(place).areas]
     sizes = np.array([(area.max_x - area.min_x) * (area.max_y - area.min_y) for area in areas])
     area = areas[int(draws.rng.choice(len(areas), p=sizes / sizes.sum()))]
@@ -149,13 +149,13 @@ def draw_point(draws: Draws, place: Data) -> list[float]:
 
 _AIMS: Final = 4
 _TRIES: Final = 8
-_AHEAD_M: Final = 3.0  # of floor before the robot, if it can be
+_AHEAD_M: Final = 3.0  # free floor ahead of the robot, if possible
 _WALL_M: Final = 0.1
 _FREE_M, _FREE_RAD = 1.5, math.radians(40.0)
 
 
 def draw_robot(draws: Draws, place: Data, duration_s: float) -> Data:
-    """Draw a robot, which looks about as far as the place reaches."""
+    """Sample a robot that faces a distant part of the place."""
     at, heading = _stance(draws, place)
     robot: Data = {"at_m": at, "heading_deg": heading, "cameras": draw_cameras(draws)}
     if draws.one_of("robot") == "drives":
@@ -164,7 +164,7 @@ def draw_robot(draws: Draws, place: Data, duration_s: float) -> Data:
 
 
 def draw_cameras(draws: Draws) -> Data:
-    """Draw a thermal camera, with the colour camera beside it, which sees a little less."""
+    """Sample a thermal camera, and next to it a colour camera with a slightly smaller field of view."""
     ahead, _, _ = Pinhole().position_m
     height, pitch, angle = (draws.number(name) for name in ("camera_height", "pitch", "vertical_fov"))
     narrower = 2.0 * math.degrees(math.atan(math.tan(math.radians(angle / 2.0)) / COLOUR_ZOOM))
@@ -198,7 +198,7 @@ def draw_cameras(draws: Draws) -> Data:
 
 
 def _draw_gain(draws: Draws) -> Data:
-    """Draw an automatic gain, so that the room is seen whatever its temperature is."""
+    """Sample an automatic gain, so that the room is visible at any temperature."""
     gain: Data = {
         "gain": draws.one_of("gain"),
         "gain_follows_s": draws.number("gain_follows"),
@@ -211,14 +211,14 @@ def _draw_gain(draws: Draws) -> Data:
 
 
 def is_before(robot: Data, at: list[float]) -> bool:
-    """Return whether a point is so near before the robot that a thing there would fill its view."""
+    """Return whether a point is so close in front of the robot that an object there would fill its view."""
     ahead, aside = at[0] - robot["at_m"][0], at[1] - robot["at_m"][1]
     off = math.remainder(math.atan2(aside, ahead) - math.radians(robot["heading_deg"]), math.tau)
     return math.hypot(ahead, aside) < _FREE_M and abs(off) < _FREE_RAD
 
 
 def _stance(draws: Draws, place: Data) -> tuple[list[float], float]:
-    """Draw a point and a heading [deg] past the farthest of four others, most likely with floor ahead."""
+    """Sample a point, and a heading [deg] towards the farthest of four others, mostly with floor ahead."""
     areas = [area.grown(-_WALL_M) for _, area in plan_of(place).areas]
     for _ in range(_TRIES):
         at = draw_point(draws, place)
@@ -231,7 +231,7 @@ def _stance(draws: Draws, place: Data) -> tuple[list[float], float]:
 
 
 def _drive(draws: Draws, duration_s: float) -> list[Data]:
-    """Draw commands: straight on, curves, turning on the spot, and stops."""
+    """Sample commands: straight drives, curves, turns on the spot, and stops."""
     commands: list[Data] = []
     at = 0.0
     while at < duration_s:

@@ -1,4 +1,4 @@
-"""What was drawn for a random world, value by value, read back from its scenario."""
+"""Read the sampled values of a random world back from its scenario."""
 
 import math
 from collections import Counter
@@ -13,7 +13,7 @@ from peopleboy.scenarios.random_worlds.distribution import RANGES, SHARES, Range
 from peopleboy.sim.people.appearance.finisher import appearance_stream, draw_bearing
 
 Values = dict[str, list[float] | list[str]]
-"""By name of what was drawn: a value, or as many as there are."""
+"""Sampled values by name; a name may have any number of values."""
 
 _BARS: Final = 6
 _SUN: Final = {"sun_azimuth": "azimuth_deg", "sun_elevation": "elevation_deg", "sun_warms": "warms_k"}
@@ -38,14 +38,14 @@ _CAMERA: Final[Mapping[str, str]] = {
     "shutter_every": "shutter_every_s",
     "jpeg_quality": "jpeg_quality",
 }
-"""Keys of the thermal camera by the names of what is drawn."""
+"""Keys of the thermal camera by the names of sampled values."""
 
 
 def drawn_values(played: Mapping[str, Any]) -> Values:
-    """List what was drawn for a world.
+    """List the values that were sampled for a world.
 
     Args:
-        played: the scenario as plain data with everything drawn, as a run's scenario.yaml holds it.
+        played: the resolved scenario as plain data, as in a run's scenario.yaml.
     """
     place, robot = played["place"], played["robot"]
     warm, camera = place["temperatures"], robot["cameras"]["thermal"]
@@ -92,7 +92,7 @@ def drawn_values(played: Mapping[str, Any]) -> Values:
 
 
 def _bearings(people: Sequence[Mapping[str, Any]], seed: int) -> dict[str, list[str]]:
-    """Draw again what a world of this seed draws beside its scenario: what people carry, and wear how."""
+    """Sample again what a world samples outside its scenario: carried objects, coats, headgear, hands."""
     configs = [make_config(validated(PersonSpec, person)) for person in people]
     drawn = [draw_bearing(config, appearance_stream(seed, config.name)) for config in configs]
     return {
@@ -104,11 +104,11 @@ def _bearings(people: Sequence[Mapping[str, Any]], seed: int) -> dict[str, list[
 
 
 def histograms(worlds: Sequence[Values]) -> list[tuple[str, str, str]]:
-    """Count what was drawn for many worlds.
+    """Count the sampled values of many worlds.
 
     Returns:
-        Of each value: what it is, the range with its unit or the number of different ones, and in words how
-        many lie in each sixth of the range, or how often each was drawn.
+        For each value: its description, its range with unit or the number of samples, and the counts as text,
+        for each sixth of the range or for each category.
     """
     names = dict.fromkeys(name for world in worlds for name in world)
     rows = []
@@ -127,7 +127,7 @@ def _counts(values: Iterable[str]) -> str:
 
 
 def _bars(values: Any, spread: Range) -> str:
-    """Count values in equal parts of their range; of whole numbers, each by itself where they are few."""
+    """Count values in equal bins of their range; whole numbers with a small range get one bin each."""
     bars = int(spread.high - spread.low) + 1 if spread.is_whole and spread.high <= 12 else _BARS
     edges = np.linspace(spread.low, spread.high + spread.is_whole, bars + 1)
     inside = np.clip(values, spread.low, np.nextafter(edges[-1], -math.inf))

@@ -1,4 +1,4 @@
-"""Draw a whole world at random, as the data of a scenario file: its scene, its things, and its people."""
+"""Sample a random world as the data of a scenario file: its scene, its objects, and its people."""
 
 import math
 from functools import partial
@@ -31,11 +31,11 @@ from peopleboy.sim.places.furniture.thing_config import KINDS
 from peopleboy.sim.places.pieces import Kind
 
 _WAYPOINT_TRIES: Final = 12
-_NEAREST_M: Final = 1.0  # to the robot, at first
+_NEAREST_M: Final = 1.0  # minimum distance to the robot at the start
 
 
 def draw_person(draws: Draws, scene: Data, ground: Ground, name: str) -> Data:
-    """Draw a person whose way is free; if none is found, one whose way is not."""
+    """Sample a person with a free path; if none is found, the path is not free."""
     person: Data = {
         "name": name,
         "yields": draws.happens("yields"),
@@ -55,7 +55,7 @@ def draw_person(draws: Draws, scene: Data, ground: Ground, name: str) -> Data:
 
 
 def _longer(draws: Draws, scene: Data, ground: Ground, person: Data, is_in_view: bool) -> list[Data]:
-    """Add a point to the path that can be walked to; none, if there is none."""
+    """Append a reachable waypoint to a path; if none is found, append one only to an empty path."""
     path: list[Data] = person["path"]
     for _ in range(_WAYPOINT_TRIES):
         longer = [*path, _waypoint(draws, scene, is_in_view and not path)]
@@ -78,7 +78,7 @@ def _waypoint(draws: Draws, scene: Data, is_in_view: bool) -> Data:
 
 
 def _point_in_view(draws: Draws, scene: Data) -> list[float]:
-    """Draw a point of the floor that the thermal camera sees at first; any, if hardly any is seen."""
+    """Sample a floor point in the thermal camera's initial view; any point if hardly any floor is visible."""
     robot = scene["robot"]
     upright = math.radians(robot["cameras"]["thermal"]["vertical_fov_deg"]) / 2.0
     across = math.atan(math.tan(upright) * Pinhole().width / Pinhole().height)
@@ -92,23 +92,23 @@ def _point_in_view(draws: Draws, scene: Data) -> list[float]:
 
 
 def _seats(scene: Data) -> list[list[float]]:
-    """Places of what one may sit on."""
+    """Return the positions of objects to sit on."""
     things = scene.get("things", ())
     return [thing["at_m"] for thing in things if "at_m" in thing and KINDS[thing["kind"]].is_seat]
 
 
-_USUAL_AIR_C: Final = 21.5  # to which the kinds' own temperatures belong
+_USUAL_AIR_C: Final = 21.5  # air temperature that the default temperatures of objects assume
 _IN_STREETS: Final = (
     "bench", "bicycle", "bin", "block", "car", "dog", "market_stall", "plant", "pillar", "railing",
     "robot", "street_lamp", "tree", "vending_machine",
 )  # fmt: skip
-_LOW_M: Final = 0.65  # a thing that is lower may stand on furniture
+_LOW_M: Final = 0.65  # a lower object may stand on furniture
 _TABLE_M: Final = (0.4, 1.3)
 _PATTERNS: Final = ("stripes", "checks", "patch", "speckle")
 
 
 def draw_thing(draws: Draws, place: Data, robot: Data, things: list[Data]) -> Data:
-    """Draw a thing; it may stand where it cannot."""
+    """Sample an object; its position may be invalid."""
     is_hung = draws.happens("hung")
     kinds = [name for name, kind in KINDS.items() if kind.is_hung == is_hung]
     if place["kind"] == "street" and draws.happens("street_kind"):
@@ -158,27 +158,27 @@ def _height(thing: Data) -> float:
 
 
 def _temperature(draws: Draws, place: Data, kind: Kind) -> float:
-    """Draw a temperature [degC]: that of the air and a little, and for what heats itself its heat."""
+    """Sample a temperature [degC]: close to the air; for a heated object, plus its own heat."""
     own = kind.temperature_c - _USUAL_AIR_C
     heat = own * draws.number("thing_heat") if kind.is_heated else own
     return rounded(air_of(place) + heat + draws.number("thing_over_air"))
 
 
 LASTS_S: Final = 8.0
-"""[s] Length of a random world's run, unless another is asked for."""
+"""[s] Default duration of a random world's run."""
 
 _TRIES: Final = 3
 
 
 def random_world(seed: int, duration_s: float = LASTS_S, distribution: Distribution | None = None) -> Data:
-    """Draw a world from `peopleboy.scenarios.random_worlds.distribution`; the same seed gives the same data.
+    """Sample the data of a random world, which depend only on seed, duration and distribution.
 
-    What people look like is left to be drawn by the run's seed, which should be the same.
+    The appearance of people is sampled from the run's seed, which should be the same.
 
     Args:
-        seed: 0 or more; draws all.
-        duration_s: [s] how long a run lasts.
-        distribution: what else to draw from.
+        seed: seed of the world, 0 or more.
+        duration_s: [s] duration of a run.
+        distribution: see `peopleboy.scenarios.random_worlds.distribution`; None for the default one.
     """
     draws = Draws(stream(seed, "random_world"), distribution)
     scene: Data = {
@@ -209,12 +209,12 @@ def random_world(seed: int, duration_s: float = LASTS_S, distribution: Distribut
 def random_scenario(
     seed: int, duration_s: float = LASTS_S, distribution: Distribution | None = None
 ) -> Scenario:
-    """Draw a world, ready to be played."""
+    """Sample a world, and return it as a scenario."""
     return parse_scenario(random_world(seed, duration_s, distribution), source=f"world_{seed}", folder=Path())
 
 
 def _with_door(draws: Draws, scene: Data) -> Data:
-    """Add a door; none, if all that are drawn do not fit."""
+    """Add a door; add none if no sampled door fits."""
     place = scene["place"]
     for _ in range(_TRIES):
         doors = [*place.get("doors", []), draw_door(draws, place)]

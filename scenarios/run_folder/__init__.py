@@ -1,1 +1,1 @@
-"""A run's folder: written whole, read back, and held against itself."""
+"""A run's folder: write it atomically, read it back, and check it for consistency."""

@@ -1,4 +1,4 @@
-"""Write files and folders whole or not at all, and refuse to replace what must stay."""
+"""Write files and folders atomically, and refuse to replace what must be kept."""
 
 import json
 import os
@@ -18,10 +18,10 @@ from peopleboy.own_code import Terminated
 
 @contextmanager
 def left_by_sigterm() -> Iterator[None]:
-    """Let SIGTERM, as `timeout` and a shutdown send it, leave the block by way of all that cleans up.
+    """Make SIGTERM, sent for example by `timeout` or at shutdown, leave the block with all clean-up.
 
-    The process then ends with the code by which shells know that signal. A handler that another person has
-    set stays, and so does everything outside the main thread, where none can be set.
+    The process then ends with the exit code that shells use for this signal. An existing handler stays, and
+    outside the main thread, where no handler can be set, nothing changes.
     """
     is_main = threading.current_thread() is threading.main_thread()
     before: Any = signal.getsignal(signal.SIGTERM)
@@ -36,21 +36,21 @@ def left_by_sigterm() -> Iterator[None]:
 
 
 def _leave(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
-    # A second one must not cut the clean-up short.
+    # A second signal must not interrupt the clean-up.
     signal.signal(number, signal.SIG_IGN)
     raise Terminated(128 + number)
 
 
 @contextmanager
 def atomic(path: Path, stays: Callable[[], bool] = lambda: False) -> Iterator[Path]:
-    """Return a path beside the one asked for, at which to make a file or folder that then takes its place.
+    """Yield a temporary path beside `path`; the file or folder made there then replaces `path`.
 
-    It does so when the block ends well and has made something. Nothing of it is left if the block ends
-    otherwise, by a signal too, and what a process that was killed has left is removed by the next one.
+    It does so if the block ends without an error and has made something. After an error or a signal, nothing
+    is left; remains of killed processes are removed by the next call.
 
     Args:
-        path: the file or folder asked for; what lies there is replaced.
-        stays: asked at the end whether what lies there by then stays after all.
+        path: the final file or folder; an existing one is replaced.
+        stays: called at the end; returns whether to keep what is at `path` by then.
     """
     part, old = (path.parent / f".{path.name}.{os.getpid()}.{state}" for state in ("new", "old"))
     with left_by_sigterm():
@@ -58,7 +58,7 @@ def atomic(path: Path, stays: Callable[[], bool] = lambda: False) -> Iterator[Pa
         try:
             yield part
             if part.exists() and not stays():
-                if path.is_dir():  # which cannot be replaced at one stroke
+                if path.is_dir():  # a folder cannot be replaced atomically
                     path.rename(old)
                 part.replace(path)
         finally:
@@ -77,17 +77,17 @@ def _remove(path: Path) -> None:
 
 
 def _sweep(path: Path) -> None:
-    """Remove what processes that are no more have left beside a file or folder."""
+    """Remove what processes that no longer run have left beside a file or folder."""
     of_a_process = re.compile(rf"\.{re.escape(path.name)}\.(\d+)\.(new|old)")
     for left in path.parent.iterdir() if path.parent.is_dir() else ():
         found = of_a_process.fullmatch(left.name)
-        # An earlier folder that was to be replaced is all there is until the new one has its place.
+        # An old folder that was being replaced is the only copy until the new one is in place.
         if found and not _is_running(int(found[1])) and (found[2] == "new" or path.exists()):
             _remove(left)
 
 
 def _is_running(process: int) -> bool:
-    """Return whether another process has this number."""
+    """Return whether another process with this number is running."""
     try:
         os.kill(process, 0)
     except (ProcessLookupError, OverflowError):
@@ -98,30 +98,30 @@ def _is_running(process: int) -> bool:
 
 
 def check_out(path: Path, kind: str, *, overwrite: bool) -> None:
-    """Refuse a folder to write where something lies that must stay.
+    """Refuse an output folder that exists and must not be replaced.
 
     Args:
-        path: the folder to write.
-        kind: what may lie there, such as "run": a folder with a file KIND.json.
-        overwrite: whether such a one may be replaced.
+        path: the output folder.
+        kind: kind of folder that may be replaced, such as "run": a folder with a file KIND.json.
+        overwrite: whether such a folder may be replaced.
 
     Raises:
-        BadInput: there is something else, or it may not be replaced.
+        BadInput: the folder is of another kind, or may not be replaced.
     """
     check_named(path)
     if not path.exists() or (path.is_dir() and not any(path.iterdir())):
         return
     if not (path / f"{kind}.json").is_file():
-        raise BadInput(f"{path}: is no {kind} and will not be replaced; give another --out")
+        raise BadInput(f"{path}: is not a {kind} and will not be replaced; give another --out")
     if not overwrite:
         raise BadInput(f"{path}: exists already; give --overwrite to replace this {kind}, or another --out")
 
 
 def check_named(path: Path) -> None:
-    """Refuse a path without a name of its own.
+    """Refuse a path without a name.
 
     Raises:
-        BadInput: it is empty, or the folder that the user is in.
+        BadInput: the path is empty, or the current folder.
     """
     if not path.name:
         raise BadInput("--out must name a folder, neither '' nor '.'")
@@ -129,14 +129,14 @@ def check_named(path: Path) -> None:
 
 @contextmanager
 def writing_to(path: Path, option: str = "--out") -> Iterator[None]:
-    """Turn what keeps the block from writing into one line about the path that the user gave.
+    """Turn an OSError raised inside the block into one line about the path that the user gave.
 
     Args:
-        path: given by the user.
-        option: by which it was given.
+        path: path given by the user.
+        option: command-line option of the path.
 
     Raises:
-        BadInput: it cannot be written to.
+        BadInput: the path cannot be written to.
     """
     try:
         yield
@@ -150,18 +150,18 @@ def writing_to(path: Path, option: str = "--out") -> Iterator[None]:
 def atomic_folder(
     path: Path, about: dict[str, Any], *, overwrite: bool, kind: str = "export"
 ) -> Iterator[Path]:
-    """Return a folder to write to, which takes its place when the block ends well, see `atomic`.
+    """Yield a folder to write to; it takes its final place if the block ends without an error, see `atomic`.
 
-    A file KIND.json says what the folder is.
+    A file KIND.json describes the folder.
 
     Args:
-        path: the folder asked for.
-        about: what that file is to say; it may grow inside the block.
-        overwrite: whether an earlier folder of this kind there may be replaced.
-        kind: what the folder is, "export" or "run".
+        path: the final folder.
+        about: contents of that file; may be extended inside the block.
+        overwrite: whether an existing folder of this kind may be replaced.
+        kind: kind of folder, "export" or "run".
 
     Raises:
-        BadInput: there is something at this path that must not be replaced, or it cannot be written to.
+        BadInput: the path exists and must not be replaced, or cannot be written to.
     """
     with writing_to(path):
         check_out(path, kind, overwrite=overwrite)

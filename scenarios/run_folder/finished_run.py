@@ -1,4 +1,4 @@
-"""A finished run as it lies on disk: what run.json says at once, all else when it is asked for."""
+"""Read a finished run from disk: run.json at once, everything else when it is first needed."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -27,7 +27,7 @@ _FILES = (
 
 
 class Adopted(BaseModel):
-    """What run.json says of tracks that were made elsewhere."""
+    """Entry of run.json about imported tracks."""
 
     model_config = ConfigDict(strict=True, frozen=True)
 
@@ -37,7 +37,7 @@ class Adopted(BaseModel):
 
 
 class About(BaseModel):
-    """What run.json must say of a run of a scenario; it may say more."""
+    """Required entries of run.json for a run of a scenario; there may be others."""
 
     model_config = ConfigDict(strict=True, frozen=True)
 
@@ -58,14 +58,14 @@ class About(BaseModel):
 class FinishedRun:
     """One complete run of a scenario.
 
-    Each attribute but the first two is read when it is first asked for.
+    All attributes except the first two are read when they are first accessed.
 
     Attributes:
-        folder: where it lies.
-        about: what run.json says.
+        folder: folder of the run.
+        about: contents of run.json.
 
     Raises:
-        BadInput: in what is asked for, a file is missing or spoilt.
+        BadInput: a file needed by the accessed attribute is missing or damaged.
     """
 
     folder: Path
@@ -73,7 +73,7 @@ class FinishedRun:
 
     @property
     def name(self) -> str:
-        """Its folder's name."""
+        """Name of the run's folder."""
         return self.folder.resolve().name
 
     @property
@@ -83,31 +83,31 @@ class FinishedRun:
 
     @property
     def frames(self) -> int:
-        """How many there are; the first is 1."""
+        """Number of frames; the first frame is 1."""
         return self.about.frames
 
     @property
     def rate_hz(self) -> int:
-        """Frames a second."""
+        """Frames per second."""
         return self.about.rate_hz
 
     def time_s(self, frame: int) -> float:
-        """When a frame was taken, from the start."""
+        """Return the time of a frame since the start."""
         return (frame - 1) / self.rate_hz
 
     @cached_property
     def played(self) -> Mapping[str, Any]:
-        """What scenario.yaml says, everything drawn."""
+        """Contents of scenario.yaml, the resolved scenario."""
         return read_yaml(self.folder / "scenario.yaml")
 
     @cached_property
     def scenario(self) -> Scenario:
-        """The same as a scenario."""
+        """The resolved scenario."""
         return load_scenario(self.folder / "scenario.yaml")
 
     @cached_property
     def world(self) -> WorldConfig:
-        """Settings of its world."""
+        """Settings of the run's world."""
         return self.scenario.world(self.about.seed, self.about.renderer)
 
     @property
@@ -117,7 +117,7 @@ class FinishedRun:
 
     @cached_property
     def metrics(self) -> Mapping[str, Any]:
-        """What metrics.json says, by group."""
+        """Contents of metrics.json, by group."""
         path = self.folder / "metrics.json"
         try:
             data = json.loads(path.read_text(encoding="utf-8"))
@@ -125,13 +125,13 @@ class FinishedRun:
             raise BadInput(f"{path}: cannot be read; give the folder of a finished run") from error
         if not isinstance(data, dict):
             raise BadInput(
-                f"{path}: holds a {type(data).__name__}, not figures by name; run the scenario again"
+                f"{path}: must contain metrics by name, got a {type(data).__name__}; run the scenario again"
             )
         return data
 
     @cached_property
     def events(self) -> tuple[LogLine, ...]:
-        """What events.jsonl says."""
+        """Contents of events.jsonl."""
         path = self.folder / "events.jsonl"
         try:
             lines = path.read_text(encoding="utf-8").splitlines()
@@ -140,12 +140,12 @@ class FinishedRun:
             raise BadInput(f"{path}: cannot be read as an event log; run the scenario again") from error
 
     def files(self, people: Sequence[str] = TRUTH.names, robot: Sequence[str] = ROBOT.names) -> RunFiles:
-        """Read truth and tracks, with these columns; they are not kept, so that many runs can be open."""
+        """Read truth and tracks with these columns; they are not cached, so that many runs can be open."""
         return read_files(self.folder, self.frames, people, robot)
 
 
 def read_run(folder: Path) -> dict[str, Any]:
-    """Read what run.json says of a complete run, of footage too.
+    """Read run.json of a complete run, which may also be a run of footage.
 
     Raises:
         BadInput: there is no run, or it is not complete.
@@ -159,7 +159,7 @@ def read_run(folder: Path) -> dict[str, Any]:
     if isinstance(about, dict) and about.get("status") == "failed":
         failure = about.get("error")
         why = f": {failure['message']}" if isinstance(failure, dict) and "message" in failure else ""
-        raise BadInput(f"{path}: this run failed{why}; mend that, and run it again")
+        raise BadInput(f"{path}: this run failed{why}; fix the cause, and run it again")
     if not isinstance(about, dict) or about.get("status") != "complete":
         raise BadInput(
             f"{path}: this run was cut off; run it again, or score its files with --truth and --tracks"
@@ -173,11 +173,11 @@ def open_run(folder: Path) -> FinishedRun:
     """Open a complete run of a scenario by its folder.
 
     Raises:
-        BadInput: there is none.
+        BadInput: the folder does not contain one.
     """
     data = read_run(folder)
     if "footage" in data:
-        raise BadInput(f"{folder}: is a run of footage; only runs of scenarios can be looked into so")
+        raise BadInput(f"{folder}: is a run of footage; give a run of a scenario")
     try:
         about = validated(About, data)
     except BadInput as error:
@@ -186,41 +186,41 @@ def open_run(folder: Path) -> FinishedRun:
 
 
 def open_whole_runs(folders: Sequence[Path], *, are_named_apart: bool = True) -> list[FinishedRun]:
-    """Open runs of which all is there that is needed to play them again, and look at all of it once.
+    """Open runs and check that they are complete enough to be replayed.
 
     Args:
-        folders: theirs.
-        are_named_apart: whether each must have a name of its own.
+        folders: folders of the runs.
+        are_named_apart: whether all names must differ.
 
     Raises:
-        BadInput: there is no such run in a folder, or two have the same name.
+        BadInput: a folder does not contain such a run, or two runs have the same name.
     """
     runs = [_open_whole(folder) for folder in folders]
     seen: dict[str, Path] = {}
     for run in runs:
         if are_named_apart and run.name in seen:
             raise BadInput(
-                f"{run.folder}: {seen[run.name]} is called {run.name} too; leave one out, or rename it"
+                f"{run.folder}: has the same name as {seen[run.name]}; leave one out, or rename it"
             )
         seen[run.name] = run.folder
     return runs
 
 
 def check_there(folder: Path) -> None:
-    """Refuse a folder that there is not.
+    """Refuse a folder that does not exist.
 
     Raises:
-        BadInput: it is one.
+        BadInput: the folder does not exist.
     """
     if not folder.is_dir():
-        raise BadInput(f"{folder}: there is no such folder; give the folder of a finished run")
+        raise BadInput(f"{folder}: folder not found; give the folder of a finished run")
 
 
 def runs_in(folder: Path) -> list[Path]:
-    """List the folders of runs that a folder stands for: itself, or those in it.
+    """Return the runs' folders that a folder stands for: itself, or its subfolders with runs.
 
     Raises:
-        BadInput: there is no such folder.
+        BadInput: the folder does not exist.
     """
     check_there(folder)
     inner = sorted(path.parent for path in folder.glob("*/run.json"))
@@ -232,7 +232,7 @@ def _open_whole(folder: Path) -> FinishedRun:
     for name in _FILES:
         if not (folder / name).is_file():
             raise BadInput(
-                f"{folder / name}: there is no such file; only whole runs of scenarios can be exported"
+                f"{folder / name}: file not found; only complete runs of scenarios can be exported"
             )
     run = open_run(folder)
     _ = run.world
@@ -241,9 +241,9 @@ def _open_whole(folder: Path) -> FinishedRun:
 
 
 def cameras_of(folder: Path) -> Mapping[str, CameraConfig]:
-    """Read which cameras the robot of a run had.
+    """Return the cameras of a run's robot.
 
     Raises:
-        BadInput: there is no scenario of a run.
+        BadInput: the folder contains no scenario of a run.
     """
     return load_scenario(folder / "scenario.yaml").robot.config().cameras

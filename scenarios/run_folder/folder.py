@@ -1,4 +1,4 @@
-"""A run's folder: every file that a run leaves, written so that a cut-off run says so and stays readable."""
+"""Write a run's folder, file by file, so that an interrupted run is marked as such and stays readable."""
 
 import json
 import shutil
@@ -47,16 +47,16 @@ _VERSIONED = ("peopleboy", "numpy", "numba", "opencv-python-headless", "pybullet
 
 
 def further_cameras(cameras: Mapping[str, CameraConfig]) -> tuple[str, ...]:
-    """Name the cameras with boxes beside `thermal`, of which truth.parquet and truth/gt.txt speak."""
+    """Return the cameras with boxes other than `thermal`, which truth.parquet and truth/gt.txt are about."""
     return tuple(name for name in with_boxes(cameras) if name != "thermal")
 
 
 class CameraTruth:
-    """Writes the truth of one camera, of the frames in which it took an image.
+    """Write the ground truth of one camera, for the frames in which it took an image.
 
     Args:
-        folder: of the run.
-        camera: its name.
+        folder: folder of the run.
+        camera: name of the camera.
     """
 
     def __init__(self, folder: Path, camera: str) -> None:
@@ -66,33 +66,33 @@ class CameraTruth:
         self._rows: list[Row] = []
 
     def write(self, tick: Tick) -> None:
-        """Write what is true at one tick."""
+        """Write the ground truth of one tick."""
         if self._camera in tick.truths:
             self._rows += truth_rows(tick, self._camera)
             self.lines.writelines(gt_lines(tick, self._camera))
 
     def write_table(self) -> None:
-        """Bring the table to disk."""
+        """Write the table to disk."""
         write_table(self._table, self._rows, TRUTH)
 
 
 def things_camera(cameras: Mapping[str, CameraConfig]) -> str:
-    """Name the camera in whose image things are described: the first depth camera, else `thermal`."""
+    """Return the camera whose image the table of objects refers to: the first depth camera, or `thermal`."""
     return next(iter(depth_cameras(cameras)), "thermal")
 
 
 def depth_cameras(cameras: Mapping[str, CameraConfig]) -> tuple[str, ...]:
-    """Name the cameras that measure depth."""
+    """Return the names of the cameras that measure depth."""
     return tuple(name for name, config in cameras.items() if isinstance(config, DepthConfig))
 
 
 class ThingFiles:
-    """Writes the truth about things, of a run in which some are moved.
+    """Write the ground truth of objects, for a run in which some are moved.
 
     Args:
-        folder: truth/ of the run.
-        cameras: of the robot.
-        frames: whether images are written, and with them the backgrounds of depth cameras.
+        folder: folder truth/ of the run.
+        cameras: cameras of the robot.
+        frames: whether to write images, and with them the backgrounds of depth cameras.
     """
 
     def __init__(self, folder: Path, cameras: Mapping[str, CameraConfig], *, frames: bool) -> None:
@@ -103,7 +103,7 @@ class ThingFiles:
         self._backgrounds = {name: Backgrounds() for name in depth_cameras(cameras)} if frames else {}
 
     def write(self, tick: Tick) -> None:
-        """Take in what is true at one tick."""
+        """Collect the ground truth of one tick."""
         if tick.truth.things and self._camera in tick.truths:
             self._has_things = True
             self._rows += thing_rows(tick, self._camera)
@@ -112,7 +112,7 @@ class ThingFiles:
                 backgrounds.update(tick.truths[name])
 
     def flush(self) -> None:
-        """Bring everything to disk."""
+        """Write everything to disk."""
         if self._has_things:
             write_table(self._folder / "things.parquet", self._rows, THINGS)
         for name, backgrounds in self._backgrounds.items():
@@ -122,11 +122,11 @@ class ThingFiles:
 
 
 class RunFolder:
-    """Writes one run; use it as a context manager.
+    """Write one run; use it as a context manager.
 
-    `run.json` says "running" from the first moment on, "complete" after `complete`, "cut off" when the block
-    is left by an interrupt, and "failed" when it is left by an error, with its message. The text files
-    grow line by line, the tables are written at the end, also of a run that was cut off or failed.
+    The status in `run.json` is "running" from the start, "complete" after `complete`, "cut off" if the block
+    is left by an interrupt, and "failed" with the message if it is left by an error. Text files grow line by
+    line; tables are written at the end, including those of a run that was cut off or failed.
     """
 
     def __init__(
@@ -175,10 +175,10 @@ class RunFolder:
         self._write_json("run.json", {**state, "frames": len(self._robot), **self._about})
 
     def write(self, tick: Tick, events: Sequence[Mapping[str, Any]]) -> None:
-        """Write one tick and what happened at it; images are written behind the run, in order.
+        """Write one tick and its events; images are written in the background, in order.
 
         Raises:
-            BadInput: an image, of this tick or an earlier one, cannot be written.
+            BadInput: an image of this tick or of an earlier one cannot be written.
         """
         self._tracks += track_rows(tick)
         self._robot.append(robot_row(tick))
@@ -192,12 +192,12 @@ class RunFolder:
                 self._images.add(partial(write_png, path, image))
 
     def complete(self, metrics: Mapping[str, Any]) -> None:
-        """Write the metrics; the run is whole."""
+        """Write the metrics, and mark the run as complete."""
         self._write_json("metrics.json", metrics)
         self._is_complete = True
 
     def flush(self) -> None:
-        """Bring all files to disk, so that the run can be scored.
+        """Write all files to disk, so that the run can be scored.
 
         Raises:
             BadInput: an image cannot be written.
@@ -211,7 +211,7 @@ class RunFolder:
         return self._events, *self._results.values(), *(truth.lines for truth in self._truths)
 
     def _write_boxes(self, tick: Tick) -> None:
-        """Write the boxes that the tracker gives, by camera; a camera's file begins with its first box."""
+        """Write the tracker's boxes by camera; a camera's file is created with its first box."""
         for camera in {camera for track in tick.tracks for camera in track.boxes} - set(self._results):
             (self.path / "tracks").mkdir(exist_ok=True)
             self._results[camera] = open_text(self.path / "tracks" / f"{camera}.txt")
@@ -230,7 +230,7 @@ class RunFolder:
 
 
 def _reported(error: Exception) -> dict[str, str]:
-    """Describe what ended a run; bad input is explained in one line, and has no traceback."""
+    """Describe the error that ended a run; bad input has one line and no traceback."""
     if isinstance(error, BadInput):
         return {"message": str(error)}
     message = str(error) if isinstance(error, OwnCodeFailed) else in_one_line(error)
@@ -238,7 +238,7 @@ def _reported(error: Exception) -> dict[str, str]:
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of the packages on which the bytes of a run depend, of those that are installed."""
+    """Return the versions of the installed packages that the output of a run depends on."""
     found = {}
     for name in _VERSIONED:
         with suppress(PackageNotFoundError):
@@ -247,10 +247,10 @@ def versions() -> dict[str, str]:
 
 
 def claim_folder(path: Path, *, overwrite: bool) -> None:
-    """Make the folder of a new run.
+    """Create the folder of a new run.
 
     Raises:
-        BadInput: there is something at this path that must not be replaced, or the folder cannot be written.
+        BadInput: the path exists and must not be replaced, or the folder cannot be written to.
     """
     with writing_to(path):
         check_out(path, "run", overwrite=overwrite)
@@ -261,7 +261,7 @@ def claim_folder(path: Path, *, overwrite: bool) -> None:
 
 
 def result_lines(tick: Tick, camera: str = THERMAL) -> list[str]:
-    """MOTChallenge results in the image of a camera: one line per confirmed track."""
+    """Return MOTChallenge results in the image of a camera: one line per confirmed track."""
     return [
         track_line(tick.frame, track.id, box, track.confidence)
         for track, box in confirmed(tick.tracks, camera)
@@ -269,7 +269,7 @@ def result_lines(tick: Tick, camera: str = THERMAL) -> list[str]:
 
 
 def gt_lines(tick: Tick, camera: str = "thermal") -> list[str]:
-    """MOTChallenge truth of everybody whose silhouette reaches into a camera's image: a line a person."""
+    """Return MOTChallenge ground truth of a camera: one line per person whose silhouette is in the image."""
     return [
         truth_line(tick.frame, person.id, person.box, person.is_counted, person.visible_fraction)
         for person in tick.truths[camera].people
@@ -278,5 +278,5 @@ def gt_lines(tick: Tick, camera: str = "thermal") -> list[str]:
 
 
 def open_text(path: Path) -> TextIO:
-    """Open a file of lines to write."""
+    """Open a text file for writing lines."""
     return path.open("w", encoding="utf-8", newline="\n")

@@ -1,4 +1,4 @@
-"""Write images as lossless files, in the background, and describe what they hold."""
+"""Write images as lossless files in the background, and describe their contents."""
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -18,7 +18,7 @@ from peopleboy.sim.world_config import CONTROL_HZ
 
 
 def make_image_folders(folder: Path, cameras: Mapping[str, CameraConfig]) -> None:
-    """Make a folder for each image that the cameras give: thermal, thermal16, colour, ..."""
+    """Make a folder for each kind of image: thermal, thermal16, colour, ..."""
     for name, _, _ in image_folders(cameras):
         (folder / name).mkdir(parents=True)
 
@@ -27,7 +27,7 @@ def write_images(folder: Path, frame: int, senses: Observation, cameras: Mapping
     """Write a frame's images into their folders.
 
     Raises:
-        BadInput: one cannot be written.
+        BadInput: an image cannot be written.
     """
     for path, image in images_to_write(folder, frame, senses, cameras):
         write_png(path, image)
@@ -36,22 +36,22 @@ def write_images(folder: Path, frame: int, senses: Observation, cameras: Mapping
 def images_to_write(
     folder: Path, frame: int, senses: Observation, cameras: Mapping[str, CameraConfig]
 ) -> Iterator[tuple[Path, Stored]]:
-    """Return a frame's images as they are stored, and where."""
+    """Return a frame's images in their stored form, with their paths."""
     for name, image, layer in image_folders(cameras):
         if image in senses.images:
             yield folder / name / image_file(frame), layer.encode(senses.images[image])
 
 
 def image_file(frame: int) -> str:
-    """Name the file of a frame, from 1."""
+    """Return the file name of a frame, counted from 1."""
     return f"{frame:06d}.png"
 
 
 def write_png(path: Path, image: Stored) -> None:
-    """Write an (H, W) grey image of 8 or 16 bits, or an (H, W, 3) RGB one.
+    """Write an (H, W) grey image of 8 or 16 bits, or an (H, W, 3) RGB image.
 
     Raises:
-        BadInput: it cannot be written.
+        BadInput: the image cannot be written.
     """
     stored = image[..., ::-1] if image.ndim == 3 else image
     if not cv2.imwrite(str(path), stored, [cv2.IMWRITE_PNG_COMPRESSION, 2]):
@@ -59,7 +59,7 @@ def write_png(path: Path, image: Stored) -> None:
 
 
 def millimetres(depth_m: NDArray[np.floating]) -> NDArray[np.uint16]:
-    """Return depth (H, W) [m] in whole millimetres; 0 where nothing is, and beyond 65 m."""
+    """Convert depth (H, W) [m] to whole millimetres; 0 for no measurement or more than 65 m."""
     whole = np.rint(1000.0 * np.where(np.isfinite(depth_m), depth_m, 0.0))
     return np.where(whole < 65536.0, whole, 0.0).astype(np.uint16)
 
@@ -72,7 +72,7 @@ _KEYS: Mapping[str, tuple[str, ...]] = {
 
 
 def about_gains(cameras: Mapping[str, CameraConfig]) -> dict[str, dict[str, Any]]:
-    """Return by which gain each thermal camera comes to its grey, and with which settings."""
+    """Return the gain of each thermal camera, with its settings."""
     return {
         name: {"gain": config.gain} | {key: getattr(config, key) for key in _KEYS[config.gain]}
         for name, config in cameras.items()
@@ -81,18 +81,18 @@ def about_gains(cameras: Mapping[str, CameraConfig]) -> dict[str, dict[str, Any]
 
 
 def thermal_span_c(config: ThermalConfig) -> list[float] | None:
-    """Return the span [degC] of 8-bit images; None where it changes from image to image."""
+    """Return the span [degC] of 8-bit images; None if it changes between images."""
     return [config.lowest_c, config.highest_c] if config.gain == "fixed" else None
 
 
 MOST: Final = 64
-"""How much work may wait; whoever brings more waits until some is done."""
+"""Maximum number of waiting jobs; `add` blocks while the queue is full."""
 
 
 class BackgroundQueue:
-    """Does one piece of work after the other, in the order in which they came, and drops none.
+    """Execute jobs one after the other in a background thread, in order and without dropping any.
 
-    What a piece of work raises is raised by the next call of `add` or `flush` that finds it.
+    An error raised by a job is raised again by the next call of `add` or `flush`.
     """
 
     def __init__(self) -> None:
@@ -100,26 +100,26 @@ class BackgroundQueue:
         self._waiting: deque[Future[None]] = deque()
 
     def add(self, work: Callable[[], None]) -> None:
-        """Let this be done after what was added before."""
+        """Append a job."""
         while self._waiting and (len(self._waiting) >= MOST or self._waiting[0].done()):
             self._waiting.popleft().result()
         self._waiting.append(self._thread.submit(work))
 
     def flush(self) -> None:
-        """Wait until all is done."""
+        """Wait until all jobs are done."""
         while self._waiting:
             self._waiting.popleft().result()
 
     def close(self) -> None:
-        """Do what is left, and end the thread; its errors are dropped, as one is raised already."""
+        """Finish the remaining jobs, and end the thread; their errors are dropped, since one was raised."""
         self._thread.shutdown()
 
 
 def describe_images(outfits: Iterable[Mapping[str, CameraConfig]]) -> str:
-    """Return how large cameras' images are, how many a second, and of which cameras if they differ.
+    """Describe size and frame rate of the cameras' images, with the cameras' names if they differ.
 
     Args:
-        outfits: the cameras of each robot.
+        outfits: cameras of each robot.
     """
     names: dict[str, dict[str, None]] = {}
     for name, config in (pair for cameras in outfits for pair in cameras.items()):

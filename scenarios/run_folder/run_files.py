@@ -1,6 +1,6 @@
-"""Read truth and tracks of a finished run, in images and on the floor, and check that they fit together.
+"""Read ground truth and tracks of a finished run, and check that the files are consistent.
 
-A run of another version, or one whose files were changed since, is refused here with one line.
+A run of another version, or one whose files were changed later, is refused with a message of one line.
 """
 
 from collections import defaultdict
@@ -36,7 +36,7 @@ from peopleboy.tracker.track import Box, Status, Track
 
 _AGAIN = "run the scenario again"
 _TRUTH_TEXT, _TRACKS_TEXT = Path("truth") / "gt.txt", Path("tracks.txt")
-# What says which rows of the tables are in the text files too.
+# Columns that select the rows of the tables that are also in the text files.
 WRITTEN_TRUTH = ("frame", "id", "left_px", "whole_px", "hidden_by")
 _WRITTEN_TRACKS = ("frame", "id", "status", "left_px")
 _WHOLE = ("whole_left_px", "whole_top_px", "whole_width_px", "whole_height_px")
@@ -48,7 +48,7 @@ class RunFiles:
 
     Attributes:
         truth, tracks: truth/gt.txt and tracks.txt.
-        further: tracks/CAMERA.txt by camera, of those in whose images the tracker gave boxes.
+        further: tracks/CAMERA.txt by camera, for other cameras in which the tracker gave boxes.
         people, beliefs, robot: truth.parquet, tracks.parquet, robot.parquet.
     """
 
@@ -60,11 +60,11 @@ class RunFiles:
     robot: pa.Table
 
     def people_by_frame(self) -> dict[int, list[Row]]:
-        """Return the rows of truth.parquet."""
+        """Return the rows of truth.parquet by frame."""
         return _by_frame(self.people)
 
     def tracks_by_frame(self) -> dict[int, list[Track]]:
-        """Return what the tracker said, tentative tracks too."""
+        """Return the tracks by frame, including tentative ones."""
         found = _by_frame(self.beliefs).items()
         boxes = self._further_boxes()
         return defaultdict(
@@ -76,7 +76,7 @@ class RunFiles:
         )
 
     def _further_boxes(self) -> dict[tuple[int, int], dict[str, Box]]:
-        """Return the boxes in further cameras' images, by frame and id."""
+        """Return the boxes in other cameras' images, by frame and id."""
         found: dict[tuple[int, int], dict[str, Box]] = defaultdict(dict)
         for camera, rows in self.further.items():
             columns = (rows.frame.tolist(), rows.id.tolist(), rows.box.tolist())
@@ -85,7 +85,7 @@ class RunFiles:
         return found
 
     def explanations_by_frame(self, tracker: str) -> dict[int, object]:
-        """Give what the tracker of that name explained, as far as the table holds it; None where nothing."""
+        """Return the tracker's explanations by frame, as far as the table stores them; None for none."""
         found = _by_frame(self.beliefs).items()
         return defaultdict(lambda: None, {frame: read_explanation(tracker, rows) for frame, rows in found})
 
@@ -96,17 +96,16 @@ def read_files(
     people: Sequence[str] = TRUTH.names,
     robot: Sequence[str] = ROBOT.names,
 ) -> RunFiles:
-    """Read the tables of a run that has so many frames.
+    """Read the tables of a run.
 
     Args:
-        folder: of the run.
-        frames: how many.
-        people: the columns wanted of truth.parquet; those that tell who is in the image among them.
-        robot: the columns wanted of robot.parquet, `frame` among them.
+        folder: folder of the run.
+        frames: number of frames of the run.
+        people: columns to read from truth.parquet, including those that mark people in the image.
+        robot: columns to read from robot.parquet, including `frame`.
 
     Raises:
-        BadInput: a file is missing or spoilt, of a version that had not all columns, or does not belong to
-            the others.
+        BadInput: a file is missing or damaged, lacks a column, or does not belong to the others.
     """
     files = RunFiles(
         truth=read_truth(folder / _TRUTH_TEXT),
@@ -131,15 +130,15 @@ def read_files(
 
 
 def check_whole(folder: Path, truth: TrueBoxes, tracks: TrackBoxes) -> None:
-    """Refuse a run whose text files have not the boxes of its tables, as far as it has tables.
+    """Refuse a run whose text files and tables do not contain the same boxes; missing tables are ignored.
 
     Args:
-        folder: of the run.
-        truth: what its truth/gt.txt says.
-        tracks: what its tracks.txt says.
+        folder: folder of the run.
+        truth: contents of truth/gt.txt.
+        tracks: contents of tracks.txt.
 
     Raises:
-        BadInput: a box is missing, or nobody's, or a table is spoilt.
+        BadInput: a box is missing or superfluous, or a table is damaged.
     """
     if (folder / "truth.parquet").is_file():
         people = read_table(folder / "truth.parquet", TRUTH, WRITTEN_TRUTH)
@@ -150,10 +149,10 @@ def check_whole(folder: Path, truth: TrueBoxes, tracks: TrackBoxes) -> None:
 
 
 def check_end(rows: Rows, path: Path, frames: int) -> None:
-    """Refuse a file that goes on after the run.
+    """Refuse a file with frames beyond the end of the run.
 
     Raises:
-        BadInput: it does.
+        BadInput: the file has such frames.
     """
     if rows.last_frame > frames:
         raise BadInput(f"{path}: must end with frame {frames}, the run's last, got {rows.last_frame}")
@@ -163,7 +162,7 @@ def read_table(path: Path, schema: pa.Schema, columns: Collection[str]) -> pa.Ta
     """Read columns of a table of a run.
 
     Raises:
-        BadInput: it is missing or spoilt, or of a version that had other columns.
+        BadInput: the table is missing, damaged, or of a version with other columns.
     """
     try:
         found = pq.read_schema(path)
@@ -183,19 +182,19 @@ def read_table(path: Path, schema: pa.Schema, columns: Collection[str]) -> pa.Ta
 
 
 def truth_files(folder: Path, camera: str) -> tuple[Path, Path]:
-    """Name the text and the table of a camera's truth in a run's folder."""
+    """Return the paths of the text and the table of a camera's ground truth in a run's folder."""
     if camera == "thermal":
         return folder / "truth" / "gt.txt", folder / "truth.parquet"
     return folder / "truth" / f"{camera}.gt.txt", folder / "truth" / f"{camera}.parquet"
 
 
 def true_boxes(text: Path, table: Path, kind: BoxKind) -> TrueBoxes:
-    """Read who was there: boxes round torsos are in the text, those round whole people in the table alone.
+    """Read the ground truth: torso boxes are in the text file, whole-person boxes only in the table.
 
-    Whole ones are those of the silhouette as if nothing hid it, also outside the image.
+    A whole-person box is the box of the unoccluded silhouette, which may extend beyond the image.
 
     Raises:
-        BadInput: the file is missing or spoilt.
+        BadInput: a file is missing or damaged.
     """
     if kind is BoxKind.TORSO:
         return read_truth(text)
@@ -212,12 +211,12 @@ def true_boxes(text: Path, table: Path, kind: BoxKind) -> TrueBoxes:
 
 
 def written_truth(people: pa.Table) -> pa.Table:
-    """Keep the rows of people who have a line in truth/gt.txt."""
+    """Return the rows of people who have a line in truth/gt.txt."""
     return people.filter(pc.and_(pa.array(is_in_image(people)), pc.is_valid(people["left_px"])))
 
 
 def _written_tracks(beliefs: pa.Table) -> pa.Table:
-    """Keep the rows of tracks that have a line in tracks.txt."""
+    """Return the rows of tracks that have a line in tracks.txt."""
     is_sure = pc.not_equal(beliefs["status"], str(Status.TENTATIVE))
     return beliefs.filter(pc.and_(is_sure, pc.is_valid(beliefs["left_px"])))
 
@@ -234,7 +233,7 @@ def _by_frame(table: pa.Table) -> dict[int, list[Row]]:
 
 
 def _check_rows(rows: Rows, path: Path, table: pa.Table) -> None:
-    """Refuse a text file that has not just the frames and ids of the table, each line whole."""
+    """Refuse a text file with an incomplete line, or whose frames and ids differ from those of the table."""
     if len(rows) and not path.read_bytes().endswith(b"\n"):
         raise BadInput(f"{path}: ends in the middle of a line; {_AGAIN}")
     said = set(zip(rows.frame.tolist(), rows.id.tolist(), strict=True))
@@ -252,18 +251,18 @@ POSE: Final = ("frame", "x_m", "y_m", "heading_rad")
 VIEW: Final = ("frame", "id", "visible_fraction", "is_counted")
 PEOPLE: Final = (*VIEW, "x_m", "y_m")
 BELIEFS: Final = ("frame", "id", "confidence", "status", "left_px", *PLACE)
-"""The columns of robot.parquet, truth.parquet and tracks.parquet that are needed here."""
+"""Columns of robot.parquet, truth.parquet and tracks.parquet that are needed here."""
 
 
 def places_of_people(people: pa.Table, robot: pa.Table) -> Places:
-    """Return where people stood.
+    """Return the floor positions of people.
 
     Raises:
-        BadInput: the robot's place is not known in every frame.
+        BadInput: the robot's position is missing in a frame.
     """
     frame, poses = people["frame"].to_numpy(), _columns(robot, POSE)
     if not np.isin(frame, poses[:, 0]).all():
-        raise BadInput("truth.parquet: has frames that robot.parquet has not; run the scenario again")
+        raise BadInput("truth.parquet: has frames that are not in robot.parquet; run the scenario again")
     x, y, heading = poses[np.searchsorted(poses[:, 0], frame), 1:].T
     dx, dy = people["x_m"].to_numpy() - x, people["y_m"].to_numpy() - y
     cosine, sine = np.cos(heading), np.sin(heading)
@@ -272,7 +271,7 @@ def places_of_people(people: pa.Table, robot: pa.Table) -> Places:
 
 
 def places_of_tracks(beliefs: pa.Table) -> Places:
-    """Return where confirmed tracks are said to stand; those of which it is not said are left out."""
+    """Return the floor positions of confirmed tracks that have one."""
     placed = _placed(beliefs)
     columns = _columns(placed, PLACE)
     return Places(
@@ -284,23 +283,24 @@ def places_of_tracks(beliefs: pa.Table) -> Places:
 
 
 def is_on_floor_alone(beliefs: pa.Table) -> bool:
-    """Return whether a tracker gave places of people, but of nobody a box in the thermal image."""
+    """Return whether a tracker gave floor positions of people, but no boxes in the thermal image."""
     return bool(len(beliefs)) and beliefs["left_px"].null_count == len(beliefs) and len(_placed(beliefs)) > 0
 
 
 def as_squares(
     folder: Path, people: pa.Table, beliefs: pa.Table, robot: pa.Table
 ) -> tuple[TrueBoxes, TrackBoxes]:
-    """Put squares on the floor [m] for the boxes of everybody who is there, and of confirmed tracks.
+    """Replace the boxes of all present people and of confirmed tracks by squares on the floor [m].
 
-    Who counts, and how much of a person is visible, is taken from the cameras in which the tracker gave
-    boxes, or else by the thermal one; who is in no image is nobody to find, and no false alarm either.
+    Which people count, and their visible fraction, is determined by the cameras in which the tracker gave
+    boxes, or by the thermal camera if there are none; a person in no image is neither a miss nor a false
+    alarm.
 
     Args:
-        folder: of the run.
-        people: its truth.parquet, the columns `PEOPLE` among others.
-        beliefs: its tracks.parquet.
-        robot: its robot.parquet.
+        folder: folder of the run.
+        people: truth.parquet, with the columns `PEOPLE` and others.
+        beliefs: tracks.parquet.
+        robot: robot.parquet.
     """
     standing, believed = places_of_people(people, robot), places_of_tracks(beliefs)
     visible, counted = _viewed(folder, people)
@@ -309,7 +309,7 @@ def as_squares(
 
 
 def _viewed(folder: Path, people: pa.Table) -> tuple[Floats, NDArray[np.bool_]]:
-    """Tell how much of people is visible (N,), in the image that shows most, and whether any counts them."""
+    """Return the visible fraction (N,) of people in the best image, and whether any image counts them."""
     boxed = [folder / "truth" / f"{path.stem}.parquet" for path in sorted((folder / "tracks").glob("*.txt"))]
     views = [read_table(path, TRUTH, VIEW) for path in boxed] or [people]
     most: dict[tuple[int, int], float] = defaultdict(float)

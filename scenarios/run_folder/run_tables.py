@@ -1,4 +1,4 @@
-"""Define the parquet tables of a run: truth, tracks, robot and things, a row per frame and one of them."""
+"""Define the parquet tables of a run: truth, tracks, robot and objects, with one row per frame and entity."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict
@@ -22,13 +22,13 @@ from peopleboy.tracker.track import Box, FloorPlace, Status, Track
 STATE = ("x", "y", "w", "h", "d", "vx", "vy", "vw", "vh")
 SPREAD = "uncertainty_px2"
 COLUMNS = (SPREAD, *STATE)
-"""TableColumns of the tracks table that have no value for trackers without contours."""
+"""Columns of the tracks table that are empty for trackers without contours."""
 
 _NOTHING: Mapping[str, Any] = dict.fromkeys(COLUMNS)
 
 
 def explained(explanation: object, track: int) -> Mapping[str, Any]:
-    """Return the values of `COLUMNS` for a track; None for a kind of explanation without contours."""
+    """Return the values of `COLUMNS` for a track; None if the explanation has no contours."""
     if isinstance(explanation, ContourExplanation) and track in explanation.ellipses:
         return {SPREAD: explanation.spread_px2[track], **asdict(explanation.ellipses[track])}
     found = (explained(part, track) for part in parts_of(explanation))
@@ -36,7 +36,7 @@ def explained(explanation: object, track: int) -> Mapping[str, Any]:
 
 
 def read_explanation(tracker: str, rows: Iterable[Mapping[str, Any]]) -> ContourExplanation | None:
-    """Read back what a tracker of that name explained at one frame; None if its rows hold nothing of it."""
+    """Return a tracker's explanation at one frame, read from its rows; None if they contain none."""
     explained_rows = [row for row in rows if row[SPREAD] is not None]
     if not explained_rows or tracker not in VARIANTS:
         return None
@@ -54,9 +54,9 @@ class TableColumn(NamedTuple):
     """One column of a table.
 
     Attributes:
-        type: of its values.
-        value: gives the value of what a row is about.
-        may_be_empty: whether rows may have no value.
+        type: type of the values.
+        value: returns the value for the entity of a row.
+        may_be_empty: whether rows may lack a value.
     """
 
     type: pa.DataType
@@ -82,7 +82,7 @@ def plain(kind: pa.DataType, *names: str) -> TableColumns:
 def numbers(
     names: Iterable[str], values: Callable[[Any], Sequence[float] | None], *, may_be_empty: bool = False
 ) -> TableColumns:
-    """Declare a column for each number of a tuple, all without a value where there is none."""
+    """Declare a column for each number of a tuple; all are empty if there is no tuple."""
 
     def nth(k: int) -> Callable[[Any], float | None]:
         return lambda one: None if (found := values(one)) is None else found[k]
@@ -106,20 +106,20 @@ _UNITS: Final = {
     "_s": "s",
     "_c": "degC",
 }
-"""Units by how the name of a column ends, the longer endings first."""
+"""Units by the suffix of a column's name, longer suffixes first."""
 
 FRAMES: Final = {
     "world": "right-handed, z up; origin and axes of the scenario's plan",
     "robot": "x forward, y left, z up; origin on the floor below the robot's axis",
     "image": "u right, v down; the middle of the upper left pixel is (0, 0)",
 }
-"""Reference frames that columns refer to."""
+"""Reference frames of columns."""
 
 _IN_WORLD: Final = ("x_m", "y_m", "z_m", "heading_rad", "velocity_", "joints_m", "odometry_")
 
 
 def _about(name: str) -> dict[str, str]:
-    """Return unit and reference frame of a column, by its name."""
+    """Return unit and reference frame of a column, from its name."""
     unit = next((unit for end, unit in _UNITS.items() if name.endswith(end)), "")
     frame = "image" if unit in ("px", "px2") else "robot" if name.startswith("place_") else ""
     if name.startswith(_IN_WORLD):
@@ -128,20 +128,20 @@ def _about(name: str) -> dict[str, str]:
 
 
 def with_metadata(schema: pa.Schema, table: str) -> pa.Schema:
-    """Return a schema whose metadata say unit and frame of each column, and what wrote the table."""
+    """Return a schema with metadata: unit and frame of each column, and the program that wrote the table."""
     fields = [field.with_metadata(_about(field.name) or None) for field in schema]
     frames = {f"peopleboy.frame.{name}": text for name, text in FRAMES.items()}
     return pa.schema(fields, {"peopleboy.table": table, "peopleboy.version": version("peopleboy"), **frames})
 
 
 def schema_of(table: str, columns: TableColumns) -> pa.Schema:
-    """Return the schema of a table with these columns behind frame and time."""
+    """Return the schema of a table with these columns after frame and time."""
     fields = (pa.field(name, column.type) for name, column in columns.items())
     return with_metadata(pa.schema([*_INSTANT, *fields]), table)
 
 
 def row_of(columns: TableColumns, frame: int, time_s: float, one: object) -> Row:
-    """Return the row of a table about one person, thing, track or robot."""
+    """Return the row of a table about one person, object, track or robot."""
     values = {name: column.value(one) for name, column in columns.items()}
     return {"frame": frame, "time_s": time_s, **values}
 
@@ -170,7 +170,7 @@ _PERSON: Final[TableColumns] = {
 
 
 class _Tracked(NamedTuple):
-    """A track, its box in one camera's image, and what its tracker explained of it, by `COLUMNS`."""
+    """A track, its box in one camera's image, and its tracker's explanation, by `COLUMNS`."""
 
     track: Track
     box: Box | None
@@ -231,7 +231,7 @@ ROBOT, THINGS = schema_of("robot", _ROBOT), schema_of("things", _THING)
 MAY_BE_EMPTY = frozenset(
     name for columns in (_PERSON, _TRACK) for name, column in columns.items() if column.may_be_empty
 )
-"""Columns that have no value where there is nobody or nothing."""
+"""Columns that are empty if there is no person or object."""
 
 
 def truth_rows(tick: Tick, camera: str = "thermal") -> list[Row]:
@@ -240,25 +240,25 @@ def truth_rows(tick: Tick, camera: str = "thermal") -> list[Row]:
 
 
 def thing_rows(tick: Tick, camera: str) -> list[Row]:
-    """Return the rows of the table of things for one tick, as a camera's truth describes them."""
+    """Return the rows of the objects table for one tick, from a camera's ground truth."""
     return [row_of(_THING, tick.frame, tick.truth.time_s, one) for one in tick.truths[camera].things]
 
 
 def is_in_image(people: pa.Table) -> NDArray[np.bool_]:
-    """(N,) whether any of the silhouette lies inside the image."""
+    """Return whether any part of the silhouette lies inside the image (N,)."""
     outside = np.array([dict(shares).get("border", 0.0) for shares in people["hidden_by"].to_pylist()])
     return np.asarray((people["whole_px"].to_numpy() > 0) & (outside.reshape(-1) < 1.0))
 
 
 def track_rows(tick: Tick) -> list[Row]:
-    """Return the rows of the tracks table for one tick: one per track, tentative ones too."""
+    """Return the rows of the tracks table for one tick: one per track, including tentative ones."""
     return [track_row(tick.frame, tick.truth.time_s, track, tick.explanation) for track in tick.tracks]
 
 
 def track_row(frame: int, time_s: float, track: Track, explanation: object, camera: str = THERMAL) -> Row:
-    """Return the row of one track at one instant, with what the tracker explained of it.
+    """Return the row of one track at one instant, with the tracker's explanation.
 
-    The box is that in the image of the camera of this name.
+    The box is the one in the image of `camera`.
     """
     one = _Tracked(track, track.boxes.get(camera), explained(explanation, track.id))
     return row_of(_TRACK, frame, time_s, one)
@@ -270,12 +270,12 @@ def robot_row(tick: Tick) -> Row:
 
 
 def write_table(path: Path, rows: list[Row], schema: pa.Schema) -> None:
-    """Write rows as a parquet file; no rows give an empty table with the same columns."""
+    """Write rows as a parquet file; without rows, the table is empty and has the same columns."""
     pq.write_table(pa.Table.from_pylist(rows, schema=schema), path)
 
 
 def track_of(row: Mapping[str, Any]) -> Track:
-    """Read a track back from a row of the tracks table."""
+    """Return the track of a row of the tracks table."""
     left, top, width, height = (row[edge] for edge in _EDGES)
     x, y, *covariance = (row[name] for name in PLACE)
     return Track(

@@ -75,7 +75,7 @@ def _check_workers(client: Any, scheduler: str) -> None:
     for address, threads in client.nthreads().items():
         if threads > 1:
             raise BadInput(
-                f"--scheduler {scheduler}: worker {address} has {threads} threads, but each run needs its own "
+                f"--scheduler {scheduler}: worker {address} has {threads} threads, but a run needs its own "
                 "process; start it with --nthreads 1"
             )
     ours = running_source()

@@ -108,7 +108,7 @@ def running_source() -> Source:
 
     Workers of a cluster must have the same, because the output depends on them.
     """
-    from peopleboy.scenarios.run_folder.folder import versions  # here, as the command line imports this module
+    from peopleboy.scenarios.run_folder.folder import versions  # here, as the command line imports us
 
     digest = sha256()
     root = Path(__file__).parents[3]

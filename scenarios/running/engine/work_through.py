@@ -111,7 +111,7 @@ def _workers_end_first() -> Iterator[None]:
 
 @contextmanager
 def _renewed_in_silence() -> Iterator[None]:
-    """Suppress the warning when joblib replaces a process that holds 300 MB more than after its first task."""
+    """Hide the warning when joblib replaces a process that uses 300 MB more than after its first task."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "A worker stopped while some jobs were given", UserWarning)
         yield

@@ -46,5 +46,5 @@ def test_an_unknown_one_is_refused_by_who_is_near_or_where_all_are_listed(tmp_pa
         load_scenario("zzz")
     path = tmp_path / "mine.yaml"
     path.write_text(WHOLE + "like: ./other.yaml\n")
-    with refused("mine.yaml: like: ", "'./other.yaml'", "`peopleboy list`", "no file"):
+    with refused("mine.yaml: like: ", "'./other.yaml'", "`peopleboy list`", "not a file"):
         load_scenario(path)

@@ -28,7 +28,7 @@ LAUGHS = "a: &a [x, x, x, x]\n" + "".join(
 @pytest.mark.parametrize(
     ("text", "named"),
     [
-        ("name: x\n\tduration_s: 2", ("line 2: a tab", "indent by spaces")),
+        ("name: x\n\tduration_s: 2", ("line 2: a tab", "indent with spaces")),
         ("", ("empty",)),
         ("# nothing but a remark\n", ("empty",)),
         ("- a\n- b\n", ("list",)),

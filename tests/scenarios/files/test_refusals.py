@@ -58,11 +58,11 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
     ),
     "two in one place": (
         lambda d: d["people"].append({"name": "carl", "path": [{"at_m": [3.0, 1.0]}, {"at_m": [5.0, 1.0]}]}),
-        ("people[2].path[0].at_m: 'carl' starts where 'anna' does",),
+        ("people[2].path[0].at_m: 'carl' starts at the same time and place as 'anna'",),
     ),
     "a group of one": (
         lambda d: d["people"][0].update(group="us"),
-        ("people[0].group: 'us' has nobody but 'anna'",),
+        ("people[0].group: 'us' has only one member, 'anna'",),
     ),
     "a fault when all is over": (
         lambda d: d.update(faults=[{"kind": "camera_black", "from_s": 20.0}]),
@@ -70,31 +70,31 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
     ),
     "a script without commands": (
         lambda d: d.update(robot={"at_m": [1.0, 0.0], "behaviour": "scripted"}),
-        ("robot.commands: a scripted robot has none", "let the robot 'stand'"),
+        ("robot.commands: a scripted robot needs at least one", "or use behaviour 'stand'"),
     ),
     "a tracker of one's own": (
         lambda d: d["robot"].update(tracker="mine:Mine"),
-        ("robot.tracker: 'mine:Mine' is a class of your own", "--tracker mine:Mine"),
+        ("robot.tracker: 'mine:Mine' is your own class", "--tracker mine:Mine"),
     ),
     "a person named as a thing": (
         lambda d: d["people"][1].update(name="table_1"),
-        ("people[1]: name 'table_1' is that of something in the place",),
+        ("people[1]: name 'table_1' is used by an object in the place",),
     ),
     "a person named as a wall": (
         lambda d: d["people"][1].update(name="wall_east"),
-        ("people[1]: name 'wall_east' is that of something in the place",),
+        ("people[1]: name 'wall_east' is used by an object in the place",),
     ),
     "a person named as the border": (
         lambda d: d["people"][1].update(name="border"),
-        ("people[1]: name 'border' is taken",),
+        ("people[1]: name 'border' is reserved",),
     ),
     "a camera whose images would lie where watch writes": (
         lambda d: d["robot"].update(cameras={"scene": {"kind": "colour"}}),
-        ("robot.cameras.scene: the name is taken in what a run leaves",),
+        ("robot.cameras.scene: the name is reserved for files of a run",),
     ),
     "less than a frame": (
         lambda d: d.update(duration_s=0.03, people=[]),
-        ("duration_s: 0.03 is less than a frame", "1/15 s"),
+        ("duration_s: 0.03 is shorter than a frame", "1/15 s"),
     ),
     "unknown reaction": (
         lambda d: d["people"][0].update(reacts={"as": "curios"}),
@@ -126,7 +126,7 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
     ),
     "group whose paths cannot be compared": (
         lambda d: [person.update(group="us") for person in d["people"]],
-        ("people[1].group: 'us': 'ben' has 1 points of its path, and 'anna' 3; give them as many",),
+        ("people[1].group: 'us': 'ben' has 1 waypoints and 'anna' 3; all members need the same number",),
     ),
     "floor that mirrors more than there is": (
         lambda d: d["place"].update(floor_shine=1.2),
@@ -194,7 +194,7 @@ MISTAKES: dict[str, tuple[Change, tuple[str, ...]]] = {
     ),
     "name that run folders have for themselves": (
         lambda d: d["robot"].update(cameras={"truth": {"kind": "thermal"}}),
-        ("robot.cameras.truth: the name is taken",),
+        ("robot.cameras.truth: the name is reserved",),
     ),
     "name of another camera's images": (
         lambda d: d["robot"].update(cameras={"thermal16": {"kind": "colour"}}),
