@@ -1,1 +1,1 @@
-"""Work on finished runs: import tracks of other programs, and run the scene model over their images."""
+"""Process finished runs: import tracks of other programs, and run the scene model on their images."""

@@ -1,4 +1,4 @@
-"""Import tracks that another program made of the images of a run, as a run of their own."""
+"""Import tracks that another program computed from the images of a run, as a separate run."""
 
 import re
 from collections import defaultdict
@@ -33,21 +33,21 @@ from peopleboy.tracker.track import Status, Track
 from peopleboy.tracker.trackers import TRACKERS
 
 UNKNOWN = ("status", "place", "occluder")
-"""What MOTChallenge text does not tell of a track."""
+"""Attributes of a track that MOTChallenge text does not contain."""
 
-_MOST_OUTSIDE = 0.5  # of the boxes; of another run or camera, or in an image of another size, are more
+_MOST_OUTSIDE = 0.5  # share of the boxes; more suggests another run, camera or image size
 
 
 def foreign_tracks(path: Path, run: FinishedRun, camera: str) -> Mapping[int, tuple[Track, ...]]:
-    """Read MOTChallenge results, and give the tracks of each frame of the run that has some.
+    """Read MOTChallenge results, and return the tracks of each frame of the run that has any.
 
-    Their images are counted as exports count them: 1, 2, 3 ..., also those of a camera that takes none in
-    most frames of the run. Their status and place are unknown; their age is counted from their first box on.
+    Frames are counted as in exports, 1, 2, 3 ..., even for a camera that skips most frames of the run. Status
+    and floor position are unknown; the age is counted from the first box.
 
     Args:
-        path: the file.
-        run: whose images they were made of.
-        camera: in whose images the boxes are.
+        path: MOTChallenge file.
+        run: run whose images were used.
+        camera: camera in whose images the boxes are.
 
     Raises:
         BadInput: the file is malformed, or cannot be of this run and camera.
@@ -57,7 +57,7 @@ def foreign_tracks(path: Path, run: FinishedRun, camera: str) -> Mapping[int, tu
     _check_end(boxes, path, shots)
     _check_view(boxes, path, shots)
     if len(boxes) and boxes.id.min() < 1:
-        raise BadInput(f"{path}: ids must be from 1 on, got 0; add 1 to all")
+        raise BadInput(f"{path}: ids must be at least 1, got 0; add 1 to all")
     first: dict[int, float] = {}
     found: dict[int, list[Track]] = defaultdict(list)
     columns = (boxes.frame.tolist(), boxes.id.tolist(), boxes.box.tolist(), boxes.confidence.tolist())
@@ -77,33 +77,33 @@ def foreign_tracks(path: Path, run: FinishedRun, camera: str) -> Mapping[int, tu
 
 
 def _shots(run: FinishedRun, camera: str) -> OneCamera:
-    """Find the camera, which the run may not have."""
+    """Return the images of a camera, which the run may not have."""
     known = with_boxes(run.robot.cameras)
     if camera not in known:
-        raise BadInput(f"--camera {camera}: {run.folder} has boxes in images of {', '.join(known)}")
+        raise BadInput(f"--camera {camera}: unknown camera; {run.folder} has boxes for {', '.join(known)}")
     return one_camera(run, camera)
 
 
 def _check_end(boxes: TrackBoxes, path: Path, shots: OneCamera) -> None:
-    """Refuse boxes beyond the last image, such as those of a slow camera by numbers of the run's frames."""
+    """Refuse boxes beyond the last image, for example if frames of the run were counted, not images."""
     if shots.every == 1:
         check_end(boxes, path, shots.run.frames)
     elif boxes.last_frame > len(shots.frames):
         raise BadInput(
             f"{path}: must end with image {len(shots.frames)}, the last of camera {shots.name!r}, got "
-            f"{boxes.last_frame}; count them 1, 2, 3 ... as exports do, not by frames of the run"
+            f"{boxes.last_frame}; count the camera's images 1, 2, 3 ... as in exports, not frames of the run"
         )
 
 
 def _check_view(boxes: TrackBoxes, path: Path, shots: OneCamera) -> None:
-    """Refuse boxes that are not in the camera's image."""
+    """Refuse boxes that are mostly outside the camera's image."""
     width, height = shots.size
     u, v = (boxes.box[:, :2] + boxes.box[:, 2:] / 2.0).T
     outside = ~((u >= 0.0) & (u <= width) & (v >= 0.0) & (v <= height))
     if len(boxes) and outside.mean() > _MOST_OUTSIDE:
         raise BadInput(
             f"{path}: boxes must be in pixels of the {width} x {height} images of camera {shots.name!r}; "
-            f"{outside.mean():.0%} of them have their middle outside"
+            f"{outside.mean():.0%} of them have their centre outside"
         )
 
 
@@ -112,16 +112,16 @@ _KEPT = ("mounted_for_tracker", "behaviour")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrackImport:
-    """Which tracks to import, and how.
+    """Tracks to import, with options.
 
     Attributes:
-        run: folder of the run whose images they were made of.
+        run: folder of the run whose images were used.
         tracks: MOTChallenge results.
     """
 
     run: Path
     tracks: Path
-    name: Annotated[str, Field(description="Name of their tracker.")]
+    name: Annotated[str, Field(description="Name of the tracker that produced the tracks.")]
     out: Annotated[Path, Field(description="Output folder.")]
     camera: Annotated[str, Field(description="Camera in whose images the boxes are.")] = THERMAL
     boxes: Annotated[BoxKind, meaning_of(RunOptions, "boxes")] = BoxKind.TORSO
@@ -130,16 +130,16 @@ class TrackImport:
 
 
 def import_tracks(what: TrackImport, report: Callable[[int, int], None]) -> RunScores:
-    """Replay a run and write a folder as if a tracker had given these tracks.
+    """Replay a run and write a folder as if a tracker had returned these tracks.
 
-    The robot drives as it did in the run, so that how well it drove is not scored.
+    The robot drives as in the original run, so its driving is not scored.
 
     Args:
-        what: to be imported.
-        report: called after each frame with its number and the number of all.
+        what: tracks to import, with options.
+        report: called after each frame with its number and the number of frames.
 
     Raises:
-        BadInput: run, tracks or name cannot be used; nothing is written then.
+        BadInput: run, tracks or name are invalid; nothing is written.
     """
     run, tracks = _look_at(what)
     whys = {line.frame: line.why for line in run.events if line.kind == "mode"}
@@ -173,10 +173,10 @@ def import_tracks(what: TrackImport, report: Callable[[int, int], None]) -> RunS
 
 
 def check_import(what: TrackImport) -> None:
-    """Refuse what cannot be imported, without writing anything.
+    """Check whether tracks can be imported, without writing anything.
 
     Raises:
-        BadInput: run, tracks, name or the folder to leave cannot be used.
+        BadInput: run, tracks, name or output folder are invalid.
     """
     _look_at(what)
     check_out(what.out, "run", overwrite=what.overwrite)
@@ -190,7 +190,7 @@ def _look_at(what: TrackImport) -> tuple[FinishedRun, Mapping[int, tuple[Track, 
 
 def _check_name(name: str) -> None:
     if name in (*TRACKERS, ORACLE):
-        raise BadInput(f"--name {name}: is a tracker of ours; give another one")
+        raise BadInput(f"--name {name}: is a tracker of PeopleBoy; give another name")
     if not re.fullmatch(r"\w[\w.+-]*", name):
         raise BadInput(f"--name {name!r}: must be letters, digits, and _ . + - after the first")
 
@@ -216,20 +216,20 @@ def _about(what: TrackImport, run: FinishedRun) -> dict[str, Any]:
     }
 
 
-# Results of a whole benchmark: one file of tracks for each of its sequences.
+# Results of a whole benchmark: one file of tracks per sequence.
 
 
 def imports_by_sequence(what: TrackImport) -> list[TrackImport]:
-    """Return one import for each sequence of a folder of results, `SEQUENCE.txt` or `data/SEQUENCE.txt`.
+    """Return one import for each sequence in a folder of results, `SEQUENCE.txt` or `data/SEQUENCE.txt`.
 
-    Sequences are called SCENARIO-SEED, as exports of runs call them. Each is to be left in a folder of that
-    name in `what.out`.
+    Sequences are named SCENARIO-SEED, as in exports of runs. Each is written to a folder of that name in
+    `what.out`.
 
     Args:
-        what: `run` is a folder of runs, and `tracks` one of results for all of them.
+        what: options, with a folder of runs as `run`, and a folder of results for all of them as `tracks`.
 
     Raises:
-        BadInput: a run has no file, or a file no run, or one of them cannot be used.
+        BadInput: a run has no file, a file has no run, or one of them is invalid.
     """
     files = _files(what.tracks)
     runs = _by_sequence(what.run)
@@ -237,7 +237,7 @@ def imports_by_sequence(what: TrackImport) -> list[TrackImport]:
         if name in runs:
             raise BadInput(f"{what.tracks}: has no {name}.txt, the tracks of {runs[name].folder}")
         raise BadInput(
-            f"{files[name]}: there is no run of that name in {what.run}, which has {', '.join(runs)}"
+            f"{files[name]}: no run with that name in {what.run}, which has {', '.join(runs)}"
         )
     imports = [
         replace(what, run=run.folder, tracks=files[name], out=what.out / name) for name, run in runs.items()

@@ -1,4 +1,4 @@
-"""The frames of a finished run as a tracker sees them, read from its folder."""
+"""Read the frames of a finished run from its folder, as input for a tracker or a scene model."""
 
 import math
 from collections import deque
@@ -20,27 +20,27 @@ from peopleboy.tracker.frame import DEPTH, DEPTH_AMPLITUDE, DEPTH_COLOUR, THERMA
 from peopleboy.tracker.scene_model.scene import Change, Happening
 
 IMAGES: Final = (DEPTH, DEPTH_COLOUR, DEPTH_AMPLITUDE, THERMAL)
-"""Those that the scene model looks at, as far as a run has them."""
+"""Cameras that the scene model uses, as far as a run has them."""
 
 
 def check_frames(run: FinishedRun) -> None:
     """Refuse a run without images of a depth camera.
 
     Raises:
-        BadInput: it has none.
+        BadInput: the run has none.
     """
     if DEPTH not in run.robot.cameras:
         known = ", ".join(run.robot.cameras)
-        raise BadInput(f"{run.folder}: its robot has no camera {DEPTH!r}, only {known}; give it one")
+        raise BadInput(f"{run.folder}: its robot has no camera {DEPTH!r}, only {known}; add one to the robot")
     if not (run.folder / DEPTH / image_file(1)).is_file():
         raise BadInput(f"{run.folder}: has no images; run the scenario with --frames")
 
 
 def run_frames(run: FinishedRun) -> Iterator[Frame]:
-    """Yield the frames at which the depth camera took an image, with the odometry since the one before.
+    """Yield the frames at which the depth camera took an image, with the odometry since the last one.
 
     Raises:
-        BadInput: an image or the odometry is missing or spoilt.
+        BadInput: an image or the odometry is missing or damaged.
     """
     check_frames(run)
     calibrations = calibrations_of(run.robot.cameras)
@@ -57,7 +57,7 @@ def run_frames(run: FinishedRun) -> Iterator[Frame]:
 
 
 def _read(folder: Path, folders: Mapping[str, str], frame: int) -> dict[str, NDArray[Any]]:
-    """Read the images of a frame; a camera that took none then is left out."""
+    """Read the images of a frame; cameras that took no image are left out."""
     paths = {name: folder / place / image_file(frame) for name, place in folders.items()}
     return {name: _image(path) for name, path in paths.items() if path.is_file()}
 
@@ -69,32 +69,32 @@ def _image(path: Path) -> NDArray[Any]:
     return np.ascontiguousarray(image[..., ::-1] if image.ndim == 3 else image)
 
 
-# Where people stood: what vanished there was part of a person, or in the hands.
+# Positions of people: what disappears at such a position was part of a person, or held by one.
 
 BODY_M: Final = 0.3
-"""[m] on the floor from the middle of a person, within which nothing stands by itself."""
+"""[m] radius around a person on the floor within which no separate object is assumed."""
 
 BEFORE_S: Final = 2.0
-"""[s] before something vanished, in which a person may have stood there."""
+"""[s] before a disappearance, in which a person may have stood at the position."""
 
 REPORTED_S: Final = 60.0
-"""[s] from when something vanished until it is reported, at most: it may be hidden long before."""
+"""[s] maximum delay between a disappearance and its report; it may be occluded for long."""
 
 
 class PersonPositions:
-    """Remembers where everybody was, as long as something may be reported there."""
+    """Store the positions of people, as long as a disappearance may be reported there."""
 
     def __init__(self) -> None:
         self._places: deque[tuple[float, tuple[tuple[float, float], ...]]] = deque()
 
     def look(self, time_s: float, places_m: Iterable[tuple[float, float]]) -> None:
-        """Take in where people are at an instant, (x, y) in the frame of the robot's first place."""
+        """Add the positions of people at an instant, (x, y) in the frame of the robot's start pose."""
         self._places.append((time_s, tuple(places_m)))
         while self._places[0][0] < time_s - REPORTED_S - BEFORE_S:
             self._places.popleft()
 
     def explain(self, happening: Happening) -> bool:
-        """Return whether what is said now to have vanished was where a person stood."""
+        """Return whether a disappearance reported now was at a position where a person stood."""
         if happening.change is not Change.VANISHED or happening.from_m is None:
             return False
         place = happening.from_m[:2]

@@ -1,4 +1,4 @@
-"""Run a scene model over the images of a finished run, and write what it finds."""
+"""Run a scene model on the images of a finished run, and write its output."""
 
 import json
 from bisect import bisect_left
@@ -25,16 +25,16 @@ from peopleboy.tracker.scene_model.scene_config import PeopleMaskConfig, SceneCo
 from peopleboy.tracker.scene_model.scene_model import SceneModel
 from peopleboy.tracker.scene_model.vista_spaces import Surface
 
-# The files that a scene model leaves: a line a frame, and a map of what stands.
+# Files that a scene model writes: one line per frame, and a map of the static scene.
 
 LINES, MAP, BACKGROUND, RECORDING = "scene.jsonl", "static_map.ply", "background.png", "scene.rrd"
-"""The files, in the folder of one look at a run."""
+"""Output files in the folder of a scene model's run."""
 
 _DIGITS = 3
 
 
 def scene_line(scene: VistaScene) -> str:
-    """Return a frame as a line of JSON: time, who and what is there, and what happened."""
+    """Return a frame as a line of JSON: time, people, objects, and changes."""
     record = {
         "time_s": scene.time_s,
         "vista": scene.vista,
@@ -47,9 +47,9 @@ def scene_line(scene: VistaScene) -> str:
 
 
 def write_map(surface: Surface, path: Path) -> None:
-    """Write points and normals as a binary PLY file, in the frame of the robot's first place [m].
+    """Write points and normals as a binary PLY file, in the frame of the robot's start pose [m].
 
-    Normals point back to the camera, as viewers and registration expect them.
+    Normals point towards the camera, as viewers and registration expect.
     """
     names = ("x", "y", "z", "nx", "ny", "nz")
     head = ["ply", "format binary_little_endian 1.0", f"element vertex {len(surface.points_m)}"]
@@ -59,7 +59,7 @@ def write_map(surface: Surface, path: Path) -> None:
 
 
 def write_background(depth_m: Metres, path: Path) -> None:
-    """Write (H, W) depths [m] as a 16-bit image in millimetres; 0 where nothing is known."""
+    """Write (H, W) depths [m] as a 16-bit image in millimetres; 0 for unknown depth."""
     write_png(path, np.rint(1000.0 * np.minimum(depth_m, 65.0)).astype(np.uint16))
 
 
@@ -71,7 +71,7 @@ def _rounded(value: Any) -> Any:
     return [_rounded(one) for one in value] if isinstance(value, list | tuple) else value
 
 
-# Changes as sentences.
+# Changes as text.
 
 _DONE: Final = {Change.APPEARED: "put down", Change.VANISHED: "took away", Change.MOVED: "moved"}
 _ALONE: Final = {Change.APPEARED: "appeared", Change.VANISHED: "vanished", Change.MOVED: "moved"}
@@ -82,7 +82,7 @@ def describe_change(
     person_name: Callable[[int | None], str | None] = lambda number: None,  # noqa: ARG005
     thing_name: str | None = None,
 ) -> str:
-    """Describe a change, such as "6.0 s: person 1 moved object 2 by 1.1 m"; by names where they are known."""
+    """Describe a change, such as "6.0 s: person 1 moved object 2 by 1.1 m", with names if they are known."""
     thing = thing_name or f"object {happening.object}"
     way = f" by {happening.way_m:.1f} m" if happening.change is Change.MOVED else ""
     start = f"{happening.time_s:.1f} s: "
@@ -93,7 +93,7 @@ def describe_change(
 
 
 FOLDER = "scene"
-"""Where it lies in the folder of a run."""
+"""Default output folder, in the folder of a run."""
 
 Spot = tuple[float, float]
 _PEOPLE = ("frame", "name", "x_m", "y_m", "whole_px", "hidden_by", "left_px", "id")
@@ -101,10 +101,10 @@ _PEOPLE = ("frame", "name", "x_m", "y_m", "whole_px", "hidden_by", "left_px", "i
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SceneModelOptions:
-    """How a scene model runs.
+    """Options of running a scene model.
 
     Attributes:
-        has_heat: whether the thermal image separates people from things.
+        has_heat: whether the thermal image separates people from objects.
         record: whether to write a recording.
     """
 
@@ -115,19 +115,19 @@ class SceneModelOptions:
 def run_scene_model(
     run: FinishedRun, out: Path, options: SceneModelOptions, report: Callable[[int, int], None]
 ) -> list[str]:
-    """Run a scene model over a run and write a folder, which replaces an earlier one.
+    """Run a scene model on a run and write a folder, which replaces an earlier one.
 
     Args:
-        run: with images.
-        out: the folder.
-        options: how.
-        report: called after every frame with its number and how many there are.
+        run: run with images.
+        out: output folder.
+        options: options of the scene model.
+        report: called after every frame with its number and the number of frames.
 
     Returns:
-        What happened, a describe_change each, in the order of time.
+        The changes as text, from `describe_change`, in order of time.
 
     Raises:
-        BadInput: the run has no images of a depth camera, or they are spoilt.
+        BadInput: the run has no images of a depth camera, or they are damaged.
     """
     check_frames(run)
     with atomic(out) as folder:
@@ -174,7 +174,7 @@ def _run(
 
 
 def true_events(run: FinishedRun) -> list[TrueEvent]:
-    """Read what truly happened to things, from the log of a run and its table of things."""
+    """Read the true changes of objects from a run's event log and its table of objects."""
     lines = [line for line in run.events if line.kind in KINDS]
     path = run.folder / "truth" / "things.parquet"
     if not lines or not path.is_file():
@@ -187,7 +187,7 @@ def true_events(run: FinishedRun) -> list[TrueEvent]:
 
 
 def _next(places: Sequence[tuple[int, Spot]], frame: int) -> Spot:
-    """Return the place of a frame, or of the next one with an image; of the last one when there is none."""
+    """Return the position at a frame, or at the next one with an image, or else at the last one."""
     at = bisect_left(places, frame, key=lambda one: one[0])
     return places[min(at, len(places) - 1)][1]
 
@@ -195,14 +195,14 @@ def _next(places: Sequence[tuple[int, Spot]], frame: int) -> Spot:
 def _describe(
     happenings: Sequence[Happening], who: PersonNames, events: Sequence[TrueEvent], first: Pose2
 ) -> list[tuple[Happening, str]]:
-    """Describe changes, with the names of the things to which they truly happened."""
+    """Describe changes, with the names of the objects from the ground truth."""
     happenings = _without_halves(happenings)
     names = thing_names(happenings, events, first)
     return [(one, describe_change(one, who.name, names.get(one.object))) for one in happenings]
 
 
 def _without_halves(happenings: Sequence[Happening]) -> list[Happening]:
-    """Leave out an appearance and a disappearance that turned out to be one move."""
+    """Drop an appearance and a disappearance that were later found to be one move."""
     moved = [one for one in happenings if one.change is Change.MOVED]
     ends = {end for one in moved for end in (one.from_m, one.to_m)}
     others = [one for one in happenings if one.change is not Change.MOVED]

@@ -1,4 +1,4 @@
-"""What truly happened to things, and which of it a scene model reported."""
+"""True changes of objects, and their assignment to the changes that a scene model reports."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -11,26 +11,26 @@ from peopleboy.sim.truth.events import ThingEvent
 from peopleboy.tracker.scene_model.scene import Happening
 
 KINDS: Final = ("thing moved", "thing appeared", "thing vanished")
-"""Kinds of lines in the log of a run that tell of things."""
+"""Kinds of lines in a run's event log that are about objects."""
 
 EARLY_S: Final = 2.0
 LATE_S: Final = 3.0
-"""[s] by which a happening may be reported before or after what truly happened."""
+"""[s] maximum time between a reported and a true change."""
 
 NEAR_M: Final = 0.75
-"""[m] on the floor between the middle of what was seen of a thing, and the middle of the thing."""
+"""[m] maximum floor distance between the centre of the visible part of an object and its true centre."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrueEvent:
-    """Something that happened to a thing.
+    """A change of an object.
 
     Attributes:
-        thing: its name.
-        by: name of who did it; empty for nobody.
-        from_s, to_s: when it began and ended [s].
-        from_m: (x, y) where the thing was, in the world [m]; None if it was not there.
-        to_m: (x, y) where it is; None if it is there no more.
+        thing: name of the object.
+        by: name of the person who caused it; empty for none.
+        from_s, to_s: [s] start and end of the change.
+        from_m: (x, y) [m] earlier position in the world; None if the object was not there.
+        to_m: (x, y) [m] later position; None if the object is no longer there.
     """
 
     thing: str
@@ -42,7 +42,7 @@ class TrueEvent:
 
     @classmethod
     def of(cls, line: ThingEvent | LogLine, thing: str, by: str, place_m: tuple[float, float]) -> "TrueEvent":
-        """Read it from a line of the log; `place_m` is where the thing is if it was not moved."""
+        """Make an event from a line of the log; `place_m` is the object's position if it was not moved."""
         if line.move is not None:
             ends = {"from_m": line.move.from_m[:2], "to_m": line.move.to_m[:2]}
             return cls(thing=thing, by=by, from_s=line.move.from_s, to_s=line.move.to_s, **ends)
@@ -51,23 +51,23 @@ class TrueEvent:
 
     @property
     def places_m(self) -> tuple[tuple[float, float], ...]:
-        """Where the thing was, and is: one or two places."""
+        """Earlier and later position of the object: one or two positions."""
         return tuple(place for place in (self.from_m, self.to_m) if place is not None)
 
     def is_about(self, time_s: float) -> bool:
-        """Whether a reported time may be this."""
+        """Return whether a reported time fits this event."""
         return self.from_s - EARLY_S <= time_s <= self.to_s + LATE_S
 
 
 def matching(
     happenings: Sequence[Happening], events: Sequence[TrueEvent], first: Pose2
 ) -> Mapping[int, tuple[int, ...]]:
-    """Return which events each happening may tell of, by their numbers; those that tell of none are left out.
+    """Return the events that each reported change may correspond to; changes without any are left out.
 
     Args:
-        happenings: in the frame of the robot's first place.
-        events: in the world.
-        first: that place.
+        happenings: reported changes, in the frame of the robot's start pose.
+        events: true events, in the world.
+        first: the robot's start pose.
     """
     found = {}
     for k, happening in enumerate(happenings):
@@ -79,7 +79,7 @@ def matching(
 
 
 def _apart_m(happening: Happening, event: TrueEvent, first: Pose2) -> float:
-    """Return the distance of the nearest ends; infinity if it was at another time."""
+    """Return the distance between the nearest ends; infinity if the times do not fit."""
     if not event.is_about(happening.time_s):
         return math.inf
     ends = [end[:2] for end in (happening.from_m, happening.to_m) if end is not None]
@@ -87,7 +87,7 @@ def _apart_m(happening: Happening, event: TrueEvent, first: Pose2) -> float:
 
 
 class PersonNames:
-    """Finds the names of people that a scene model follows, by where they are."""
+    """Find the names of people that a scene model tracks, from their positions."""
 
     def __init__(self) -> None:
         self._votes: dict[int, dict[str, int]] = {}
@@ -95,7 +95,7 @@ class PersonNames:
     def look(
         self, seen: Iterable[tuple[int, tuple[float, float]]], true: Iterable[tuple[str, tuple[float, float]]]
     ) -> None:
-        """Compare ids with places and names with places, at one instant and in one frame."""
+        """Compare positions by id with true positions by name, at one instant and in one frame."""
         people = list(true)
         for number, place in seen:
             name, way = min(
@@ -108,18 +108,18 @@ class PersonNames:
                 votes[name] = votes.get(name, 0) + 1
 
     def name(self, number: int | None) -> str | None:
-        """Return the name of a person; None for nobody, and for who was never near anybody."""
+        """Return the name of a person; None for no person, and for an id that was never near a person."""
         votes = self._votes.get(number, {}) if number is not None else {}
         return max(votes, key=lambda name: votes[name]) if votes else None
 
 
-# Which true things the changes of a scene model are about.
+# Assign reported changes to objects.
 
 
 class _Match(NamedTuple):
-    """One happening may tell of one event."""
+    """A reported change that may correspond to a true event."""
 
-    is_half: bool  # of a thing that was moved only one end is reported
+    is_half: bool  # only one end of a move is reported
     way_m: float
     happening: int
     event: int
@@ -127,15 +127,15 @@ class _Match(NamedTuple):
 
 
 def thing_names(happenings: Sequence[Happening], events: Sequence[TrueEvent], first: Pose2) -> dict[int, str]:
-    """Name objects, by their ids, after the things to which truly happened what the model reports.
+    """Name objects, by their ids, after the objects whose true events match the reported changes.
 
-    What was taken must have been where a thing was, and what was put down where a thing is. Each end of what
-    truly happened is reported once, by the happening that is nearest to it.
+    A reported removal must start where an object was, and a reported placement must end where an object is.
+    Each end of a true event is assigned once, to the nearest reported change.
 
     Args:
-        happenings: in the frame of the robot's first place.
-        events: in the world.
-        first: that place.
+        happenings: reported changes, in the frame of the robot's start pose.
+        events: true events, in the world.
+        first: the robot's start pose.
     """
     names: dict[int, str] = {}
     done: set[int] = set()

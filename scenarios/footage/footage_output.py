@@ -1,4 +1,4 @@
-"""Files of a tracked sequence: log, contact sheet and video."""
+"""Write the output of tracked footage: log, contact sheet and video."""
 
 import json
 import math
@@ -46,7 +46,7 @@ _WIDTH_PX: Final = 2 * MARGIN_PX + _COLUMNS * TILE_PX + (_COLUMNS - 1) * _GAP_PX
 
 @dataclass(frozen=True, slots=True)
 class Annotated:
-    """A person of the given truth, as it is drawn."""
+    """A person in the given ground truth, as drawn."""
 
     name: str
     box: Box | None
@@ -63,9 +63,9 @@ def draw_frame(
     *,
     camera: str,
 ) -> Picture:
-    """Draw one frame `scale` times enlarged: tracks solid, truth dashed, and a word in the corner.
+    """Draw one frame, enlarged by `scale`: tracks solid, ground truth dashed, and a label in the corner.
 
-    Boxes are those in the image of `camera`, which `picture` (H, W, 3) shows.
+    Boxes are in the image of `camera`, which `picture` (H, W, 3) shows.
     """
     plates: list[Plate] = []
     large = enlarge(picture, scale)
@@ -77,11 +77,11 @@ def draw_frame(
 
 
 class Sheet:
-    """Keeps moments spread evenly over footage whose length nobody needs to know.
+    """Collect frames spread evenly over footage of unknown length.
 
     Args:
-        title: what stands above them.
-        has_truth: whether truth is drawn too.
+        title: heading of the sheet.
+        has_truth: whether ground truth is drawn as well.
     """
 
     def __init__(self, title: str, *, has_truth: bool) -> None:
@@ -90,18 +90,18 @@ class Sheet:
         self._step = 1
 
     def wants(self, frame: int) -> bool:
-        """Return whether this frame, from 1, is one to be drawn."""
+        """Return whether this frame, counted from 1, should be drawn."""
         return (frame - 1) % self._step == 0
 
     def add(self, frame: int, picture: Picture) -> None:
-        """Keep a frame drawn `TILE_PX` wide; once there are many, every second one is let go."""
+        """Add a frame drawn `TILE_PX` wide; when there are too many, every second one is dropped."""
         self._kept.append((frame, picture))
         if len(self._kept) > _KEPT:
             self._step *= 2
             self._kept = [(number, kept) for number, kept in self._kept if self.wants(number)]
 
     def save(self, path: Path, length: str) -> None:
-        """Write the sheet as a PNG; how long the footage is, and the tracker, stand above it."""
+        """Write the sheet as a PNG; `length` describes footage and tracker in the heading."""
         chosen = np.unique(np.linspace(0, len(self._kept) - 1, _MOMENTS).round().astype(int))
         tiles = [self._kept[number][1] for number in chosen]
         rows, height = -(-len(tiles) // _COLUMNS), tiles[0].shape[0]
@@ -115,13 +115,13 @@ class Sheet:
 
 
 class FootageLog:
-    """Writes the files of a folder as tracking goes on; use it as a context manager.
+    """Write the files of a folder while tracking; use it as a context manager.
 
     Args:
-        folder: to write to.
-        options: what is tracked.
+        folder: output folder.
+        options: options of the tracking.
         views: the footage.
-        truth: of it; None for none.
+        truth: ground truth of the footage; None for none.
     """
 
     def __init__(self, folder: Path, options: TrackOptions, views: Views, truth: GivenTruth | None) -> None:
@@ -149,7 +149,7 @@ class FootageLog:
 
     @property
     def tracks(self) -> int:
-        """How many people were confirmed."""
+        """Number of confirmed track ids."""
         return len(self._ids)
 
     def add(self, frame: Frame, tracks: tuple[Track, ...], explanation: object) -> None:
@@ -183,7 +183,7 @@ class FootageLog:
         return [Annotated(f"truth {truth.id[row]}", tuple(truth.box[row].tolist())) for row in here]
 
     def finish(self) -> Scores | None:
-        """Write tables, pictures and scores."""
+        """Write tables, contact sheet and scores."""
         write_table(self._folder / "tracks.parquet", self._rows, TRACKS)
         length = f"{counted(self.frames, 'frame')} {self._means}"
         self._sheet.save(self._folder / "contact_sheet.png", length)
@@ -192,7 +192,7 @@ class FootageLog:
         if self._truth.is_single and self._truth.truth.last_frame > self.frames:
             last = self._truth.truth.last_frame
             raise BadInput(
-                f"{self._truth.path}: must have a line for each of the {self.frames} pictures, got {last}"
+                f"{self._truth.path}: must have a line for each of the {self.frames} images, got {last}"
             )
         (self._folder / "truth").mkdir()
         if self._truth.is_single:

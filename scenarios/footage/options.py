@@ -1,4 +1,4 @@
-"""Options of tracking in footage, with the pose and view of an RGB-D camera, and their checks."""
+"""Options of tracking in footage, including pose and field of view of an RGB-D camera, with validation."""
 
 import math
 from dataclasses import dataclass, field
@@ -18,18 +18,18 @@ from peopleboy.tracker.footage.grey import LEAST_SIDE_PX, Radiometry
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
 
 VERTICAL_FOV_DEG: Final = 43.0
-"""Of the sensor that the tracker was made for."""
+"""Vertical field of view of the depth sensor that the tracker was designed for."""
 STEEPEST_DEG: Final = 60.0
 LEVEL_DEG: Final = 10.0
-"""Up to this tilt the tracker's boxes and places are right: it is made for a camera that looks ahead."""
+"""Maximum tilt at which boxes and floor positions are accurate; the tracker assumes a horizontal camera."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RgbdCamera:
-    """A camera without distortion, whose principal point is the middle of the image.
+    """A camera without distortion, whose principal point is the image centre.
 
     Raises:
-        BadInput: both are given, or a number of no camera.
+        BadInput: focal length and field of view are both given, or a number is outside its limits.
     """
 
     height_m: Annotated[
@@ -44,9 +44,9 @@ class RgbdCamera:
     ] = None
 
     def __post_init__(self) -> None:
-        """Refuse what is no camera."""
+        """Validate the options."""
         if self.focal_px is not None and self.vertical_fov_deg is not None:
-            raise BadInput("--focal-px and --vertical-fov-deg say the same; give one")
+            raise BadInput("--focal-px and --vertical-fov-deg have the same meaning; give only one")
         _check("--camera-height-m", self.height_m, 0.0, 10.0)
         _check("--pitch-deg", self.pitch_deg, -STEEPEST_DEG, STEEPEST_DEG)
         _check("--focal-px", self.focal_px, 0.0, 1e5)
@@ -54,15 +54,15 @@ class RgbdCamera:
 
     @property
     def notes(self) -> list[str]:
-        """What the tracker cannot make good."""
+        """Known limitations of the tracker with this camera."""
         if abs(self.pitch_deg) <= LEVEL_DEG:
             return []
         return [
-            f"beyond {LEVEL_DEG:g} degrees of pitch boxes and places are off: the camera should look ahead"
+            f"boxes and positions are inaccurate beyond {LEVEL_DEG:g} degrees of pitch; keep the camera level"
         ]
 
     def geometry(self, width: int, height: int) -> Pinhole:
-        """Return its geometry for pictures of a size [px]; x and y begin below its lens."""
+        """Return the camera's geometry for an image size [px]; x and y start below its lens."""
         return Pinhole(
             width=width,
             height=height,
@@ -83,45 +83,46 @@ def _check(option: str, value: float | None, low: float, high: float) -> None:
 
 
 DEFAULT_RATE_HZ: Final = 15.0
-"""Pictures a second of a folder: those of the robot's cameras, for which the trackers are made."""
+"""Frame rate of image folders: that of the robot's cameras, which the trackers are designed for."""
 RGBD_TRACKER: Final = "rgbd"
-"""The tracker of colour with depth, unless another one is named."""
+"""Default tracker for colour and depth images."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RgbdOptions:
-    """What there is beside colour pictures of an RGB-D camera."""
+    """Inputs of an RGB-D camera in addition to its colour images."""
 
     depth: Annotated[
         Path,
         Field(
-            description="Folder of 16-bit depth pictures; FOLDER then holds the colours of the same pixels."
+            description="Folder of 16-bit depth images, aligned with the colour images in FOLDER."
         ),
     ]
     m_per_count: Annotated[
         float,
-        Field(alias="depth_scale", description="Metres a count stands for; 0.001: millimetres."),
+        Field(alias="depth_scale", description="Metres per count; 0.001 for millimetres."),
         Metavar("M"),
     ]
     camera: RgbdCamera = field(default_factory=RgbdCamera)
     odometry: Annotated[
         Path | None,
         Field(
-            description="CSV file of how it moved: advance_m, aside_m, turn_deg for each picture.  "
-            "[default: it stands]"
+            description="CSV file with the camera's motion: advance_m, aside_m, turn_deg for each image.  "
+            "[default: the camera is stationary]"
         ),
     ] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrackOptions:
-    """What to track, and how.
+    """Options of tracking people in footage.
 
     Attributes:
-        footage: folder of pictures, or a video: thermal ones, or with `rgbd` a folder of colour ones.
-        radiometry: what is known of thermal pixels.
-        rgbd: depth of the same view; None for thermal footage.
-        start: box of a person in the first picture, or "truth" for that of the truth; None to find people.
+        footage: folder of images or a video, thermal; with `rgbd`, a folder of colour images.
+        radiometry: meaning of thermal pixel values.
+        rgbd: depth images of the same view; None for thermal footage.
+        start: initial box of a person in the first image, or "truth" for the ground truth's; None to detect
+            people.
     """
 
     footage: Path
@@ -159,16 +160,16 @@ class TrackOptions:
 
     @property
     def read(self) -> tuple[Path, ...]:
-        """All that is read, and must not be replaced."""
+        """All input paths, which must not be overwritten."""
         depth = () if self.rgbd is None else (self.rgbd.depth, self.rgbd.odometry)
         return tuple(path for path in (self.footage, self.colour, self.truth, *depth) if path is not None)
 
 
 def parse_start(text: str) -> Box | str:
-    """Read the box to start from, `X,Y,W,H` in pixels, or `truth`.
+    """Parse the initial box, `X,Y,W,H` in pixels, or `truth`.
 
     Raises:
-        BadInput: it is neither.
+        BadInput: the text is neither.
     """
     if text == "truth":
         return text
@@ -182,15 +183,15 @@ def parse_start(text: str) -> Box | str:
 
 
 def check_first(picture: NDArray[Any], options: TrackOptions) -> None:
-    """Refuse footage by its first picture (H, W) or (H, W, 3).
+    """Check the first image (H, W) or (H, W, 3) of footage.
 
     Raises:
-        BadInput: it is too small, or the box to start from is not inside.
+        BadInput: the image is too small, or the initial box is not inside it.
     """
     height, width = picture.shape[:2]
     if min(height, width) < LEAST_SIDE_PX:
         least = f"{LEAST_SIDE_PX}x{LEAST_SIDE_PX}"
-        raise BadInput(f"{options.footage}: pictures must be at least {least}, got {width}x{height}")
+        raise BadInput(f"{options.footage}: images must be at least {least}, got {width}x{height}")
     if options.start is not None and not isinstance(options.start, str):
         _check_inside(options.start, width, height)
 
@@ -199,15 +200,15 @@ def _check_inside(box: Box, width: int, height: int) -> None:
     left, top, right, bottom = corners(box)
     if not (left >= 0 and top >= 0 and right <= width and bottom <= height):
         given = ",".join(f"{number:g}" for number in box)
-        raise BadInput(f"--start {given}: X,Y,W,H must lie inside the pictures, which are {width}x{height}")
+        raise BadInput(f"--start {given}: X,Y,W,H must lie inside the images, which are {width}x{height}")
 
 
 def colour_picture(picture: NDArray[Any], where: str) -> NDArray[np.uint8]:
-    """Return a picture (H, W) or (H, W, 3) in colours, (H, W, 3).
+    """Convert an image (H, W) or (H, W, 3) to colour, (H, W, 3).
 
     Raises:
-        BadInput: it is not of 8 bits; `where` says which pictures those are.
+        BadInput: the image is not 8-bit; `where` names the images in the message.
     """
     if picture.dtype != np.uint8:
-        raise BadInput(f"{where}: pictures must be 8-bit, got {picture.dtype}")
+        raise BadInput(f"{where}: images must be 8-bit, got {picture.dtype}")
     return np.repeat(picture[..., None], 3, axis=2) if picture.ndim == 2 else np.ascontiguousarray(picture)

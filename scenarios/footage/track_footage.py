@@ -24,15 +24,15 @@ from peopleboy.wording import counted
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Tracked:
-    """What came of it.
+    """Summary of tracked footage.
 
     Attributes:
-        frames: pictures read.
-        per_second: pictures a second of wall time, over the later half, reading and drawing included.
+        frames: number of images.
+        per_second: images per second of wall time, over the later half, including reading and drawing.
         tracks: number of track ids.
-        scores: against the truth; None without one.
-        notes: what was taken as something else than it is.
-        boxes: what boxes are drawn round; None if the tracker is of your own, and knows.
+        scores: scores against the ground truth; None without ground truth.
+        notes: notes on the interpretation of the inputs.
+        boxes: what the boxes enclose; None for your own tracker, if unknown.
     """
 
     frames: int
@@ -44,17 +44,16 @@ class Tracked:
 
 
 def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> Tracked:
-    """Track people in footage and write the folder, whole or not at all.
+    """Track people in footage and write the output folder atomically.
 
     Args:
-        options: what, and how.
-        report: called after each picture with its number and how many there should be.
+        options: options of the tracking.
+        report: called after each image with its number and the expected number of images.
 
     Raises:
-        BadInput: footage, truth or an option cannot be used, or the tracker gave what cannot be; nothing is
-            written then.
-        OwnCodeFailed: the tracker raised an error; nothing is written then but the traceback, beside the
-            folder.
+        BadInput: footage, ground truth or an option is invalid, or the tracker returned an invalid value;
+            nothing is written.
+        OwnCodeFailed: the tracker raised an error; only the traceback is written, beside the folder.
     """
     _check_apart(options)
     views = open_views(options)
@@ -86,10 +85,10 @@ def track_footage(options: TrackOptions, report: Callable[[int, int], None]) -> 
 
 
 def pictures_a_second(times_s: Sequence[float]) -> float:
-    """Return the pictures a second of the later half: kernels are compiled at the first ones.
+    """Return the images per second of the later half; the first images include compiling kernels.
 
     Args:
-        times_s: when the first one was begun, and when each was done.
+        times_s: start time of the first image, and end time of each.
     """
     half = (len(times_s) - 1) // 2
     return (len(times_s) - 1 - half) / max(times_s[-1] - times_s[half], 1e-9)
@@ -99,27 +98,27 @@ def _check_apart(options: TrackOptions) -> None:
     check_named(options.out)
     for path in options.read:
         if path.resolve().is_relative_to(options.out.resolve()):
-            raise BadInput(f"{options.out}: would replace {path}, which is read; give another --out")
+            raise BadInput(f"{options.out}: would replace the input {path}; give another --out")
 
 
 def _truth_of(options: TrackOptions, views: Views) -> GivenTruth | None:
     path = options.truth if options.truth is not None else find_truth(options.footage)
     if path is None:
         if options.start == "truth":
-            raise BadInput(f"--start truth: {options.footage} has no truth beside it; give --truth FILE")
+            raise BadInput(f"--start truth: {options.footage} has no ground truth; give --truth FILE")
         return None
     return load_truth(path, views.expected if views.is_exact else None, views.numbers)
 
 
 def _notes_on(truth: GivenTruth | None, size: tuple[int, int]) -> list[str]:
-    """Return how truth was taken, and what looks wrong about it beside pictures of a size (H, W)."""
+    """Return how the ground truth was read, and what is suspicious for images of a size (H, W)."""
     return [] if truth is None else [*truth.notes, *doubts(truth.truth, size[1], size[0])]
 
 
 def _kind_of(options: TrackOptions, truth: GivenTruth | None) -> BoxKind | None:
     if is_own(options.tracker):
         if options.boxes is not None:
-            raise BadInput(f"--boxes {options.boxes}: boxes of a tracker of your own stay; leave it out")
+            raise BadInput(f"--boxes {options.boxes}: not with your own tracker; leave it out")
         return None
     if options.boxes is not None:
         return options.boxes
@@ -139,19 +138,19 @@ def _tracker_of(
     if start is not None and not isinstance(start, str):
         if not isinstance(tracker, Introducible):
             raise BadInput(
-                f"--tracker {options.tracker}: cannot be told where a person is; leave --start out"
+                f"--tracker {options.tracker}: cannot be initialised with a box; leave --start out"
             )
         tracker.introduce(torso_of(start) if kind is BoxKind.WHOLE else start)
     return tracker
 
 
 def _lack(camera: str, options: TrackOptions) -> str:
-    """Say why there is no such camera."""
+    """Describe why a camera is missing."""
     if camera == DEPTH:
-        return "wants camera 'depth'; give --depth FOLDER"
+        return "needs camera 'depth'; give --depth FOLDER"
     if options.rgbd is not None:
-        return f"wants camera {camera!r}, and there are depth and its colours; leave --depth out"
-    return f"wants camera {camera!r}, which footage has not"
+        return f"needs camera {camera!r}, but --depth gives depth and colour; leave --depth out"
+    return f"needs camera {camera!r}, which footage does not have"
 
 
 def _about(options: TrackOptions, views: Views) -> dict[str, Any]:
@@ -168,18 +167,18 @@ def _about(options: TrackOptions, views: Views) -> dict[str, Any]:
 
 
 _ROUND: Final = {
-    BoxKind.TORSO: ", boxes round torsos",
-    BoxKind.WHOLE: ", boxes round whole people",
+    BoxKind.TORSO: ", boxes enclose torsos",
+    BoxKind.WHOLE: ", boxes enclose whole people",
     None: "",
 }
 
 
 def outcome_lines(tracked: Tracked, options: TrackOptions) -> tuple[str, str]:
-    """Return how much was tracked, and which files show it, or what to look at if nobody was found."""
+    """Return a summary, and the files that show the result, or hints if no person was detected."""
     count = f"{counted(tracked.frames, 'frame')}, {counted(tracked.tracks, 'track')}{_ROUND[tracked.boxes]}"
     sheet = options.out / "contact_sheet.png"
     if not tracked.tracks:
-        shown = f"Nobody was found. Look at {sheet}: {_what_to_look_at(options)}"
+        shown = f"No person was detected. Check {sheet}: {_what_to_look_at(options)}"
     elif options.video:
         shown = f"{sheet} and {options.out / 'overlay.mp4'} show them."
     else:
@@ -191,24 +190,24 @@ def _what_to_look_at(options: TrackOptions) -> str:
     if options.rgbd is not None:
         return _what_depth_asks(options.rgbd)
     remedy = "leave --black-hot out" if options.radiometry.is_inverted else "give --black-hot"
-    asked = f"is warm bright there? If not, {remedy}."
+    asked = f"are warm objects bright? If not, {remedy}."
     if options.tracker in VARIANTS:
-        asked += f" Are people {_heights(options.tracker)} of the picture's height, from head to feet?"
+        asked += f" Are people {_heights(options.tracker)} of the image height, from head to feet?"
         if not options.radiometry.is_known:
-            asked += " Are degC known? Then give --temperature-range (8 bit) or --scale (16 bit)."
-    return f"{asked} Is their outline to be seen, or only a hot face?"
+            asked += " Are temperatures known? Then give --temperature-range (8 bit) or --scale (16 bit)."
+    return f"{asked} Is the people's outline visible, or only a hot face?"
 
 
 def _what_depth_asks(rgbd: RgbdOptions) -> str:
     camera = rgbd.camera
     return (
-        f"was the camera {camera.height_m:g} m above the floor (--camera-height-m), and looked down by "
-        f"{camera.pitch_deg:g} degrees (--pitch-deg)? Do people stand upright? Is depth read where they are?"
+        f"was the camera {camera.height_m:g} m above the floor (--camera-height-m), and tilted down by "
+        f"{camera.pitch_deg:g} degrees (--pitch-deg)? Do people stand upright? Are they within depth range?"
     )
 
 
 def _heights(tracker: str) -> str:
-    """Return which people this tracker looks for; one who fills more than the picture is not seen whole."""
+    """Describe the heights of people that a tracker detects; taller ones than the image are cropped."""
     config = VARIANTS[tracker]
     low, high = (config.box.height_per_h * share for share in config.detector.limits.h)
     return f"at least {low:.0%}" if high >= 1 else f"{low:.0%} to {high:.0%}"

@@ -1,4 +1,4 @@
-"""Footage of any kind as frames of the tracker: thermal with optional colour, or colour with depth."""
+"""Read footage of any kind as frames: thermal with optional colour, or colour with depth."""
 
 from collections.abc import Iterator
 from itertools import zip_longest
@@ -28,11 +28,11 @@ from peopleboy.tracker.trackers import BY_CONTRAST
 
 
 class RgbdViews:
-    """Two folders of an RGB-D camera.
+    """Colour and depth images of an RGB-D camera, from two folders.
 
     Raises:
-        BadInput: a folder cannot be read, the pictures of both do not belong together, or an option is one
-            for thermal footage.
+        BadInput: a folder cannot be read, the images of both do not match, or an option is for thermal
+            footage only.
     """
 
     camera = DEPTH
@@ -50,7 +50,7 @@ class RgbdViews:
         self.expected = len(self._pairs.colour)
         self.numbers = folders[0].numbers
         if options.rate_hz is not None and self._pairs.time_s is not None:
-            raise BadInput("--rate-hz: the names of the pictures tell their times; leave it out")
+            raise BadInput("--rate-hz: the images' file names contain their times; leave it out")
         self.rate_hz = options.rate_hz or self._pairs.rate_hz or DEFAULT_RATE_HZ
         self._odometry: list[Odometry] | None = None
         if rgbd.odometry is not None:
@@ -60,17 +60,17 @@ class RgbdViews:
         self._geometry = rgbd.camera.geometry(first.shape[1], first.shape[0])
 
     def __iter__(self) -> Iterator[Frame]:
-        """Read colour and depth of the same instants.
+        """Yield frames with colour and depth of the same instants.
 
         Raises:
-            BadInput: a picture that cannot be used, or depth of another size than its colour.
+            BadInput: an image is unusable, or depth and colour differ in size.
         """
         calibration = PinholeCalibration(self._geometry.intrinsics, self._geometry.robot_from_camera)
         colours, depths = (read_row(paths, self.notes) for paths in (self._pairs.colour, self._pairs.depth))
         for number, (colour, counts) in enumerate(zip(colours, depths, strict=True)):
             if colour.shape[:2] != counts.shape[:2]:
                 raise BadInput(
-                    f"{self._pairs.depth[number]}: depth must be of the pixels of its colour picture, "
+                    f"{self._pairs.depth[number]}: depth must have the size of its colour image, "
                     f"{size_of(colour)}, got {size_of(counts)}"
                 )
             depth = self._counts(counts)
@@ -88,11 +88,11 @@ class RgbdViews:
         return number / self.rate_hz if times is None else float(times[number])
 
     def picture(self, frame: Frame) -> Picture:
-        """Show the colours of a frame."""
+        """Return the colour image of a frame."""
         return frame.rgb(DEPTH_COLOUR)
 
     def about(self) -> dict[str, Any]:
-        """Return how counts became metres, and where the camera stood."""
+        """Return the depth scale and the pose of the camera."""
         rgbd = self._rgbd
         return {
             "depth": rgbd.depth.name,
@@ -110,33 +110,33 @@ class RgbdViews:
 def _check_kind(options: TrackOptions) -> None:
     if options.colour is not None or options.radiometry != Radiometry():
         raise BadInput(
-            "--depth: --colour, --temperature-range, --scale and --black-hot are for thermal pictures; "
-            "the folder itself holds the colour ones"
+            "--depth: --colour, --temperature-range, --scale and --black-hot are for thermal images only; "
+            "FOLDER itself holds the colour images"
         )
 
 
 def _folders(options: TrackOptions, rgbd: RgbdOptions) -> tuple[tuple[Path, str], tuple[Path, str]]:
-    """Return both folders, each with what a run calls it."""
+    """Return both folders, each with the name of its images in a run."""
     return (options.footage, DEPTH_COLOUR), (rgbd.depth, DEPTH)
 
 
 def _folder(path: Path, image: str) -> PictureFolder:
     if not path.is_dir():
-        raise BadInput(f"{path}: there is no such folder; colour pictures and their depth are in one each")
+        raise BadInput(f"{path}: folder not found; colour images and their depth need one folder each")
     if (path / "run.json").is_file():
         raise BadInput(f"{path}: is a run; give {path / image}")
     return PictureFolder(path, path.name)
 
 
 COLOUR_TRACKER: Final = "colour"
-"""It differs from `thermal` by what colours add alone."""
+"""Tracker that differs from `thermal` only in its use of colour."""
 
 
 class ThermalViews:
-    """Thermal pictures of a folder or a video.
+    """Thermal images of a folder or a video.
 
     Raises:
-        BadInput: they cannot be read, or the tracker needs colour and there is none.
+        BadInput: the images cannot be read, or the tracker needs colour and there is none.
     """
 
     camera = THERMAL
@@ -144,7 +144,7 @@ class ThermalViews:
 
     def __init__(self, options: TrackOptions) -> None:
         if options.tracker == COLOUR_TRACKER and options.colour is None:
-            raise BadInput("--tracker colour: needs --colour FOLDER; without it, give --tracker thermal")
+            raise BadInput("--tracker colour: needs --colour FOLDER; add it, or give --tracker thermal")
         self._options = options
         self._footage = open_footage(options.footage)
         self._colour = None if options.colour is None else open_footage(options.colour)
@@ -153,25 +153,25 @@ class ThermalViews:
         self.rate_hz = options.rate_hz or self._footage.rate_hz or self._given_rate() or DEFAULT_RATE_HZ
 
     def _given_rate(self) -> float | None:
-        """Read the rate from what lies beside the pictures."""
+        """Read the frame rate from a file beside the images."""
         path = find_info(self._options.footage)
         rate = None if path is None else rate_in(path)
         if rate is not None:
             self._footage.notes.append(
-                f"{path}: {rate:g} pictures a second are taken from there; --rate-hz goes first"
+                f"{path}: gives the frame rate, {rate:g} Hz; use --rate-hz to override it"
             )
         return rate
 
     @property
     def notes(self) -> list[str]:
-        """What was taken as something else than it is."""
+        """Notes on the interpretation of the inputs."""
         return [*self._footage.notes, *([] if self._colour is None else self._colour.notes)]
 
     def __iter__(self) -> Iterator[Frame]:
-        """Read thermal pictures, and colour ones along with them.
+        """Yield frames with thermal images, and with colour images if there are any.
 
         Raises:
-            BadInput: a picture that cannot be used, or a colour picture too few or too many.
+            BadInput: an image is unusable, or the numbers of thermal and colour images differ.
         """
         options, radiometry, notes = self._options, self._options.radiometry, self._footage.notes
         to_grey = None
@@ -200,23 +200,23 @@ class ThermalViews:
             if thermal is None or (self._colour is not None and picture is None):
                 shorter, longer = (here, there) if thermal is None else (there, here)
                 raise BadInput(
-                    f"{shorter}: ends after {number} pictures, before {longer}; both must be as long"
+                    f"{shorter}: ends after {number} images, before {longer}; both need the same number"
                 )
             yield thermal, picture
 
     def _note_counts(self, thermal: NDArray[Any]) -> None:
         if thermal.dtype != np.uint8 and not self._options.radiometry.is_known:
             self._footage.notes.append(
-                f"{thermal.dtype} pictures without --scale: degC are unknown, "
-                "grey follows the scene's contrast"
+                f"{thermal.dtype} images without --scale: temperatures are unknown, "
+                "grey levels are stretched to the contrast of the scene"
             )
 
     def picture(self, frame: Frame) -> Picture:
-        """Show the grey of a frame."""
+        """Return the grey image of a frame."""
         return show_thermal(frame.grey(THERMAL))
 
     def about(self) -> dict[str, Any]:
-        """Describe what is known of the pixels."""
+        """Describe the meaning of the pixel values."""
         colour, radiometry = self._options.colour, self._options.radiometry
         return {
             "colour": None if colour is None else colour.name,
@@ -226,15 +226,15 @@ class ThermalViews:
 
 
 class Views(Protocol):
-    """A row of frames.
+    """A sequence of frames.
 
     Attributes:
-        camera: name of that in whose image people are boxed and drawn.
-        cameras: names of all that a tracker may want.
-        expected: how many frames there should be; a damaged video has fewer.
-        is_exact: whether there are exactly as many.
-        numbers: those in the pictures' names, in a row; None if they tell none.
-        rate_hz: frames a second.
+        camera: name of the camera in whose image boxes are given and drawn.
+        cameras: names of all available cameras.
+        expected: expected number of frames; a damaged video has fewer.
+        is_exact: whether `expected` is exact.
+        numbers: numbers in the images' file names, in order; None if there are none.
+        rate_hz: frames per second.
     """
 
     camera: str
@@ -246,23 +246,23 @@ class Views(Protocol):
 
     @property
     def notes(self) -> list[str]:
-        """What was taken as something else than it is, to be reported once; complete after reading."""
+        """Notes on the interpretation of the inputs; complete after reading."""
         ...
 
     def __iter__(self) -> Iterator[Frame]:
-        """Read them one by one.
+        """Yield the frames one by one.
 
         Raises:
-            BadInput: a picture that cannot be used.
+            BadInput: an image is unusable.
         """
         ...
 
     def picture(self, frame: Frame) -> Picture:
-        """Show one of them to people, (H, W, 3) RGB."""
+        """Return a frame as a picture for display, (H, W, 3) RGB."""
         ...
 
     def about(self) -> dict[str, Any]:
-        """Describe what the pictures are, for run.json."""
+        """Describe the images, for run.json."""
         ...
 
 
@@ -270,6 +270,6 @@ def open_views(options: TrackOptions) -> Views:
     """Open thermal footage, or colour with depth.
 
     Raises:
-        BadInput: it cannot be read, or an option is of the other kind.
+        BadInput: the footage cannot be read, or an option is for the other kind.
     """
     return ThermalViews(options) if options.rgbd is None else RgbdViews(options, options.rgbd)
