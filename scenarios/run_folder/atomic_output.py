@@ -112,7 +112,7 @@ def check_out(path: Path, kind: str, *, overwrite: bool) -> None:
     if not path.exists() or (path.is_dir() and not any(path.iterdir())):
         return
     if not (path / f"{kind}.json").is_file():
-        raise BadInput(f"{path}: is not a {kind} and will not be replaced; give another --out")
+        raise BadInput(f"{path}: has no {kind}.json, so it will not be replaced; give another --out")
     if not overwrite:
         raise BadInput(f"{path}: exists already; give --overwrite to replace this {kind}, or another --out")
 

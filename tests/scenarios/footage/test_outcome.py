@@ -21,7 +21,7 @@ def tracked(frames=2, tracks=2, boxes=None):
 @pytest.mark.parametrize(
     ("boxes", "words"),
     [
-        (BoxKind.TORSO, "2 tracks, boxes round torsos, 10"),
+        (BoxKind.TORSO, "2 tracks, boxes enclose torsos, 10"),
         (BoxKind.WHOLE, "whole people"),
         (None, "2 tracks, 10"),
     ],

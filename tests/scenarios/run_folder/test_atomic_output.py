@@ -157,10 +157,10 @@ def test_what_is_no_run_is_never_offered_for_replacement(tmp_path, is_file):
         mine.mkdir()
     (mine if is_file else mine / "thesis.tex").write_text("years of work")
     clip = write_folder(tmp_path / "clip", 3)
-    words = f"{mine}: is no run and will not be replaced; give another --out"
+    words = f"{mine}: has no run.json, so it will not be replaced; give another --out"
     assert refusal(clip, "--out", mine) == refusal(clip, "--out", mine, "--overwrite") == words
     for overwrite in (False, True):
-        with pytest.raises(BadInput, match="is no run and will not be replaced"):
+        with pytest.raises(BadInput, match=r"has no run\.json, so it will not be replaced"):
             claim_folder(mine, overwrite=overwrite)
 
 

@@ -200,5 +200,5 @@ def test_a_folder_stands_for_its_runs_or_for_itself(whole: Path, tmp_path: Path)
     assert runs_in(whole) == [whole]
     assert runs_in(whole.parent) == [whole]
     assert runs_in(tmp_path) == [tmp_path]
-    with pytest.raises(BadInput, match="there is no such folder"):
+    with pytest.raises(BadInput, match="folder not found"):
         runs_in(tmp_path / "nothing")

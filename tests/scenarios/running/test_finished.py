@@ -63,5 +63,5 @@ def test_another_complete_run_is_refused_rather_than_replaced(
 
 def test_a_complete_run_that_lost_its_scenario_is_refused_by_the_file_s_name(options: RunOptions) -> None:
     (options.out / "scenario.yaml").unlink()
-    with pytest.raises(BadInput, match=r"scenario\.yaml: there is no such file"):
+    with pytest.raises(BadInput, match=r"scenario\.yaml: file not found"):
         is_finished(SCENARIO, options)
