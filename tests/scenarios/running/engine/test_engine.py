@@ -55,7 +55,7 @@ def test_a_task_that_fails_stops_no_other_and_is_named_with_its_reason(
     assert lines[0].startswith("  toy 6: ArithmeticError: 6 is wrong (toy_tasks.py, line ")
     assert lines[1:] == [
         "  toy 7: 7 is refused",
-        "toys: 2 of 8 failed; what is done stays, and the same command tries these again",
+        "toys: 2 of 8 failed; the others are complete; run the command again to retry",
     ]
 
 
