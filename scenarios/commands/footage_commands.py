@@ -137,7 +137,7 @@ def _print(tracked: "Tracked", options: "TrackOptions", output: Output) -> None:
 )
 @output_options
 def import_tracks(run: Path, tracks: Path, given: "GivenOptions[TrackImport]", output: Output) -> None:
-    """Import tracks that another program computed from a run's images.
+    """Import another program's tracks for a run.
 
     TRACKS is MOTChallenge text: frame, id, left, top, width, height, confidence, -1, -1, -1. Frames count the
     camera's images from 1, as in exports, and boxes are in pixels. Writes a run folder with RUN's scenario

@@ -40,7 +40,7 @@ def test_a_scenario_that_is_like_itself_in_the_end_is_refused() -> None:
 
 
 def test_an_unknown_one_is_refused_by_who_is_near_or_where_all_are_listed(tmp_path: Path) -> None:
-    with refused("'crosing_2'", "did you mean 'crossing_2'?", "ends in .yaml"):
+    with refused("'crosing_2'", "did you mean 'crossing_2'?", "end in .yaml"):
         load_scenario("crosing_2")
     with refused("'zzz'", "`peopleboy list`"):
         load_scenario("zzz")
