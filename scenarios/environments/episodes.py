@@ -38,6 +38,7 @@ class EpisodeMetrics:
     The environment does not know which person a controller follows: `wrong_person_s` is NaN, and
     `followed_to_end` depends on the track alone.
     """
+
     def __init__(self, plan: FloorPlan, task: FollowingTask) -> None:
         self._plan, self._task = plan, task
         self._noted: list[tuple[Scenes, int, int]] = []

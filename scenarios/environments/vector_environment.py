@@ -148,9 +148,7 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
                 "give vectorization_mode='sync' or 'async'"
             )
         if threads is not None and not (isinstance(threads, int | np.integer) and threads >= 1):
-            raise BadInput(
-                f"threads {threads!r}: must be 1 or more, or None for one per processor"
-            )
+            raise BadInput(f"threads {threads!r}: must be 1 or more, or None for one per processor")
         self.num_envs = num_envs
         self._crew = WorkerPool(threads)
         self._envs = tuple(PeopleBoyEnv(**settings) for _ in range(num_envs))

@@ -236,9 +236,7 @@ def imports_by_sequence(what: TrackImport) -> list[TrackImport]:
     for name in sorted(files.keys() ^ runs.keys()):
         if name in runs:
             raise BadInput(f"{what.tracks}: has no {name}.txt, the tracks of {runs[name].folder}")
-        raise BadInput(
-            f"{files[name]}: no run with that name in {what.run}, which has {', '.join(runs)}"
-        )
+        raise BadInput(f"{files[name]}: no run with that name in {what.run}, which has {', '.join(runs)}")
     imports = [
         replace(what, run=run.folder, tracks=files[name], out=what.out / name) for name, run in runs.items()
     ]

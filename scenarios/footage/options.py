@@ -94,9 +94,7 @@ class RgbdOptions:
 
     depth: Annotated[
         Path,
-        Field(
-            description="Folder of 16-bit depth images, aligned with the colour images in FOLDER."
-        ),
+        Field(description="Folder of 16-bit depth images, aligned with the colour images in FOLDER."),
     ]
     m_per_count: Annotated[
         float,

@@ -54,9 +54,7 @@ class TasksFailed(Exception):  # noqa: N818
     """Some tasks failed, and all others are complete."""
 
     def __init__(self, title: str, failures: Sequence[Failure], total: int) -> None:
-        count = (
-            f"{len(failures)} of {total} failed; the others are complete; run the command again to retry"
-        )
+        count = f"{len(failures)} of {total} failed; the others are complete; run the command again to retry"
         super().__init__("\n".join([f"{title}: {count}", *(f"  {one.name}: {one.why}" for one in failures)]))
         self.failures = tuple(failures)
 

@@ -59,7 +59,7 @@ def test_results_in_the_layout_of_an_export_come_back_as_runs_with_the_same_trac
     ("names", "says"),
     [
         (("tiny-0",), ("theirs", "no tiny-1.txt", "second")),
-        (("tiny-0", "tiny-1", "tiny-7"), ("tiny-7.txt", "no run of that name", "tiny-0, tiny-1")),
+        (("tiny-0", "tiny-1", "tiny-7"), ("tiny-7.txt", "no run with that name", "tiny-0, tiny-1")),
         ((), ("theirs", "SEQUENCE.txt", "data")),
     ],
 )

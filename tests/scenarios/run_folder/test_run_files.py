@@ -127,7 +127,7 @@ DAMAGES: list[tuple[str, Damage, str]] = [
     ("run.json", saying(seed=None), "seed: must be a whole number, got None; run the scenario again"),
     ("run.json", saying(renderer="vulkan"), "renderer: unknown renderer 'vulkan'"),
     ("run.json", saying(versions=[1]), "versions: must be a mapping"),
-    ("run.json", saying(footage="clip"), "is a run of footage; only runs of scenarios"),
+    ("run.json", saying(footage="clip"), "is a run of footage; give a run of a scenario"),
     ("run.json", saying(rate_hz=0), "rate_hz: must be at least 1, got 0"),
 ]
 
