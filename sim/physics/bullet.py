@@ -43,7 +43,7 @@ except ImportError as error:
 
 GRAVITY_M_S2 = 9.81
 _SHAPES_A_BODY = 16  # PyBullet silently drops the rest
-_LINK = "link0"  # as PyBullet calls what has no name
+_LINK = "link0"  # PyBullet's name for unnamed links
 _BASE = -1
 _PARKED: Place = ((0.0, 0.0, -500.0), UPRIGHT)
 _ALL = -1
@@ -56,7 +56,7 @@ class Contact:
 
     Attributes:
         other: name of the other body.
-        position: [m] where, on the other body, world frame.
+        position: [m] contact point on the other body, world frame.
         normal: unit vector from the other body to this one, world frame.
         normal_force_n: [N] along that vector; 0 when they touch without pressing.
     """
@@ -101,9 +101,9 @@ class Bullet(Physics):
         self._moved: dict[str, BulletBody] = {}
         self._known: dict[str, Matrix] = {}  # poses of bodies of files since they last moved
         self._given = GivenBodies()
-        self._visible: dict[str, list[VisualShape]] = {}  # of those that PyBullet is not asked about
-        self._only_seen: set[str] = set()  # bodies that nothing can touch, while they are not hidden
-        self._unmade: list[tuple[BulletBody, Sequence[Shape]]] = []  # bodies that only TinyRenderer would see
+        self._visible: dict[str, list[VisualShape]] = {}  # of bodies whose shapes are known without PyBullet
+        self._only_seen: set[str] = set()  # visible bodies without collision shapes
+        self._unmade: list[tuple[BulletBody, Sequence[Shape]]] = []  # bodies that only TinyRenderer needs
         self._loaded = SolidBoxes(self._client.getAABB)
         self._client.setPhysicsEngineParameter(
             fixedTimeStep=1.0 / physics_hz, deterministicOverlappingPairs=1
@@ -171,7 +171,7 @@ class Bullet(Physics):
             (self._only_seen.discard if hidden else self._only_seen.add)(name)
 
     def hidden_parts(self) -> NDArray[np.bool_]:
-        """(P,) which parts are hidden now."""
+        """Return (P,) whether a part is hidden."""
         return self._hidden.copy()
 
     def step(self) -> None:
@@ -181,7 +181,7 @@ class Bullet(Physics):
             self._note_move(body)
 
     def set_joint_speeds(self, name: str, speeds: Mapping[str, float], max_torque_nm: float) -> None:
-        """See `Physics.set_joint_speeds`; [m/s], [N] of joints that slide. At no torque joints run free."""
+        """See `Physics.set_joint_speeds`; [m/s], [N] for sliding joints. Without torque joints run free."""
         body = self._bodies[name]
         self._client.setJointMotorControlArray(
             body.ids[0],
@@ -192,13 +192,13 @@ class Bullet(Physics):
         )
 
     def joint_states(self, name: str, joints: Sequence[str]) -> tuple[Matrix, Matrix]:
-        """See `Physics.joint_states`; [m] and [m/s] of joints that slide."""
+        """See `Physics.joint_states`; [m] and [m/s] for sliding joints."""
         body = self._bodies[name]
         states = self._client.getJointStates(body.ids[0], body.links_of(joints))
         return np.array([state[0] for state in states]), np.array([state[1] for state in states])
 
     def velocity(self, name: str) -> tuple[Matrix, Matrix]:
-        """Linear (3,) [m/s] velocity of the base's centre of mass and angular (3,) [rad/s], world frame."""
+        """Return velocity (3,) [m/s] of the base's centre of mass, and angular (3,) [rad/s], world frame."""
         linear, angular = self._client.getBaseVelocity(self._bodies[name].ids[0])
         return np.array(linear), np.array(angular)
 
@@ -228,7 +228,7 @@ class Bullet(Physics):
         return self._poses.copy()
 
     def visual_shapes(self) -> list[VisualShape]:
-        """Every shape that a renderer should draw, those of files read back from PyBullet, by their parts."""
+        """Return all visible shapes by part; those of files are read back from PyBullet."""
         return [shape for body in self._bodies for shape in self._visible_shapes(body)]
 
     def cast_rays(
@@ -236,8 +236,8 @@ class Bullet(Physics):
     ) -> tuple[Matrix, NDArray[np.int64]]:
         """See `Physics.cast_rays`.
 
-        Bodies of given shapes are met where they are, those of files where PyBullet says, which finds round
-        things by steps: within 1 mm mostly, within 2 cm where a ray grazes them.
+        Hits on given shapes are exact. Hits on files are PyBullet's, which intersects round shapes
+        iteratively: mostly within 1 mm, and within 2 cm for grazing rays.
         """
         starts, ends = np.asarray(from_m, np.float64), np.asarray(to_m, np.float64)
         fraction, part = self._given.cast_rays(starts, ends, ignore)
@@ -310,7 +310,7 @@ class Bullet(Physics):
         self._visible[name] = [as_given(shape, part) for shape in shapes] if visible else []
 
     def _show_all(self) -> None:
-        """Let PyBullet have all that is to be seen where it is, even what nothing can touch."""
+        """Update all visible bodies in PyBullet, including those without collision shapes."""
         for body, shapes in self._unmade:
             self._make(body, shapes, visible=True, solid=False)
             self._bodies.know_ids(body)
@@ -428,7 +428,7 @@ class Bullet(Physics):
         return [visual_shape(row, self._bodies.part_of(row[0], row[1])) for row in rows]
 
     def _visual_rows(self, number: int) -> list[Sequence[Any]]:
-        """What PyBullet reports of all shapes of one of its bodies that are not transparent."""
+        """Return PyBullet's data of all shapes of one of its bodies that are not transparent."""
         return [row for row in self._client.getVisualShapeData(number) if row[7][3] > 0.0]
 
     def _set_opacity(self, bodies: Sequence[BulletBody], alpha: float) -> None:
@@ -437,7 +437,7 @@ class Bullet(Physics):
                 self._client.changeVisualShape(number, link, rgbaColor=[1.0, 1.0, 1.0, alpha])
 
     def _group_of(self, body: BulletBody) -> int:
-        """The collision group of one body alone, which rays can leave out."""
+        """Return the collision group of a single body, which rays can ignore."""
         if body.group is None:
             body.group = self._bodies.new_group()
             mask = _ALL if body.moves_by_itself else _ALL_BUT_STATIC

@@ -21,7 +21,7 @@ AT_ORIGIN: Final[Place] = ((0.0, 0.0, 0.0), UPRIGHT)
 
 _ROUNDING: Final = 1e-12
 
-# Bullet takes the bits below these for groups of its own.
+# Bullet uses the lower bits for its built-in groups.
 _FIRST_FREE_BIT = 6
 _LAST_BIT = 30
 
@@ -33,17 +33,17 @@ class BulletBody:
     Attributes:
         name: unique.
         parts: the numbers of its base and of its links.
-        ids: PyBullet's numbers, several for one part of more shapes than a PyBullet body holds; none as long
-            as PyBullet need not know of it.
+        ids: PyBullet's numbers, several for one part with more shapes than a PyBullet body can have; none as
+            long as PyBullet does not need the body.
         joints: link that each joint moves, by the joint's name.
-        base_from_inertia: the frame that PyBullet places, in the base's own frame.
+        base_from_inertia: the frame that PyBullet places, in the base frame.
         moves_by_itself: whether physics moves it.
-        visible_links: id and link of all that is to be seen.
-        group: collision group of its own, if it needed one.
-        solid_links: id and link of all that rays and bodies meet.
-        put_at: where a body of a file was put, unless physics moves it.
-        hidden_at: where it will reappear if it is hidden.
-        is_given: whether its shapes were given, not read from a file; then it is of one part.
+        visible_links: id and link of visible links.
+        group: separate collision group, if needed.
+        solid_links: id and link of links that block rays and bodies.
+        put_at: pose of a body of a file, unless physics moves it.
+        hidden_at: pose at which it will reappear if it is hidden.
+        is_given: whether its shapes were given, not read from a file; then it has one part.
     """
 
     name: str
@@ -60,7 +60,7 @@ class BulletBody:
     is_given: bool = False
 
     def links_of(self, joints: Sequence[str]) -> list[int]:
-        """The links that the named joints move.
+        """Return the links that the named joints move.
 
         Raises:
             BadInput: the body has no such joint.
@@ -76,7 +76,7 @@ class BulletBodies:
     """All bodies of one world, by name, and their parts in the order of creation.
 
     Args:
-        parts: what each part is; those of new bodies are added to them.
+        parts: keys of all parts; those of new bodies are appended.
 
     Attributes:
         parts: as given.
@@ -99,7 +99,7 @@ class BulletBodies:
         return self.by_name[name]
 
     def add(self, body: BulletBody, link_names: Sequence[str]) -> None:
-        """Take in a body whose base and links have these names."""
+        """Add a body with names of its base and links."""
         self.by_name[body.name] = body
         if body.moves_by_itself:
             self.moving.append(body)
@@ -107,21 +107,21 @@ class BulletBodies:
         self.know_ids(body)
 
     def know_ids(self, body: BulletBody) -> None:
-        """Take in PyBullet's numbers of a body."""
+        """Store PyBullet's numbers of a body."""
         for number in body.ids:
             self._body_of_id[number] = body
             self._part_of_link.update({(number, link - 1): part for link, part in enumerate(body.parts)})
 
     def name_of(self, number: int) -> str:
-        """Name of the body that PyBullet gave this number."""
+        """Return the name of the body with a PyBullet number."""
         return self._body_of_id[number].name
 
     def part_of(self, number: int, link: int) -> int:
-        """Number of the part that is this link of PyBullet's body of this number, -1 if there is none."""
+        """Return the number of the part for a link of a PyBullet body, -1 for none."""
         return self._part_of_link.get((number, link), -1)
 
     def parts_of(self, mask: NDArray[Any]) -> NDArray[np.int32]:
-        """Part numbers in place of PyBullet's combined numbers of body and link, of any shape."""
+        """Convert PyBullet's combined numbers of body and link to part numbers; arrays of any shape."""
         numbers, links = np.array(list(self._part_of_link)).reshape(-1, 2).T
         parts = np.full((numbers.max(initial=0) + 1, links.max(initial=0) + 2), -1, np.int32)
         parts[numbers, links + 1] = list(self._part_of_link.values())
@@ -129,7 +129,7 @@ class BulletBodies:
         return np.where(found, parts[np.where(found, mask & 0xFFFFFF, 0), np.where(found, mask >> 24, 0)], -1)
 
     def new_group(self) -> int:
-        """A collision group that no body has.
+        """Return an unused collision group.
 
         Raises:
             BadInput: all are taken.
@@ -156,7 +156,7 @@ def as_units(orientations: ArrayLike) -> NDArray[np.float64]:
     return np.where(abs(lengths - 1.0) < _ROUNDING, given, given / lengths)
 
 
-# What rays meet without asking PyBullet: bodies of given shapes, and boxes round the rest.
+# Ray casting without PyBullet: exact for bodies of given shapes, and boxes around the others.
 
 _NONE: Final = -1
 
@@ -167,11 +167,11 @@ class GivenBodies:
     def __init__(self) -> None:
         self._rows: dict[str, int] = {}
         self._part_of_row = np.zeros(0, np.int64)
-        self._bodies = PlacedBodies()  # of which those that are solid have a part
+        self._bodies = PlacedBodies()  # solid bodies have a part
         self._has_moved = np.zeros(0, np.bool_)  # since `moved_poses`
 
     def add(self, name: str, part: int, solid: Sequence[Shape]) -> None:
-        """Take in a body, the number that its part has in the world, and what of it is solid."""
+        """Add a body, with its part's number in the world, and its solid shapes."""
         row = self._rows[name] = self._bodies.add()
         self._part_of_row, self._has_moved = (
             np.append(self._part_of_row, part),
@@ -181,40 +181,40 @@ class GivenBodies:
             self._bodies.add_part(row, np.eye(4), solid)
 
     def put(self, name: str, position: Vector, orientation: Quaternion) -> None:
-        """Put a body's frame at a position [m] and a quaternion, of any length, in the world."""
+        """Place a body's frame at a position [m] and a quaternion of any length, world frame."""
         row = self._rows[name]
         self._bodies.put(row, position, as_unit(orientation))
         self._has_moved[row] = True
 
     def put_all(self, names: Sequence[str], positions: ArrayLike, orientations: ArrayLike) -> None:
-        """Do that with N bodies, at (N, 3) and (N, 4)."""
+        """Place N bodies at (N, 3) and (N, 4)."""
         rows = list(map(self._rows.__getitem__, names))
         self._bodies.put(rows, positions, as_units(orientations))
         self._has_moved[rows] = True
 
     def place(self, name: str) -> Place:
-        """Position [m] and unit quaternion of a body's frame in the world."""
+        """Return position [m] and unit quaternion of a body's frame in the world."""
         x, y, z, i, j, k, w = self._bodies.places[self._rows[name]].tolist()
         return (x, y, z), (i, j, k, w)
 
     def moved_poses(self) -> tuple[NDArray[np.int64], Array]:
-        """Numbers (M,) of the parts that were put somewhere since the last call, and poses (M, 4, 4)."""
+        """Return numbers (M,) and poses (M, 4, 4) of the parts that were placed since the last call."""
         rows = np.flatnonzero(self._has_moved)
         self._has_moved[rows] = False
         places = self._bodies.places[rows]
         return self._part_of_row[rows], pose_matrices(places[:, :3], places[:, 3:])
 
     def cast_rays(self, starts: Array, ends: Array, ignore: str | None) -> tuple[Array, NDArray[np.int64]]:
-        """Find the nearest of these along rays; shapes are met from outside, triangles from both sides.
+        """Find the nearest hits of rays on these bodies: shapes from outside, triangles from both sides.
 
         Args:
             starts: (R, 3) [m] world frame.
             ends: (R, 3) [m].
-            ignore: name of a body, of these or not, that rays pass through; None for none.
+            ignore: name of a body that rays ignore; None for none.
 
         Returns:
-            fraction: (R,) of the way at which a ray hits, 1 where it hits nothing.
-            part: (R,) number of the part that is hit, -1 where none.
+            fraction: (R,) hit distance as a fraction of the ray, 1 without a hit.
+            part: (R,) number of the hit part, -1 for none.
         """
         bodies, solids = self._bodies.now()
         passed = _NONE if ignore is None else self._rows.get(ignore, _NONE)
@@ -226,10 +226,10 @@ Link = tuple[int, int]
 
 
 class SolidBoxes:
-    """Upright boxes around the solid links of bodies, brought up to date when rays are cast.
+    """Axis-aligned boxes around the solid links of bodies, updated when rays are cast.
 
     Args:
-        box_of: gives the least and the greatest corner [m] of the box around a body's link, world frame.
+        box_of: returns the least and the greatest corner [m] of the box around a body's link, world frame.
     """
 
     def __init__(self, box_of: Callable[[int, int], tuple[Vector, Vector]]) -> None:
@@ -240,7 +240,7 @@ class SolidBoxes:
         self._stale: set[str] = set()
 
     def add(self, name: str, links: Sequence[Link]) -> None:
-        """Take in a body and the links of it that are solid."""
+        """Add a body with its solid links."""
         first = len(self._boxes)
         self._boxes = np.concatenate([self._boxes, np.zeros((len(links), 2, 3))])
         self._links[name] = links
@@ -248,11 +248,11 @@ class SolidBoxes:
         self._stale.add(name)
 
     def forget(self, name: str) -> None:
-        """Look anew at a body, which has moved, when rays are cast next."""
+        """Mark a moved body for update at the next ray cast."""
         self._stale.add(name)
 
     def find_near(self, starts: Array, ends: Array, ignore: str | None) -> NDArray[np.int64]:
-        """Numbers of all rays that come within 1 mm of the box of one of these bodies other than `ignore`.
+        """Return the numbers of rays that pass within 1 mm of a box of these bodies, except of `ignore`.
 
         Args:
             starts: (R, 3) [m] world frame.
@@ -270,7 +270,7 @@ class SolidBoxes:
 
 @njit(cache=True)
 def _reach(starts: Array, ends: Array, boxes: Array, passed: tuple[int, int]) -> NDArray[np.bool_]:
-    """(R,) whether each ray reaches a box, those of the rows `passed` aside."""
+    """Return (R,) whether each ray reaches a box, except boxes of the rows `passed`."""
     found = np.zeros(len(starts), np.bool_)
     for ray in range(len(starts)):
         for row in range(len(boxes)):

@@ -43,8 +43,8 @@ def shape_arguments(shapes: Sequence[Shape], prefix: str) -> dict[str, list[Any]
         f"{prefix}FrameOrientations": [shape.orientation for shape in shapes],
     }
     if prefix == "collision":
-        # Without this a mesh would be solid in all its hollows, such as a table's between the legs.
-        arguments["planeNormals"] = [(0.0, 0.0, 1.0)] * len(shapes)  # or planes are met by nothing
+        # Otherwise a mesh is replaced by its convex hull, such as a table's space between the legs.
+        arguments["planeNormals"] = [(0.0, 0.0, 1.0)] * len(shapes)  # otherwise planes do not collide
         arguments["flags"] = [_CONCAVE if shape.kind == ShapeKind.MESH else 0 for shape in shapes]
     return arguments
 
@@ -68,9 +68,8 @@ def view_matrix(world_from_camera: Matrix) -> list[float]:
 def projection_matrix(camera: Pinhole, near_m: float, far_m: float) -> list[float]:
     """16 numbers, column by column: clip space from eye.
 
-    TinyRenderer takes its sample of pixel (u, v) at -1 + 2 u / width, 1 - 2 (v + 1) / height: half a pixel
-    left of and below the pixel's centre. The image is shifted by as much, so that it shows what lies
-    behind the centres.
+    TinyRenderer samples pixel (u, v) at -1 + 2 u / width, 1 - 2 (v + 1) / height: half a pixel left of and
+    below the pixel's centre. The image is shifted by the same amount, so that it is sampled at the centres.
     """
     width, height = camera.width, camera.height
     matrix = np.zeros((4, 4))
@@ -104,7 +103,7 @@ def quiet() -> Iterator[None]:
         for descriptor in (1, 2):
             stack.enter_context(_muted(descriptor))
         yield
-        # C's buffers would otherwise be written out after the descriptors are back.
+        # Otherwise C's buffers would be flushed after the descriptors are restored.
         _flush()
 
 

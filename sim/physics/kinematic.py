@@ -28,7 +28,7 @@ from peopleboy.sim.physics.vehicle import (
 from peopleboy.sim.shapes.shape_table import VisualShape, as_given
 from peopleboy.sim.shapes.shapes import UPRIGHT, Quaternion, Shape, Vector
 
-_LINK = "link0"  # as PyBullet calls it
+_LINK = "link0"  # PyBullet's name for it
 
 
 @dataclass(slots=True, eq=False)
@@ -36,11 +36,11 @@ class _Rolling:
     """The one body that moves by itself.
 
     Attributes:
-        body: its number.
-        vehicle: its outline and its wheels.
-        joints: names of the left and the right wheel's.
-        wheels: numbers of their parts.
-        motion: how it stands and moves.
+        body: number of the body.
+        vehicle: outline and wheels.
+        joints: names of the joints of the left and the right wheel.
+        wheels: part numbers of the wheels.
+        motion: pose and motion.
     """
 
     body: int
@@ -53,12 +53,12 @@ class _Rolling:
 class Kinematic(Physics):
     """A kinematic world with bodies by name.
 
-    The vehicle, of which there may be one, stays upright on z = 0 and moves at once as its wheels turn,
-    without slip, whatever torque they have. At the end of a step it is pushed out of whatever it is in;
-    then its wheels slip. It pushes nothing, and passes over planes and all that is lower than its boxes.
+    There may be one vehicle. It stays upright on z = 0, and moves with its wheels instantly and without slip,
+    independent of torque. At the end of a step it is pushed out of solids, where its wheels slip. It does not
+    push other bodies, and passes over planes and objects lower than its boxes.
 
     Attributes:
-        numbers: of the bodies by name, in the order of creation.
+        numbers: numbers of the bodies by name, in the order of creation.
     """
 
     def __init__(self, *, physics_hz: int = 240) -> None:
@@ -83,7 +83,7 @@ class Kinematic(Physics):
         fixed: bool = True,
         scale: float = 1.0,
     ) -> None:
-        """See `Physics.add_urdf`; what is not held in place must be a vehicle, and the only one."""
+        """See `Physics.add_urdf`; the only body that is not fixed must be a vehicle."""
         self.numbers.check_new(name)
         links = read_links(find_model(path), scale)
         first = len(self._parts)
@@ -106,7 +106,7 @@ class Kinematic(Physics):
         self.set_pose(name, position, orientation)
 
     def set_pose(self, name: str, position: Vector, orientation: Quaternion) -> None:
-        """See `Physics.set_pose`; of the vehicle only place and heading on the floor count."""
+        """See `Physics.set_pose`; for the vehicle only position and heading on the floor are used."""
         number = self.numbers[name]
         rolling = self._rolling
         if rolling is not None and rolling.body == number:
@@ -120,7 +120,7 @@ class Kinematic(Physics):
         self._bodies.put(number, position, orientation)
 
     def set_poses(self, names: Sequence[str], positions: ArrayLike, orientations: ArrayLike) -> None:
-        """See `Physics.set_poses`; not of the vehicle."""
+        """See `Physics.set_poses`; not for the vehicle."""
         self._bodies.put([self.numbers[name] for name in names], positions, orientations)
 
     def set_hidden(self, name: str, hidden: bool) -> None:
@@ -132,12 +132,12 @@ class Kinematic(Physics):
             self._bodies.hidden[number], self._bodies.stale[number] = hidden, True
 
     def hidden_parts(self) -> NDArray[np.bool_]:
-        """(P,) which parts are hidden now."""
+        """Return (P,) whether a part is hidden."""
         bodies, _ = self._bodies.now()
         return bodies.hidden[bodies.of_part]
 
     def step(self) -> None:
-        """Let the vehicle roll for one physics step, and push it out of what it is in."""
+        """Roll the vehicle for one physics step, and push it out of solids."""
         bodies, solids = self._bodies.now()
         self._touched = np.zeros(len(bodies.places), np.bool_)
         rolling = self._rolling
@@ -148,7 +148,7 @@ class Kinematic(Physics):
             bodies.stale[own] = True
 
     def set_joint_speeds(self, name: str, speeds: Mapping[str, float], max_torque_nm: float) -> None:
-        """Let wheels turn at speeds [rad/s] from the next step on, at any positive torque."""
+        """Set wheel speeds [rad/s] for the next steps, at any positive torque."""
         rolling = self._vehicle_called(name, speeds)
         for joint, speed in speeds.items():
             rolling.motion.speeds[rolling.joints.index(joint)] = speed if max_torque_nm > 0.0 else 0.0
@@ -160,7 +160,7 @@ class Kinematic(Physics):
         return rolling.motion.angles[chosen], rolling.motion.speeds[chosen]
 
     def velocity(self, name: str) -> tuple[Matrix, Matrix]:
-        """See `Physics.velocity`; that of the base frame's origin."""
+        """See `Physics.velocity`; for the origin of the base frame."""
         x, y, turn = self._vehicle_called(name, ()).motion.velocity.tolist()
         return np.array([x, y, 0.0]), np.array([0.0, 0.0, turn])
 
@@ -179,18 +179,18 @@ class Kinematic(Physics):
 
     @property
     def wheels(self) -> tuple[int, int]:
-        """Numbers of the parts that are the vehicle's left and right wheel; there must be one."""
+        """Part numbers of the vehicle's left and right wheel; requires a vehicle."""
         assert self._rolling is not None
         return self._rolling.wheels
 
     def visual_shapes(self) -> list[VisualShape]:
-        """Every shape that a renderer should draw, in the order of the parts."""
+        """Return all visible shapes, in the order of the parts."""
         return list(self._visible)
 
     def cast_rays(
         self, from_m: ArrayLike, to_m: ArrayLike, ignore: str | None = None
     ) -> tuple[Matrix, NDArray[np.int64]]:
-        """See `Physics.cast_rays`; exact, and to the outside of shapes only."""
+        """See `Physics.cast_rays`; exact, and from outside of shapes only."""
         bodies, solids = self._bodies.now()
         starts, ends = np.asarray(from_m, np.float64), np.asarray(to_m, np.float64)
         found: tuple[Matrix, NDArray[np.int64]] = cast(
@@ -199,18 +199,18 @@ class Kinematic(Physics):
         return found
 
     def touching(self, name: str) -> set[str]:
-        """See `Physics.touching`; of the vehicle alone, the floor aside."""
+        """See `Physics.touching`; for the vehicle only, without the floor."""
         self._vehicle_called(name, ())
         if not self._touched.any():
             return set()
         return self.names_of(self._touched)
 
     def names_of(self, flags: NDArray[np.bool_]) -> set[str]:
-        """Names of the bodies that have a flag, (B,) in the order of creation."""
+        """Return the names of the bodies with a flag (B,), in the order of creation."""
         return {name for name, number in self.numbers.items() if flags[number]}
 
     def state(self) -> VehicleState:
-        """Return the state of the world, not copied; there must be a vehicle."""
+        """Return the state of the world, not copied; requires a vehicle."""
         assert self._rolling is not None
         bodies, solids = self._bodies.now()
         rolling = self._rolling
@@ -243,10 +243,10 @@ class Kinematic(Physics):
         self._parts.append(key)
 
     def _vehicle_called(self, name: str, joints: Sequence[str] | Mapping[str, float]) -> _Rolling:
-        """The vehicle, if it goes by that name and has these joints."""
+        """Return the vehicle; its name and joints must match."""
         number, rolling = self.numbers[name], self._rolling
         if rolling is None or rolling.body != number:
-            raise BadInput(f"body {name!r} stands still: kinematic physics moves vehicles only")
+            raise BadInput(f"body {name!r} is fixed: kinematic physics moves vehicles only")
         for joint in joints:
             if joint not in rolling.joints:
                 known = ", ".join(rolling.joints)
@@ -256,7 +256,7 @@ class Kinematic(Physics):
 
 @njit(cache=True, nogil=True)
 def turn_wheels(poses: Matrix, wheels: NDArray[np.int64], angles: Matrix) -> None:
-    """Turn some parts (W,) among poses (P, 4, 4) about their y axes by angles (W,) [rad], in place."""
+    """Rotate parts (W,) among poses (P, 4, 4) about their y axes by angles (W,) [rad], in place."""
     turn, before = np.zeros((3, 3)), np.empty((3, 3))
     for k in range(len(wheels)):
         cos, sin = math.cos(angles[k]), math.sin(angles[k])

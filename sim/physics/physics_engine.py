@@ -41,7 +41,7 @@ class BodiesByName(dict[str, B]):
         """Check that a name is not taken.
 
         Raises:
-            BadInput: it is.
+            BadInput: the name is taken.
         """
         if name in self:
             raise BadInput(f"body {name!r} exists already; choose another name")
@@ -50,9 +50,8 @@ class BodiesByName(dict[str, B]):
 class Physics(ABC):
     """Physics of bodies by name, one of which can drive; use it as a context manager, or close it.
 
-    Parts are numbered in the order in which they were created; the number never changes. The frame of a
-    part is the frame in which its shapes were given. Every method that takes a name raises BadInput if no
-    body has it.
+    Parts are numbered in the order of creation; the number never changes. The frame of a part is the frame in
+    which its shapes were given. Every method that takes a name raises BadInput if it is unknown.
     """
 
     def __init__(self) -> None:
@@ -82,7 +81,7 @@ class Physics(ABC):
     ) -> None:
         """Add a static body of one part.
 
-        An invisible part is drawn by no renderer; one that is not solid is passed by rays and bodies.
+        Renderers do not draw an invisible part; rays and bodies pass through one that is not solid.
 
         Raises:
             BadInput: the name is taken, there are no shapes, or a mesh is missing or cannot be read.
@@ -103,7 +102,7 @@ class Physics(ABC):
 
     @abstractmethod
     def _add_shapes(self, name: str, shapes: Sequence[Shape], visible: bool, solid: bool) -> None:
-        """Take in a body of one part, of shapes that are there."""
+        """Add a body of one part, with valid shapes."""
 
     @abstractmethod
     def add_urdf(
@@ -119,11 +118,11 @@ class Physics(ABC):
         """Add the robot or thing of a URDF file.
 
         Args:
-            name: what to call it.
-            path: the file; a relative one that does not exist is looked up in pybullet_data.
-            position: [m] of the base link's frame in the world.
-            orientation: of the base link's frame, world from base.
-            fixed: held in place for good.
+            name: name of the body.
+            path: path of the file; a relative one that does not exist is searched for in pybullet_data.
+            position: [m] position of the base link's frame in the world.
+            orientation: orientation of the base link's frame, world from base.
+            fixed: whether the body is fixed in place.
             scale: factor on all lengths.
 
         Raises:
@@ -132,23 +131,23 @@ class Physics(ABC):
 
     @abstractmethod
     def set_pose(self, name: str, position: Vector, orientation: Quaternion) -> None:
-        """Put a body's base frame at `position` [m] and `orientation` in the world, at rest."""
+        """Place a body's base frame at `position` [m] and `orientation` in the world, at rest."""
 
     @abstractmethod
     def set_poses(self, names: Sequence[str], positions: ArrayLike, orientations: ArrayLike) -> None:
-        """Put base frames of N bodies at positions (N, 3) [m] and orientations (N, 4), as `set_pose` does."""
+        """Place base frames of N bodies at positions (N, 3) [m] and orientations (N, 4), like `set_pose`."""
 
     @abstractmethod
     def set_hidden(self, name: str, hidden: bool) -> None:
-        """Take a body out of images, rays and contacts, or put it back where it was last placed.
+        """Remove a body from images, rays and contacts, or restore it at its last pose.
 
         Raises:
-            BadInput: physics moves the body, so that there is no place to put it back to.
+            BadInput: physics moves the body.
         """
 
     @abstractmethod
     def hidden_parts(self) -> NDArray[np.bool_]:
-        """(P,) which parts are hidden now."""
+        """Return (P,) whether a part is hidden."""
 
     @abstractmethod
     def step(self) -> None:
@@ -164,7 +163,7 @@ class Physics(ABC):
 
     @abstractmethod
     def joint_states(self, name: str, joints: Sequence[str]) -> tuple[Matrix, Matrix]:
-        """Positions (J,) [rad] and speeds (J,) [rad/s] of the named joints.
+        """Return positions (J,) [rad] and speeds (J,) [rad/s] of the named joints.
 
         Raises:
             BadInput: the body has no such joint.
@@ -172,7 +171,7 @@ class Physics(ABC):
 
     @abstractmethod
     def velocity(self, name: str) -> tuple[Matrix, Matrix]:
-        """Linear (3,) [m/s] and angular (3,) [rad/s] velocity of a body that moves by itself, world frame."""
+        """Return linear (3,) [m/s] and angular (3,) [rad/s] velocity of a moving body, world frame."""
 
     def parts(self) -> tuple[PartKey, ...]:
         """All parts, in the order of their numbers."""
@@ -180,15 +179,15 @@ class Physics(ABC):
 
     @abstractmethod
     def pose(self, name: str) -> Matrix:
-        """(4, 4) world from the frame of the body's base, a copy; where it will reappear if it is hidden."""
+        """Return a copy of the pose (4, 4), world from base frame; of a hidden body its last pose."""
 
     @abstractmethod
     def part_poses(self) -> Matrix:
-        """(P, 4, 4) world from part, a copy; hidden parts are far below the floor."""
+        """Return a copy of the poses (P, 4, 4), world from part; hidden parts are far below the floor."""
 
     @abstractmethod
     def visual_shapes(self) -> list[VisualShape]:
-        """Every shape that a renderer should draw, in the order of the parts."""
+        """Return all visible shapes, in the order of the parts."""
 
     @abstractmethod
     def cast_rays(
@@ -197,23 +196,23 @@ class Physics(ABC):
         """Return the nearest solid along rays, which pass through the body `ignore`.
 
         Args:
-            from_m: (R, 3) [m] where rays start, world frame.
-            to_m: (R, 3) [m] where they end, world frame.
-            ignore: a body that the rays do not see, such as the one that sends them out.
+            from_m: (R, 3) [m] start points, world frame.
+            to_m: (R, 3) [m] end points, world frame.
+            ignore: a body that rays ignore, such as the one that carries the sensor.
 
         Returns:
-            fraction: (R,) of the way at which a ray hits, 1 where it hits nothing.
-            part: (R,) part that is hit, -1 where none.
+            fraction: (R,) hit distance as a fraction of the ray, 1 without a hit.
+            part: (R,) number of the hit part, -1 for none.
         """
 
     @abstractmethod
     def touching(self, name: str) -> set[str]:
-        """Names of all that a body touched during the last step."""
+        """Return the names of all bodies that a body touched during the last step."""
 
 
 @runtime_checkable
 class Rasteriser(Protocol):
-    """Physics with its own renderer."""
+    """Physics with a built-in renderer."""
 
     def parts(self) -> tuple[PartKey, ...]:
         """All parts, in the order of their numbers."""
@@ -222,13 +221,13 @@ class Rasteriser(Protocol):
     def camera_image(
         self, camera: Pinhole, world_from_camera: Matrix, only: Collection[str] | None = None
     ) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
-        """Draw the world, or only the bodies of some names: parts (H, W) and depths (H, W) [m]."""
+        """Render the world, or only some bodies: parts (H, W) and depths (H, W) [m]."""
         ...
 
 
 @functools.cache
 def default_physics() -> PhysicsName:
-    """Return PyBullet, or kinematic physics where PyBullet is not installed; log a notice then, once."""
+    """Return PyBullet, or kinematic physics with a notice, once, if PyBullet is not installed."""
     if importlib.util.find_spec("pybullet") is not None:
         return "bullet"
     logging.getLogger(__name__).warning("PyBullet is not installed; physics is kinematic")
@@ -236,10 +235,10 @@ def default_physics() -> PhysicsName:
 
 
 def check_physics(name: PhysicsName) -> None:
-    """Refuse physics that cannot be opened here, without loading them.
+    """Check that physics is available, without loading it.
 
     Raises:
-        BadInput: PyBullet is asked for and not installed.
+        BadInput: PyBullet is requested and not installed.
     """
     if name == "bullet" and importlib.util.find_spec("pybullet") is None:
         raise BadInput(MISSING_PHYSICS)

@@ -1,4 +1,4 @@
-"""The image that the ray caster draws on, row by row, in pieces of planes and quadrics (numba kernels).
+"""Canvas of the ray caster, drawn row by row in pieces of planes and quadrics (numba kernels).
 
 The ray through pixel (u, v) is d = (x, y, 1) in the optical frame, so a point at depth z lies at z d. The
 canvas holds 1 / z, the nearness, which along a row of pixels is
@@ -6,8 +6,8 @@ canvas holds 1 / z, the nearness, which along a row of pixels is
     plane g . p = 1:                   1 / z = g . d
     quadric p'Qp + 2 q'p + k = 0:      1 / z = (-q . d + sqrt(d'(qq' - kQ)d)) / k
 
-and needs no division. Where a row enters and leaves a piece follows from its edges (linear in x) or from its
-outline (quadratic in x) before any pixel is looked at.
+and needs no division. The span of a piece in a row follows from its edges (linear in x) or from its outline
+(quadratic in x), before any pixel is evaluated.
 """
 
 import math
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 Form = tuple[float, float, float, float, float, float]
 Rectangle = tuple[int, int, int, int]
 
-# Widens every span [px], so that rounding opens no crack between two pieces with a common edge.
+# Margin of every span [px], so that rounding does not open gaps between pieces with a common edge.
 _SLACK = 1e-9
 
 
@@ -44,11 +44,11 @@ class Canvas(NamedTuple):
     Attributes:
         nearness: (H, W) [1/m] of the nearest surface so far, 0 where none.
         surface: (H, W) its number.
-        cover: (H, W) bits of the persons whose silhouettes lie there.
-        shading: (M, 7) what gives the normal of surface m: of a plane the normal itself and three zeros; of
-            a quadric its axis (0 for a sphere), q, and 1 / radius.
-        edges: (6, 3) space for the edges of one polygon: it lies where edge . d >= 0 for all of them.
-        pose: (3, 4) space for the pose of one shape, camera from shape.
+        cover: (H, W) bits of the people whose silhouettes include the pixel.
+        shading: (M, 7) data for the normal of surface m: for a plane the normal and zeros; for a quadric its
+            axis (0 for a sphere), q, and 1 / radius.
+        edges: (6, 3) buffer for the edges of one polygon: inside, edge . d >= 0 for all of them.
+        pose: (3, 4) buffer for the pose of one shape, camera from shape.
     """
 
     nearness: Array
@@ -63,10 +63,10 @@ class Brush(NamedTuple):
     """Settings for drawing one piece of a shape.
 
     Attributes:
-        bit: what it adds to the cover.
-        lens: where pixels look.
-        area: the pixels to look at.
-        canvas: what to draw on.
+        bit: bit to set in the cover.
+        lens: ray directions of the pixels.
+        area: pixels to evaluate.
+        canvas: canvas to draw on.
     """
 
     bit: np.uint64
@@ -85,12 +85,12 @@ def make_canvas(lens: Lens, surfaces: int) -> Canvas:
 
 @njit(cache=True, error_model="numpy")
 def pixels(lens: Lens, bounds: Bounds) -> Rectangle:
-    """First and last column and row whose centres lie within bounds: left, top, right, bottom."""
+    """Return first and last column and row whose centres are within bounds: left, top, right, bottom."""
     left = max(lens.centre_u + lens.focal * bounds[0] - _SLACK, 0.0)
     top = max(lens.centre_v + lens.focal * bounds[1] - _SLACK, 0.0)
     right = min(lens.centre_u + lens.focal * bounds[2] + _SLACK, lens.width - 1.0)
     bottom = min(lens.centre_v + lens.focal * bounds[3] + _SLACK, lens.height - 1.0)
-    # Written so that NaN, from a pose that is none, means no pixel.
+    # Written so that NaN, from an invalid pose, gives no pixels.
     if not (left <= right and top <= bottom):
         return 0, 0, -1, -1
     return math.ceil(left), math.ceil(top), math.floor(right), math.floor(bottom)
@@ -107,7 +107,7 @@ def set_shading(canvas: Canvas, surface: int, first: Point, second: Point, curva
 
 @njit(cache=True, error_model="numpy")
 def set_edge(canvas: Canvas, index: int, edge: Point, inside: Point) -> None:
-    """Store an edge, turned so that a point inside the polygon lies on its positive side."""
+    """Store an edge, oriented so that a point inside the polygon is on its positive side."""
     sign = -1.0 if dot(edge, inside) < 0.0 else 1.0
     for i in range(3):
         canvas.edges[index, i] = sign * edge[i]
@@ -147,7 +147,7 @@ def fill_polygon(g: Point, edges: int, surface: int, brush: Brush) -> None:
 
 @njit(cache=True, error_model="numpy")
 def _edges_across(edges: int, lens: Lens, area: Rectangle, canvas: Canvas) -> int:
-    """Leave out edges that have all pixels of an area within, as most near and far ones; count the rest."""
+    """Remove edges with all pixels of an area inside, which are most edges; return the number of others."""
     left, right = (area[0] - lens.centre_u) / lens.focal, (area[2] - lens.centre_u) / lens.focal
     top, bottom = (area[1] - lens.centre_v) / lens.focal, (area[3] - lens.centre_v) / lens.focal
     kept = 0
@@ -200,7 +200,7 @@ def fill_conic(
 
 @njit(cache=True, error_model="numpy")
 def _outline(a: float, b: float, c: float, lens: Lens, area: Rectangle) -> tuple[int, int]:
-    """First and last pixel of a row between the roots of a x^2 + 2 b x + c, or all if it is not bounded."""
+    """Return first and last pixel of a row between the roots of a x^2 + 2 b x + c, or all if unbounded."""
     if a >= 0.0:
         return area[0], area[2]
     square = b * b - a * c
@@ -224,16 +224,16 @@ def shade(
     depth: NDArray[np.float32],
     normal: NDArray[np.float32],
 ) -> None:
-    """Turn a drawn canvas into part numbers, depths and normals.
+    """Convert a drawn canvas to part numbers, depths and normals.
 
     Args:
         surface_part: (M,) number of the part that a surface belongs to.
         lens: the same as in `draw`.
-        canvas: as `draw` left it.
+        canvas: canvas after `draw`.
         rotation: (3, 3) world from camera.
-        part: (H, W) gets the part numbers, -1 where nothing is.
-        depth: (H, W) gets the depths [m], inf where nothing is.
-        normal: (H, W, 3), contiguous, gets the unit normals, world frame, 0 where nothing is.
+        part: (H, W) output, part numbers, -1 for none.
+        depth: (H, W) output, depths [m], inf for none.
+        normal: (H, W, 3), contiguous, output, unit normals, world frame, 0 for none.
     """
     locate(surface_part, lens, canvas, part, depth)
     normals = normal.reshape(lens.height, 3 * lens.width)
@@ -249,7 +249,7 @@ def locate(
     part: NDArray[np.int32],
     depth: NDArray[np.float32],
 ) -> None:
-    """Turn a drawn canvas into part numbers and depths alone; arguments as in `shade`."""
+    """Convert a drawn canvas to part numbers and depths only; arguments as in `shade`."""
     for v in range(lens.height):
         nearness, surfaces, parts, depths = canvas.nearness[v], canvas.surface[v], part[v], depth[v]
         for u in range(lens.width):
@@ -286,7 +286,7 @@ def _face_row(lens: Lens, v: int, canvas: Canvas, rotation: Array, normal: NDArr
 
 @njit(cache=True, error_model="numpy")
 def _turned(rotation: Array, vector: Point) -> Point:
-    """A vector in the frame that a rotation (3, 3) leads to."""
+    """Return a vector, rotated by (3, 3)."""
     x, y, z = vector
     return (
         rotation[0, 0] * x + rotation[0, 1] * y + rotation[0, 2] * z,
@@ -297,7 +297,7 @@ def _turned(rotation: Array, vector: Point) -> Point:
 
 @njit(cache=True, error_model="numpy")
 def _round_normal(shading: Array, x: float, y: float, z: float) -> Point:
-    """Unit normal at a point of a quadric, optical frame."""
+    """Return the unit normal at a point of a quadric, optical frame."""
     along = x * shading[0] + y * shading[1] + z * shading[2]
     return (
         (x - along * shading[0] + shading[3]) * shading[6],

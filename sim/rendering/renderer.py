@@ -25,20 +25,20 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
-# Surface normals from an image of depths alone, for a renderer that gives no more (numba kernels).
+# Surface normals from a depth image, for a renderer that does not provide them (numba kernels).
 
 Depth = NDArray[np.float32]
 
 
 @njit(cache=True, error_model="numpy")
 def normals_from_depth(depth: Depth, lens: Lens, rotation: Array) -> Depth:
-    """Take the plane through each pixel and its neighbours that are nearest to it in depth.
+    """Estimate normals from the plane through each pixel and its neighbours that are nearest in depth.
 
-    Rough on things of few pixels.
+    Normals are inaccurate on small objects.
 
     Args:
-        depth: (H, W) [m] along the optical axis, inf where nothing is.
-        lens: where pixels look.
+        depth: (H, W) [m] along the optical axis, inf for none.
+        lens: ray directions of the pixels.
         rotation: (3, 3) world from camera.
 
     Returns:
@@ -70,7 +70,7 @@ def _point(depth: Depth, lens: Lens, u: int, v: int) -> Point:
 
 @njit(cache=True, error_model="numpy")
 def _step(here: Point, before: Point, after: Point) -> Point:
-    """The difference to one of two neighbours, whichever is nearer in depth, in the direction of `after`."""
+    """Return the difference to the neighbour that is nearer in depth, in the direction of `after`."""
     if abs(before[2] - here[2]) < abs(after[2] - here[2]):
         return minus(here, before)
     return minus(after, here)
@@ -80,10 +80,10 @@ _MOST_PEOPLE = 64
 
 
 def render(scene: "Scene", camera: Pinhole, world_from_camera: Matrix) -> View:
-    """Draw a scene by its renderer: "raycast", exact and quick, or "bullet", an independent reference.
+    """Render a scene with its renderer: "raycast", exact and fast, or "bullet", an independent reference.
 
     Raises:
-        BadInput: no renderer has that name, or it cannot draw this world; or a person's number is above 63.
+        BadInput: the renderer is unknown or cannot render this world, or a person's number is above 63.
     """
     persons, hidden = scene.person_of_part, scene.hidden
     if persons.max(initial=0) >= _MOST_PEOPLE:
@@ -105,7 +105,7 @@ def cast(
     person_of_part: NDArray[np.int64],
     hidden: NDArray[np.bool_],
 ) -> View:
-    """Draw by the ray caster; arguments as the attributes of `Scene`."""
+    """Render with the ray caster; arguments as the attributes of `Scene`."""
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
     canvas = make_canvas(lens, len(table.surface_part))
     camera_from_part = from_each(invert_pose(world_from_camera), world_from_part)
@@ -121,9 +121,9 @@ def cast(
 def rasterise(
     physics: Rasteriser, camera: Pinhole, world_from_camera: Matrix, person_of_part: NDArray[np.int64]
 ) -> View:
-    """Draw by TinyRenderer: everything at once, then each person alone for the cover.
+    """Render with TinyRenderer: the whole scene, then each person separately for the cover.
 
-    Normals come from differences of depth, and are rough on small parts.
+    Normals are computed from depths, and are inaccurate on small parts.
     """
     part, depth = physics.camera_image(camera, world_from_camera)
     cover = np.zeros(part.shape, np.uint64)
@@ -137,13 +137,13 @@ def rasterise(
     return View(part, depth, normals_from_depth(depth, lens, rotation), cover)
 
 
-# How large a person would be in the image if nothing hid it.
+# Size of an unoccluded person in the image.
 
 
 def silhouette_bounds(camera: Pinhole, table: ShapeTable, camera_from_part: Matrix, parts: Mask) -> Array:
     """Return the rectangles around sets of parts in the image, ignoring occlusion.
 
-    They may lie outside the image. What is nearer than 0.05 m along the optical axis does not count.
+    They may be outside the image. Points nearer than 0.05 m along the optical axis are ignored.
 
     Args:
         camera: the pinhole camera.
@@ -152,7 +152,7 @@ def silhouette_bounds(camera: Pinhole, table: ShapeTable, camera_from_part: Matr
         parts: (N, P) which parts.
 
     Returns:
-        (N, 4) left, top, right, bottom [px]; NaN where nothing lies before the camera.
+        (N, 4) left, top, right, bottom [px]; NaN for parts that are not in front of the camera.
     """
     found = np.empty((len(parts), 4))
     _bounds(table, camera_from_part, parts, found)
@@ -165,10 +165,10 @@ def silhouette_bounds(camera: Pinhole, table: ShapeTable, camera_from_part: Matr
 def silhouette_area(
     camera: Pinhole, table: ShapeTable, camera_from_part: Matrix, parts: Mask, bounds: Sequence[float]
 ) -> int:
-    """Count the pixels of some parts (P,), ignoring occlusion and the image's border.
+    """Count the pixels of parts (P,), ignoring occlusion and the image's border.
 
-    The image is continued by its own width and height beyond each border; arguments are as in
-    `silhouette_bounds`, and what that says of the parts.
+    The image is extended by its width and height beyond each border; arguments are as in `silhouette_bounds`,
+    with its result for the parts.
     """
     if math.isnan(bounds[0]):
         return 0
@@ -185,7 +185,7 @@ def silhouette_area(
 
 
 def _within(low: float, high: float, size: int) -> tuple[int, int]:
-    """First and last pixel of an interval within the image and one image on either side."""
+    """Return first and last pixel of an interval within the image and one image on either side."""
     return math.ceil(max(low, -float(size))), math.floor(min(high, 2.0 * size - 1.0))
 
 
@@ -216,12 +216,12 @@ class Scene:
     """All visible shapes at an instant.
 
     Attributes:
-        renderer: name of what draws it for pinhole cameras.
+        renderer: name of the renderer for pinhole cameras.
         physics: the world.
         table: its visible shapes.
         world_from_part: (P, 4, 4).
         person_of_part: (P,) number of the person that a part belongs to, -1 for none.
-        hidden: (P,) parts that are not there.
+        hidden: (P,) absent parts.
     """
 
     renderer: str
@@ -239,8 +239,8 @@ class Scene:
 class Renderer(ABC):
     """Renderer for cameras of one geometry.
 
-    A new one has to say `view`. Its outlines follow from that, in whole pixels and no farther than the image;
-    one that can say more of them, or says it sooner, does.
+    A subclass must define `view`. By default, outlines are computed from that, in whole pixels inside the
+    image; override them if they can be computed more precisely or faster.
     """
 
     @abstractmethod
@@ -248,10 +248,10 @@ class Renderer(ABC):
         """Render a camera's view of a scene; its pose is (4, 4), optical frame to world."""
 
     def bounds(self, scene: Scene, camera: Any, world_from_camera: Matrix, parts: Mask) -> Matrix:
-        """Return rectangles around some parts (N, P) in the image, ignoring occlusion.
+        """Return rectangles around sets of parts (N, P) in the image, ignoring occlusion.
 
         Returns:
-            (N, 4) left, top, right, bottom [px]; all NaN where it would see nothing of them.
+            (N, 4) left, top, right, bottom [px]; all NaN for parts outside the view.
         """
         bounds = np.full((len(parts), 4), math.nan)
         for one, own in zip(bounds, parts, strict=True):
@@ -277,11 +277,11 @@ class PinholeRenderer(Renderer):
     """Renderer for pinhole cameras; outlines continue beyond the image."""
 
     def __init__(self) -> None:
-        # Poses in a camera's frame, of each scene that is still looked at: all boxes of a scene want them.
+        # Poses in a camera's frame for each scene in use, since all boxes of a scene need them.
         self._poses: WeakKeyDictionary[Scene, dict[bytes, Matrix]] = WeakKeyDictionary()
 
     def view(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix) -> View:
-        """Draw by the scene's renderer."""
+        """Render with the scene's renderer."""
         return render(scene, camera, world_from_camera)
 
     def bounds(self, scene: Scene, camera: Pinhole, world_from_camera: Matrix, parts: Mask) -> Matrix:
@@ -310,11 +310,11 @@ class RenderPass:
     """The view of a scene by one camera.
 
     Attributes:
-        renderer: how it sees.
-        scene: what.
-        camera: its geometry.
-        world_from_camera: (4, 4) its pose, optical frame.
-        view: what lies behind its pixels.
+        renderer: renderer of the camera.
+        scene: the scene.
+        camera: geometry of the camera.
+        world_from_camera: (4, 4) pose of the camera's optical frame.
+        view: the rendered view.
     """
 
     renderer: Renderer

@@ -15,12 +15,12 @@ class View:
     """Surface behind each pixel's centre, from 0.05 m to 100 m.
 
     Attributes:
-        part: (H, W) part number, -1 where nothing is.
-        depth: (H, W) [m] along the optical axis, inf where nothing is.
-        normal: (H, W, 3) unit normal that faces the camera, world frame; 0 where nothing is.
-        cover: (H, W) bit k is set where person k's silhouette lies, whether it is hidden or not.
-        surface: (H, W) number of the surface in the `ShapeTable`, of no meaning where nothing is; None if
-            what drew the view does not tell.
+        part: (H, W) part number, -1 for none.
+        depth: (H, W) [m] along the optical axis, inf for none.
+        normal: (H, W, 3) unit normal that faces the camera, world frame; 0 for none.
+        cover: (H, W) bit k is set inside person k's silhouette, whether occluded or not.
+        surface: (H, W) number of the surface in the `ShapeTable`, undefined without a part; None if the
+            renderer does not provide it.
     """
 
     part: NDArray[np.int32]
@@ -31,7 +31,7 @@ class View:
 
 
 def person_bits(person_of_part: NDArray[np.int64]) -> NDArray[np.uint64]:
-    """(P,) the bit of the person that a part belongs to, 0 for none."""
+    """Return (P,) the bit of the person to which a part belongs, 0 for none."""
     bits = np.uint64(1) << np.maximum(person_of_part, 0).astype(np.uint64)
     return np.where(person_of_part == NOBODY, np.uint64(0), bits)
 

@@ -43,7 +43,7 @@ def test_scripted_commands_are_given_from_their_times_on(time_s, expected):
 
 @pytest.mark.parametrize("times", [(1.0, 1.0), (2.0, 1.0), (math.nan,), (0.0, math.inf)])
 def test_a_script_whose_times_do_not_rise_is_refused(times):
-    with pytest.raises(BadInput, match="rise"):
+    with pytest.raises(BadInput, match="increasing"):
         Scripted([(time_s, STOP) for time_s in times])
 
 

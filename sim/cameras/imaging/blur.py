@@ -14,31 +14,31 @@ Image = NDArray[np.float32]
 
 
 def optics_blur(image: Image, sigma_px: float) -> Image:
-    """Spread each point of an (H, W) image over a Gaussian; the sum over the image's inside is kept."""
+    """Blur an (H, W) image with a Gaussian; the sum over the inside of the image is preserved."""
     if sigma_px <= 0.0:
         return image
     return np.asarray(cv2.GaussianBlur(image, (0, 0), sigma_px, borderType=cv2.BORDER_REPLICATE), np.float32)
 
 
 def optics_blur_sheet(sheet: Image, sigma_px: float) -> Image:
-    """Blur many images (N, H + 2 M, W) at once, which touches Python's lock once.
+    """Blur many images (N, H + 2 M, W) at once, which needs the GIL only once.
 
-    Each has its first and its last row repeated M = `optics_margin` times above and below it, where nothing
-    of use comes out. Gives to the bit what `optics_blur` gives of each without them.
+    The first and last row of each are repeated M = `optics_margin` times; these rows are not valid in the
+    result. The other rows are bit-identical to those of `optics_blur`.
     """
     return optics_blur(sheet.reshape(-1, sheet.shape[2]), sigma_px).reshape(sheet.shape)
 
 
 def optics_margin(sigma_px: float) -> int:
-    """How many rows [px] the blur of float32 images reaches at most."""
+    """Return the largest reach [px] of the blur of float32 images."""
     return math.ceil(4.0 * sigma_px) + 1 if sigma_px > 0.0 else 0
 
 
 def rotation_blur(image: Image, camera: Pinhole, turned_rad: float) -> Image:
     """Smear an image by the rotation about the camera's vertical axis during its exposure.
 
-    Column u sweeps f (1 + x^2) times the angle, with x = (u - c) / f: the outer columns sweep more.
-    The small vertical sweep of the corners, and the blur of translation, are left out.
+    Column u sweeps f (1 + x^2) times the angle, with x = (u - c) / f: outer columns sweep more. The small
+    vertical sweep of the corners, and the blur by translation, are ignored.
 
     Args:
         image: (H, W) or (H, W, C) float32, linear in radiance.
@@ -59,7 +59,7 @@ def rotation_blur(image: Image, camera: Pinhole, turned_rad: float) -> Image:
 
 @lru_cache(maxsize=16)
 def sweep_of_one_rad(camera: Pinhole) -> NDArray[np.float64]:
-    """(W,) [px] that each column would sweep if the camera turned by 1 rad at this rate."""
+    """Return the sweep (W,) [px] of each column per 1 rad of rotation."""
     x = (np.arange(camera.width) - camera.centre_px[0]) / camera.focal_px
     sweep: NDArray[np.float64] = camera.focal_px * (1.0 + x * x)
     sweep.setflags(write=False)
@@ -68,10 +68,10 @@ def sweep_of_one_rad(camera: Pinhole) -> NDArray[np.float64]:
 
 @njit(cache=True)
 def sweep_weights(sweep: NDArray[np.float64]) -> Image:
-    """(2 K + 1, W) weight of the pixels -K..K columns away in the mean of each column over its sweep [px].
+    """Return the weights (2 K + 1, W) of pixels -K..K columns away in the mean of each column over its sweep.
 
-    Between pixels the image is taken as linear, so a weight is the mean of a hat function over the sweep.
-    Pixels beyond the border have none.
+    With linear interpolation between pixels, a weight is the mean of a hat function over the sweep. Pixels
+    beyond the border have no weight.
     """
     farthest, columns = math.ceil(sweep.max() / 2.0), len(sweep)
     weights = np.empty((2 * farthest + 1, columns), np.float32)
@@ -90,7 +90,7 @@ def sweep_weights(sweep: NDArray[np.float64]) -> Image:
 
 @njit(cache=True)
 def hat_integral(end: float) -> float:
-    """Integral up to `end` of the function that falls from 1 at 0 to 0 at -1 and 1."""
+    """Return the integral up to `end` of the function that falls from 1 at 0 to 0 at -1 and 1."""
     end = min(max(end, -1.0), 1.0)
     return 0.5 + end - 0.5 * end * abs(end)
 

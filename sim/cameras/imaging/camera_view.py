@@ -25,11 +25,11 @@ class MaterialTable(NamedTuple):
         kind: (P, 2) PatternKind of the thermal and of the colour pattern.
         period: (P, 2) [m] of the same.
         phase: (P, 3) [waves] offsets of the smooth variation.
-        finish: (P, 8) of each part's finish its first texel (-1 for none), columns, rows, lowest z [m], rows
-            a metre, and colour; (0, 8) if no part has one.
-        texels: (N, 3) kelvin, light and cover of all finishes, as `Finish.texels` gives them.
-        shine: (P,) how much of what is reflected is mirrored, 0..1.
-        paint, paint_texels: paintings, as `make_paint_table` gives them.
+        finish: (P, 8) first texel of each part's finish (-1 for none), columns, rows, lowest z [m], rows per
+            metre, and colour; (0, 8) if no part has one.
+        texels: (N, 3) kelvin, light and cover of all finishes, as in `Finish.texels`.
+        shine: (P,) specular share of the reflection, 0..1.
+        paint, paint_texels: textures, as returned by `make_paint_table`.
     """
 
     thermal: NDArray[np.float64]
@@ -49,9 +49,9 @@ def make_material_table(
     rng: np.random.Generator,
     paintings: Sequence[Painting | None] | None = None,
 ) -> MaterialTable:
-    """Put the appearance of all parts into arrays; the generator draws each part's phase of variation.
+    """Convert the appearance of all parts to arrays; the generator draws each part's phase of variation.
 
-    A painting has the variation of its part in it.
+    A texture already includes the variation of its part.
     """
     finish, texels = _lay_out([material.finish for material in materials])
     paint, paint_texels = make_paint_table([None] * len(materials) if paintings is None else paintings)
@@ -80,7 +80,7 @@ def make_material_table(
 
 
 def _lay_out(finishes: Sequence[Finish | None]) -> tuple[NDArray[np.float64], NDArray[np.int16]]:
-    """Put finishes one after the other: rows and texels as in `MaterialTable`."""
+    """Concatenate finishes: rows and texels as in `MaterialTable`."""
     rows, texels = np.full((len(finishes), 8), -1.0), [np.zeros((0, 3), np.int16)]
     for row, finish in zip(rows, finishes, strict=True):
         if finish is not None:
@@ -94,12 +94,12 @@ def _lay_out(finishes: Sequence[Finish | None]) -> tuple[NDArray[np.float64], ND
 def make_paint_table(
     paintings: Sequence[Painting | None],
 ) -> tuple[NDArray[np.float64], NDArray[np.int16]]:
-    """Put the paintings of all P parts into arrays.
+    """Convert the textures of all P parts to arrays.
 
     Returns:
-        (P, 7) first texel (-1 for a part without a painting), unrolling, origin across and up [m], texels a
-        metre, columns, rows; and (2, N) texels: what is added [K / 256], factor on light [1 / 4096]. As whole
-        numbers of two bytes they stay near to where they are looked up: waiting for memory takes longest.
+        (P, 7) first texel (-1 for a part without a texture), unrolling, origin across and up [m], texels per
+        metre, columns, rows; and (2, N) texels: temperature offset [K / 256], factor on light [1 / 4096].
+        They are 16-bit integers for better use of the cache, since memory access takes longest.
     """
     rows = np.full((len(paintings), 7), -1.0)
     texels, first = [np.zeros((2, 0), np.int16)], 0
@@ -118,16 +118,16 @@ class CameraView:
     """The view of one camera at an instant, with everything that image formation needs.
 
     Attributes:
-        view: what lies behind each pixel.
-        draw: draws the same by another geometry in the same place.
+        view: the rendered view.
+        draw: renders the same with another geometry at the same pose.
         world_from_camera: (4, 4) optical frame to world.
         world_from_part: (P, 4, 4).
-        materials: of the P parts.
-        surroundings_c: [degC] what surfaces mirror.
-        light_level: 1 is the place's full light.
-        turn_rad_s: [rad/s] of the robot about the vertical axis.
-        time_s: [s] since the start.
-        full_detail: what makes images of full detail; None in a world of plain detail.
+        materials: materials of the P parts.
+        surroundings_c: [degC] temperature that surfaces reflect.
+        light_level: light level; 1 is the place's full light.
+        turn_rad_s: [rad/s] turn rate of the robot about the vertical axis.
+        time_s: [s] time since the start.
+        full_detail: extras for full detail; None in plain detail.
     """
 
     view: View

@@ -23,11 +23,11 @@ Bins = NDArray[np.float64]
 COLDEST_C: Final = -60.0
 BIN_K: Final = 0.05
 BINS: Final = 4800
-"""Bins of the histogram, from `COLDEST_C` up; what is colder or hotter is in the first or the last."""
+"""Bins of the histogram, from `COLDEST_C` up; the first and last include colder and hotter values."""
 
-_BLACK, _WHITE = 1.0, 254.0  # of the span's ends, so that neither counts as clipped
+_BLACK, _WHITE = 1.0, 254.0  # greys of the span's ends, so that neither counts as clipped
 _EDGES = COLDEST_C + BIN_K * np.arange(BINS)
-_CHUNK = 640  # pixels that are looked up together: all that can be done for several at a time is
+_CHUNK = 640  # pixels that are looked up together, for vectorisation
 
 
 def encode_8bit(temperature_c: Temperatures, lowest_c: float = 24.0, highest_c: float = 36.0) -> Grey:
@@ -40,7 +40,7 @@ class Gain:
     """Converts successive images to grey; an automatic gain adapts over time.
 
     Args:
-        config: which gain, and its settings.
+        config: kind of gain, and its settings.
     """
 
     def __init__(self, config: ThermalConfig) -> None:
@@ -69,7 +69,7 @@ class Gain:
         return apply(temperature_c, grey_curve(rise))
 
     def _follow(self, shares: Bins, time_s: float) -> None:
-        """Take in an image's histogram: the span grows at once, and shrinks with the time constant."""
+        """Update the span by an image's histogram: it grows at once, and shrinks with the time constant."""
         low_c, high_c = span_of(shares, self._config.tail_percent / 100.0)
         if self._shares is not None:
             part = _part(time_s - self._time_s, self._config.gain_follows_s)
@@ -94,13 +94,13 @@ def span_of(shares: Bins, tail: float) -> tuple[float, float]:
 
 
 def at_least(low_c: float, high_c: float, least_k: float) -> tuple[float, float]:
-    """Widen a span about its middle to at least so many kelvin."""
+    """Widen a span about its middle to a minimum width [K]."""
     more = max(least_k - (high_c - low_c), 0.0) / 2.0
     return low_c - more, high_c + more
 
 
 def linear(temperature_c: Temperatures, low_c: float, high_c: float) -> Grey:
-    """Encode a span [degC] linearly as greys 1..254; 0 and 255 are left to what lies outside."""
+    """Encode a span [degC] linearly as greys 1..254; 0 and 255 are for values outside."""
     edge = (high_c - low_c) / (_WHITE - _BLACK)
     return encode_8bit(temperature_c, low_c - edge, high_c + edge)
 
@@ -108,18 +108,18 @@ def linear(temperature_c: Temperatures, low_c: float, high_c: float) -> Grey:
 def equalised(
     shares: Bins, low_c: float, high_c: float, plateau: float, linear_share: float, least_k: float
 ) -> Bins:
-    """Return by how much grey rises over each bin, as shares of all greys: plateau equalisation.
+    """Return the rise of grey over each bin, as shares of all greys: plateau equalisation.
 
-    No bin counts for more than the plateau, what is outside the span for nothing, and nothing rises more
-    steeply than if `least_k` took all greys; the sum is therefore 1 or less.
+    The weight of a bin is limited to the plateau, and 0 outside the span. The slope is limited to that of a
+    span of `least_k`; the sum is therefore 1 or less.
 
     Args:
-        shares: (BINS,) of the image's pixels.
-        low_c: [degC] the span's lower end.
-        high_c: [degC] its upper end.
-        plateau: largest share that a bin counts for.
-        linear_share: of the greys that are shared out evenly over the span.
-        least_k: [K].
+        shares: (BINS,) shares of the image's pixels.
+        low_c: [degC] lower end of the span.
+        high_c: [degC] upper end of the span.
+        plateau: largest share of a bin.
+        linear_share: share of the greys that is distributed evenly over the span.
+        least_k: [K] span that limits the slope.
     """
     first = int(np.searchsorted(_EDGES, low_c - BIN_K / 2.0, side="right"))
     last = int(np.searchsorted(_EDGES, high_c - BIN_K / 2.0, side="left"))
@@ -132,7 +132,7 @@ def equalised(
 
 
 def grey_curve(rise: Bins) -> Bins:
-    """Give the grey at the (BINS + 1,) ends of bins, 1..254; what is left over is shared out at both ends."""
+    """Return the grey at the (BINS + 1,) ends of bins, 1..254; unused greys are split between both ends."""
     curve = np.zeros(BINS + 1)
     np.cumsum(rise, out=curve[1:])
     curve += (1.0 - curve[-1]) / 2.0
@@ -142,18 +142,18 @@ def grey_curve(rise: Bins) -> Bins:
 
 
 def apply(temperature_c: Temperatures, curve: Bins) -> Grey:
-    """Look the greys of an (H, W) image [degC] up in a curve, linearly between the ends of bins."""
+    """Look up the greys of an (H, W) image [degC] in a curve, by linear interpolation."""
     return _look_up(temperature_c.reshape(-1), curve.astype(np.float32)).reshape(temperature_c.shape)
 
 
 def _part(passed_s: float, follows_s: float) -> float:
-    """Share of the way to a new value that is gone in some time; all of it without a time constant."""
+    """Return the share of the step to a new value after some time; 1 without a time constant."""
     return 1.0 - math.exp(-passed_s / follows_s) if follows_s > 0.0 else 1.0
 
 
 @njit(cache=True)
 def _count(temperature_c: Temperatures) -> Bins:
-    # Neighbours are alike: two rows of counts, so that one need not wait for the other.
+    # Neighbours often share a bin: two rows of counts avoid waiting for the previous write.
     even, odd = np.zeros(BINS, np.int32), np.zeros(BINS, np.int32)
     pixels, places = len(temperature_c), np.empty(_CHUNK, np.uint16)
     for first in range(0, pixels, _CHUNK):
@@ -187,7 +187,7 @@ def _look_up(temperature_c: Temperatures, curve: NDArray[np.float32]) -> Grey:
     return grey
 
 
-# Display of a thermal image to people: the whole scene, whatever the camera's own gain.
+# Display of a thermal image: the whole scene, independent of the camera's gain.
 
 _TAIL: Final = 0.002
 _PLATEAU: Final = 0.004
@@ -196,7 +196,7 @@ _LEAST_K: Final = 5.0
 
 
 def show_scene(temperature_c: Temperatures) -> Grey:
-    """Return an (H, W) image [degC] greys by itself, without memory of others; none is clipped."""
+    """Return the greys of an (H, W) image [degC], independent of earlier images; none is clipped."""
     shares = histogram(temperature_c)
     rise = equalised(shares, *span_of(shares, _TAIL), _PLATEAU, _LINEAR_SHARE, _LEAST_K)
     return apply(temperature_c, grey_curve(rise))
@@ -205,23 +205,23 @@ def show_scene(temperature_c: Temperatures) -> Grey:
 # Enhancement of thermal images: sharpened details before the gain, JPEG compression after it.
 
 MOST_K: Final = 2.0
-"""[K] by which sharpening changes a pixel at most: a lamp would blacken all around it."""
+"""[K] largest change of a pixel by sharpening; otherwise a lamp would blacken its surroundings."""
 
 
 def sharpen(
     temperature_c: NDArray[np.float32], amount: float, radius_px: float, coring_k: float = 0.0
 ) -> NDArray[np.float32]:
-    """Add to an (H, W) image what it has more than its blurred self, times an amount: an unsharp mask.
+    """Sharpen an (H, W) image by unsharp masking: add its difference from a blurred copy, times an amount.
 
-    At edges this leaves halos, dark on the cold side and bright on the warm one. With coring, what differs
-    by less than that is taken for noise, and for the blurred image; what differs by twice as much stays. So
-    do the digital detail filters of uncooled cameras: walls are smooth, and edges are crisp.
+    This leaves halos at edges, dark on the cold side and bright on the warm one. With coring, smaller
+    differences are treated as noise and replaced by the blurred image; twice as large ones are kept. The
+    digital detail filters of uncooled cameras work like this: walls are smooth, and edges are crisp.
 
     Args:
         temperature_c: (H, W) [degC].
-        amount: of the mask.
+        amount: amount of the mask.
         radius_px: [px] standard deviation of the blur.
-        coring_k: [K].
+        coring_k: [K] threshold of coring.
     """
     if (amount <= 0.0 and coring_k <= 0.0) or radius_px <= 0.0:
         return temperature_c
@@ -252,7 +252,7 @@ def _keep_detail(
     most: np.float32,
     blurred: NDArray[np.float32],
 ) -> None:
-    """Replace blurred values (N,) by sharpened ones, but where they differ little from them."""
+    """Replace blurred values (N,) by sharpened ones, except for small differences."""
     none, one = np.float32(0.0), np.float32(1.0)
     steeper = one / coring
     for i in range(len(values)):
@@ -263,7 +263,7 @@ def _keep_detail(
 
 
 def compress(grey: NDArray[np.uint8], quality: int | None) -> NDArray[np.uint8]:
-    """Pass an (H, W) image through JPEG of a quality of 1..100; None leaves it as it is."""
+    """Compress an (H, W) image as JPEG with a quality of 1..100 and decode it; None leaves it unchanged."""
     if quality is None:
         return grey
     packed = cv2.imencode(".jpg", grey, [cv2.IMWRITE_JPEG_QUALITY, quality])[1]

@@ -28,18 +28,18 @@ def add_reflections(
 ) -> None:
     """Add reflections of shiny surfaces, which replace the uniform surroundings.
 
-    The share of light that is mirrored rises from normal to grazing by Schlick's approximation, times how
-    shiny the surface is. What it emits or scatters itself stays as it is.
+    The specular share rises from normal to grazing incidence by Schlick's approximation, times the shine of
+    the surface. Emitted and scattered light is unchanged.
 
     Source: Schlick, An inexpensive BRDF model for physically-based rendering (1994), eq. 15.
 
     Args:
         image: (H, W, C).
-        seen: in full detail.
+        seen: view in full detail.
         camera: the pinhole camera.
-        reflectance: (P,) of each part for rays along its normal.
-        surroundings: (C,) what is mirrored otherwise.
-        draw: gives the (h, w, C) image of a view by its part_from_pixel (P, 3, 4).
+        reflectance: (P,) reflectance of each part at normal incidence.
+        surroundings: (C,) value of the surroundings.
+        draw: returns the (h, w, C) image of a view for its part_from_pixel (P, 3, 4).
     """
     view = seen.view
     if view.surface is None or seen.full_detail is None:
@@ -103,7 +103,7 @@ def _mix(
     shine: NDArray[np.float64],
     surroundings: NDArray[np.float64],
 ) -> None:
-    """Add to each pixel of a mirror what the window sees in it, linearly between the window's pixels."""
+    """Add the reflection to each pixel of a mirror, by linear interpolation of the window's pixels."""
     (height, width, channels), (rows, columns), step = mirrored.shape, part.shape, 1.0 / EVERY
     _subtract(mirrored, beyond, surroundings)
     for j in range(height - 1):
@@ -128,7 +128,7 @@ def _mix(
 
 @njit(cache=True, fastmath=True)
 def _subtract(mirrored: Image, beyond: NDArray[np.int32], surroundings: NDArray[np.float64]) -> None:
-    """Leave what is seen beyond a mirror, less the surroundings; nothing where nothing is."""
+    """Subtract the surroundings from a reflection; 0 where nothing is reflected."""
     for v in range(mirrored.shape[0]):
         for u in range(mirrored.shape[1]):
             for c in range(mirrored.shape[2]):
@@ -137,23 +137,23 @@ def _subtract(mirrored: Image, beyond: NDArray[np.int32], surroundings: NDArray[
 
 @njit(cache=True, fastmath=True)
 def mirrored_share(reflectance: float, cosine: float) -> float:
-    """The share of light that a smooth surface mirrors, by that along its normal and the angle to it."""
+    """Return the reflectance of a smooth surface, from that at normal incidence and the angle."""
     away = 1.0 - min(cosine, 1.0)
     square = away * away
     share: float = reflectance + (1.0 - reflectance) * square * square * away
     return share
 
 
-# Soft shadows on the floor where people and things touch it, or are near above it.
+# Soft shadows on the floor below people and objects that touch it or are close to it.
 
 Array = NDArray[np.float64]
 
-_EVERY = 4  # pixels between those whose light is reckoned, in row and column
-_LEAST_WIDE_M = 0.05  # takes part in the sum, so that a stick takes some light, too
+_EVERY = 4  # step in pixels for computing shadows, in rows and columns
+_LEAST_WIDE_M = 0.05  # least width, so that a thin rod casts some shadow, too
 _SLOWLY_M = 0.12  # a gap of this height below something halves its shadow
-_DEEPEST = 0.85  # share of the light from all around that is lost at most
-_NOWHERE_M = 1e9  # where the floor is not seen
-_ALL_AROUND = 0.6  # share of a floor's light that comes from all around, and not from the lamps above
+_DEEPEST = 0.85  # largest share of the ambient light that is lost
+_NOWHERE_M = 1e9  # where the floor is not visible
+_ALL_AROUND = 0.6  # share of ambient light on the floor; the rest comes from the lamps
 
 
 def add_contact_shadows(
@@ -161,7 +161,7 @@ def add_contact_shadows(
 ) -> None:
     """Darken the floor of an (H, W, 3) image near objects on it, in place.
 
-    Light on the floor's plane is reckoned at every fourth pixel, and is linear between.
+    Light on the floor's plane is computed at every fourth pixel, and interpolated linearly.
     """
     lens = Lens(camera.focal_px, *camera.centre_px, camera.width, camera.height)
     light = light_on_floor(lens, world_from_camera, contacts.prints)
@@ -170,7 +170,7 @@ def add_contact_shadows(
 
 @njit(cache=True, fastmath=True)
 def light_on_floor(lens: Lens, world_from_camera: Array, prints: Array) -> NDArray[np.float32]:
-    """Share of light that the floor gets where the ray of every fourth pixel meets it, 1 where none does."""
+    """Return the share of light on the floor at every fourth pixel; 1 where the floor is not visible."""
     height, width = lens.height // _EVERY + 2, lens.width // _EVERY + 2
     light = np.ones((height, width), np.float32)
     x, y = np.full((height, width), _NOWHERE_M), np.full((height, width), _NOWHERE_M)
@@ -201,7 +201,7 @@ def light_on_floor(lens: Lens, world_from_camera: Array, prints: Array) -> NDArr
 
 @njit(cache=True, error_model="numpy", fastmath=False)
 def _reached(row: Array, lens: Lens, pose: Array) -> Rectangle:
-    """Every fourth pixel, in row and column, that may see what a footprint (9,) takes light from."""
+    """Return the range of every fourth pixel in which a footprint (9,) may darken the floor."""
     reach = row[6] + REACH_M
     wide = row[4] * abs(row[2]) + row[5] * abs(row[3]) + reach
     deep = row[4] * abs(row[3]) + row[5] * abs(row[2]) + reach
@@ -214,7 +214,8 @@ def _reached(row: Array, lens: Lens, pose: Array) -> Rectangle:
         z = pose[0, 2] * x + pose[1, 2] * y - pose[2, 2] * pose[2, 3]
         across = lens.focal * (pose[0, 0] * x + pose[1, 0] * y - pose[2, 0] * pose[2, 3]) + lens.centre_u * z
         down = lens.focal * (pose[0, 1] * x + pose[1, 1] * y - pose[2, 1] * pose[2, 3]) + lens.centre_v * z
-        # So that a footprint that is partly behind the camera is known to be beyond a side of the image.
+        # Clips a footprint that is partly behind the camera, so that it is known to be beyond a side of the
+        # image.
         beyond_left += across < 0.0
         beyond_right += across > _EVERY * columns * z
         above += down < 0.0
@@ -259,10 +260,10 @@ def _darken(
 
 @njit(cache=True, fastmath=True)
 def lost_light(row: Array, away: float) -> float:
-    """Share of an even sky's light that a footprint (9,) takes from a place so far [m] from it.
+    """Return the share of ambient light that a footprint (9,) blocks at a distance [m].
 
-    An endless wall of height h takes (1 - d / sqrt(d^2 + h^2)) / 2 at a distance d. What is narrow takes
-    less, the farther the less; what does not touch the floor takes less, the higher it begins.
+    An infinite wall of height h blocks (1 - d / sqrt(d^2 + h^2)) / 2 at a distance d. A narrow object blocks
+    less with increasing distance, and an object above the floor blocks less with increasing height.
     """
     if away >= REACH_M:
         return 0.0

@@ -26,8 +26,8 @@ QUANTILES = _quantiles()
 def gaussian(shape: tuple[int, ...], rng: np.random.Generator) -> NDArray[np.float32]:
     """Draw independent noise of mean 0 and variance 1.
 
-    Each value is one of 4096 equally likely quantiles, up to 3.7 standard deviations: much quicker than
-    exact draws, and no detector's picture shows the difference.
+    Each value is one of 4096 equally likely quantiles, up to 3.7 standard deviations. This is much faster
+    than exact draws, and the difference is not visible in images.
     """
     noise = np.empty(math.prod(shape), np.float32)
     look_up(QUANTILES, random_words(shape, rng), noise)
@@ -35,10 +35,10 @@ def gaussian(shape: tuple[int, ...], rng: np.random.Generator) -> NDArray[np.flo
 
 
 def smooth_gaussian(shape: tuple[int, int], patch_px: int, rng: np.random.Generator) -> NDArray[np.float32]:
-    """Draw (H, W) noise of mean 0 and variance 1 that is alike over patches.
+    """Draw (H, W) noise of mean 0 and variance 1 that is correlated over patches.
 
-    Between the knots of a grid with `patch_px` meshes it is their weighted sum, whose variance is 1
-    everywhere; pixels that are two meshes apart have nothing in common.
+    It is a weighted sum of the knots of a grid with a spacing of `patch_px`, with variance 1 everywhere;
+    pixels at a distance of two spacings are independent.
     """
     rows, columns = (length // patch_px + 2 for length in shape)
     return _interpolate(gaussian((rows, columns), rng), shape[0], shape[1], patch_px)
@@ -89,26 +89,26 @@ def _interpolate(knots: NDArray[np.float32], height: int, width: int, patch_px: 
     return image
 
 
-# Offsets that come as an uncooled camera warms up, and the shutter before which it gets rid of them.
+# Offset drift of an uncooled camera, and the calibrations with a shutter that remove it.
 
 SMOOTH_SHARE: Final = 0.5
 PIXEL_SHARE: Final = 0.1
-"""Drift of the fixed pattern, alike over patches and pixel by pixel, over that of the common offset."""
+"""Drift of the fixed pattern, by patches and by pixels, relative to that of the common offset."""
 
-_PATCHES: Final = 4  # to an image's height
+_PATCHES: Final = 4  # per image height
 _SOON_S: Final = 1e-6
 
 
 class Drift:
-    """The offsets of one run, by time alone.
+    """The offsets of one run, a function of time only.
 
-    From one calibration to the next, every pixel drifts at a rate of its own; then it begins anew from 0 at
-    another rate. What columns differ by is drawn anew at every calibration, too.
+    Between calibrations, every pixel drifts at its own rate; after each it restarts from 0 at another rate.
+    The column offsets are drawn anew at every calibration, too.
 
     Args:
-        config: of the camera.
-        name: of the camera, and of its streams.
-        seed: of the run.
+        config: settings of the camera.
+        name: name of the camera, and of its random streams.
+        seed: seed of the run.
     """
 
     def __init__(self, config: ThermalConfig, name: str, seed: int) -> None:
@@ -117,7 +117,7 @@ class Drift:
         self._drawn = -1
 
     def is_closed(self, time_s: float) -> bool:
-        """Return whether the shutter is before the detector."""
+        """Return whether the shutter is closed."""
         count = self._closures(time_s)
         since_s = time_s - count * self._config.shutter_every_s
         return count > 0 and since_s < self._config.shutter_lasts_s - _SOON_S
@@ -138,7 +138,7 @@ class Drift:
         return math.floor((time_s + _SOON_S) / every) if every > 0.0 else 0
 
     def _draw(self, count: int) -> None:
-        """Draw the columns' offsets [K] and the pixels' rates [K/min] after some calibration."""
+        """Draw the columns' offsets [K] and the pixels' rates [K/min] after a calibration."""
         config, rng = self._config, stream(self._seed, f"{self._name}.drift.{count}")
         height, width = config.camera.height, config.camera.width
         common = gaussian((1, 1), rng)
@@ -154,7 +154,7 @@ class Drift:
 def _drifted(
     columns: NDArray[np.float32], rate: NDArray[np.float32], minutes: np.float32
 ) -> NDArray[np.float32]:
-    """Offsets (H, W) of columns (1, W), and of pixels that drift at a rate (H, W) for some minutes."""
+    """Return offsets (H, W) of columns (1, W), and of pixels that drift at rates (H, W) for some minutes."""
     offset = np.empty_like(rate)
     for v in range(rate.shape[0]):
         for u in range(rate.shape[1]):

@@ -48,6 +48,6 @@ def test_a_wall_across_the_way_is_no_passage() -> None:
 
 
 def test_the_way_ends_where_the_person_was() -> None:
-    assert "nobody" in end_of_way(LastPlace(x_m=0.3, y_m=0.2), np.zeros((0, 2)), CONFIG)
+    assert "no person" in end_of_way(LastPlace(x_m=0.3, y_m=0.2), np.zeros((0, 2)), CONFIG)
     blocked = LastPlace(x_m=3.0, y_m=0.0, blocked_s=CONFIG.blocked_s + 0.1)
     assert "blocked" in end_of_way(blocked, np.zeros((0, 2)), CONFIG)
