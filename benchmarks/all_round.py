@@ -25,7 +25,7 @@ from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.scenarios.running.engine.task import Tell, chosen_workers
 from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.truth.truth import PersonTruth
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.evaluation.evaluate import Scores, combine, evaluate
 from peopleboy.tracker.evaluation.floor import Places
 from peopleboy.tracker.frame import COLOUR, PANORAMA, THERMAL, Frame
@@ -134,7 +134,7 @@ class Play:
         scenario = load_scenario(self.scenario).mounting(tracker.cameras)
         config = scenario.world(self.seed)
         rows, count, watch = _Rows(), 0, _Watch()
-        with World(config) as world:
+        with SimulatedWorld(config) as world:
             frames = round(scenario.duration_s * config.control_hz)
             for tick in closed_loop(world, tracker, scenario.make_behaviour(), frames):
                 watch.add(tick)

@@ -19,7 +19,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.imaging.electronics import encode_8bit
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.evaluation.evaluate import Scores, combine
 from peopleboy.tracker.evaluation.sequence import TrueBoxes
@@ -100,7 +100,7 @@ def play(scene: str, camera: Camera, seed: int) -> Recording:
     config = mounted(scenario.world(seed), camera)
     count = round(scenario.duration_s * config.control_hz)
     frames, truth = [], []
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         for tick in range(count):
             observation = world.observe()
             frame = Frame.from_observation(observation)

@@ -26,7 +26,7 @@ from peopleboy.scenarios.run_folder.folder import gt_lines
 from peopleboy.scenarios.run_folder.image_files import image_file, write_png
 from peopleboy.scenarios.sim_to_real.compare import Separability, compare_images
 from peopleboy.scenarios.sim_to_real.page import describe_auc, write_comparison
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 
 OUT = Path("runs/realism")
 CLIP = click.Path(exists=True, file_okay=False, path_type=Path)
@@ -128,7 +128,7 @@ def _film(scenario: Scenario, seed: int, clip: Path) -> None:
     (clip / "thermal").mkdir(parents=True)
     config = scenario.world(seed)
     frames = round(scenario.duration_s * config.control_hz)
-    with World(config) as world, (clip / "gt.txt").open("w", encoding="utf-8") as truth:
+    with SimulatedWorld(config) as world, (clip / "gt.txt").open("w", encoding="utf-8") as truth:
         eyes = make_named_tracker(ORACLE, seed, world.truth)
         for tick in closed_loop(world, eyes, scenario.make_behaviour(), frames):
             write_png(clip / "thermal" / image_file(tick.frame), tick.observation.images["thermal"])

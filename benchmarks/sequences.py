@@ -9,7 +9,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.sim.truth.truth import Truth
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.sequence import TrackBoxes, TrueBoxes
 from peopleboy.tracker.footage.box_kinds import boxed_whole
@@ -51,7 +51,7 @@ def record(scenario: str | Scenario, seed: int) -> Recording:
     loaded = load_scenario(scenario) if isinstance(scenario, str) else scenario
     config = loaded.world(seed)
     frames, rows, before = [], [], None
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         count = round(loaded.duration_s * config.control_hz)
         tracker = make_tracker(CONTOUR_TRACKER, seed)
         for tick in closed_loop(world, tracker, loaded.make_behaviour(), count):

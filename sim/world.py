@@ -39,7 +39,7 @@ _STANDS_OUT_K = 5.0  # difference from the surroundings above which objects are 
 _MOST_PEOPLE = 64  # a view's cover has one bit per person
 
 
-class World:
+class SimulatedWorld:
     """A world with a robot, people and cameras; use it as a context manager.
 
     `observe` returns what the robot senses now, `truth` the ground truth of the same instant; `step` advances
@@ -70,7 +70,7 @@ class World:
             self.physics.close()
             raise
 
-    def __enter__(self) -> "World":
+    def __enter__(self) -> "SimulatedWorld":
         return self
 
     def __exit__(

@@ -10,7 +10,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.scenarios.running.run import run
 from peopleboy.scenarios.running.run_options import RunOptions
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
 RATE_HZ = 15
@@ -20,7 +20,7 @@ def loop_speed(scenario: str, frames: int = 300, *, tracker: str = DEFAULT_TRACK
     """Return the speed of the loop in multiples of real time: world, images, truth, tracker, behaviour."""
     loaded = load_scenario(scenario)
     times = []
-    with World(loaded.world(0)) as world:
+    with SimulatedWorld(loaded.world(0)) as world:
         ticks = closed_loop(world, make_tracker(tracker), loaded.make_behaviour(), frames)
         next(ticks)
         last = time.process_time()

@@ -12,7 +12,7 @@ from benchmarks.peers.detectors import Hog
 from benchmarks.timing import Turns, median_ms, spent_ms, timed_ms
 from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.contour.appearance.appearance_model import ColourModel, likelihood
 from peopleboy.tracker.contour.box_interaction import overlap_shares, person_factor, regions_of
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
@@ -109,7 +109,7 @@ def shoot(scenario: str, people: int | None = None, seed: int = 0) -> Iterator[F
     loaded = load_scenario(scenario)
     config = loaded.world(seed)
     before = None
-    with World(replace(config, people=config.people[:people])) as world:
+    with SimulatedWorld(replace(config, people=config.people[:people])) as world:
         for _ in range(round(loaded.duration_s * config.control_hz)):
             observation = world.observe()
             frame = Frame.from_observation(observation, before)

@@ -28,7 +28,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.physics.bullet_io import projection_matrix, view_matrix
 from peopleboy.sim.physics.physics_engine import PHYSICS
 from peopleboy.sim.shapes.bounds import FAR_M, NEAR_M
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 
 SCENARIO: Final = "single_follow"
 ACTION: Final = (0.0, 0.13)
@@ -163,7 +163,7 @@ def bullet_rate(image_size: tuple[int, int], steps: int = 20) -> float:
         replace(camera, width=image_size[0], height=image_size[1])
         for camera in (one.camera for one in config.robot.cameras.values())
     ]
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         client, robot = world.physics._client, world.robot
 
         def step(number: int) -> None:  # noqa: ARG001

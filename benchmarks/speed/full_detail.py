@@ -29,7 +29,7 @@ from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.make_place import build_place
 from peopleboy.sim.places.place_config import straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 
 GOAL = 1.5
@@ -62,7 +62,7 @@ def detail_times(name: str, instants: int | None = None) -> Turns:
     """
     plain, full = in_detail(name, PLAIN), in_detail(name, FULL)
     commands = _commands(full, instants)
-    with World(plain.world(SEED)) as plain_world, World(full.world(SEED)) as full_world:
+    with SimulatedWorld(plain.world(SEED)) as plain_world, SimulatedWorld(full.world(SEED)) as full_world:
         return _timed({PLAIN: plain_world, FULL: full_world}, commands)
 
 
@@ -72,9 +72,9 @@ def render_times(instants: int = 40) -> Turns:
     Names with the suffix `TRUTH` include one camera's view and its truth; the others include both images.
     """
     with (
-        World(_corridor(RAYCAST)) as cast,
-        World(_corridor(BULLET)) as drawn,
-        World(_polished(_corridor(RAYCAST))) as full,
+        SimulatedWorld(_corridor(RAYCAST)) as cast,
+        SimulatedWorld(_corridor(BULLET)) as drawn,
+        SimulatedWorld(_polished(_corridor(RAYCAST))) as full,
     ):
         ahead = Command(linear_m_s=0.5, angular_rad_s=0.0)
         for world in (cast, drawn, full):
@@ -82,7 +82,7 @@ def render_times(instants: int = 40) -> Turns:
         return _timed({RAYCAST: cast, BULLET: drawn, FULL: full}, [ahead] * (instants + COMPILED))
 
 
-def _timed(worlds: Mapping[str, World], commands: Sequence[Command]) -> Turns:
+def _timed(worlds: Mapping[str, SimulatedWorld], commands: Sequence[Command]) -> Turns:
     turns = Turns()
     for number, command in enumerate(commands):
         turn = {}
@@ -96,7 +96,7 @@ def _timed(worlds: Mapping[str, World], commands: Sequence[Command]) -> Turns:
     return turns
 
 
-def _all_images(world: World) -> dict[str, Any]:
+def _all_images(world: SimulatedWorld) -> dict[str, Any]:
     return dict(world.take_images())
 
 
@@ -114,7 +114,7 @@ def _commands(scenario: Scenario, instants: int | None) -> list[Command]:
     """Return the robot's commands in a scenario, so that both worlds are seen from the same positions."""
     config = scenario.world(SEED)
     frames = round(scenario.duration_s * config.control_hz) if instants is None else instants + COMPILED
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         ticks = closed_loop(
             world, make_named_tracker(ORACLE, SEED, world.truth), scenario.make_behaviour(), frames
         )

@@ -18,7 +18,7 @@ from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.running.blind_drive import blind_drive
 from peopleboy.sim.cameras.camera_config import DepthConfig, calibrations_of
 from peopleboy.sim.cameras.depth import structured_light
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.camera_mount import mount_of
 from peopleboy.tracker.detector.detector import PeopleDetector
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, PANORAMA, THERMAL, Frame, Odometry
@@ -48,7 +48,7 @@ def depth(instants: int = 30) -> Iterator[str]:
     camera, rng, hog = config.robot.cameras[DEPTH], stream(0, "benchmark"), _hog()
     assert isinstance(camera, DepthConfig)
     turns = Turns()
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         for number in range(instants + COMPILED):
             world.step(0.0, 0.0)
             images = world.observe().images
@@ -70,7 +70,7 @@ def panorama(instants: int = 60) -> Iterator[str]:
     """Compare the view and truth of a panorama with those of the thermal camera."""
     config = load_scenario(CROWD).mounting((PANORAMA,)).world(seed=0)
     truths, whole = Turns(), Turns()
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         for number in range(instants + COMPILED):
             world.step(0.0, 0.0)
             images = world.observe().images

@@ -53,7 +53,7 @@ from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.observation import Observation
 from peopleboy.sim.rendering.view import BLIND
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.frame import Frame
 from peopleboy.tracker.track import Track
@@ -125,7 +125,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         normalise: bool = False,
         max_episode_steps: int | None = None,
     ) -> None:
-        self._world: World | None = None
+        self._world: SimulatedWorld | None = None
         self._viewer: LivePicture | None = None
         check_word("task", task, TASKS)
         check_word("observation", observation, KINDS)
@@ -173,7 +173,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         if self._draws_worlds:
             self._take(self._moved(_random_episode(self._seed, world_of(chosen))))
         config = self._config(chosen)
-        self._world = World(config)
+        self._world = SimulatedWorld(config)
         self._calibrations = calibrations_of(config.robot.cameras)
         self._dt_s = 1.0 / config.control_hz
         self._commands: list[Command] = []
@@ -269,7 +269,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         return self._seed
 
     @property
-    def world(self) -> World:
+    def world(self) -> SimulatedWorld:
         """World of the current or last episode.
 
         Raises:
@@ -381,7 +381,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         config = replace(config, robot=self._robot, physics_hz=self._physics_hz, renderer=renderer)
         return vary(config, options, stream(self._seed, "environment.options"))
 
-    def _perceive(self, world: World) -> list[int] | None:
+    def _perceive(self, world: SimulatedWorld) -> list[int] | None:
         """Take a snapshot, and return the ids of tracks that `LiveEpisodes.evaluate` needs."""
         self._snapshot = take_snapshot(world)._replace(numbers=np.array([self._number]))
         return None if self._tracker is None else [self.track(self._snapshot, 0)]
@@ -408,7 +408,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         }
         return info | {"metrics": self.metrics()} if self._own["is_over"] else info
 
-    def _running(self, *, even_over: bool = False) -> World:
+    def _running(self, *, even_over: bool = False) -> SimulatedWorld:
         if self._world is None or (self._own["is_over"] and not even_over):
             raise BadInput("environment: no episode is under way; call reset() first")
         return self._world

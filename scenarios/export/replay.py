@@ -56,12 +56,14 @@ def replay(run: FinishedRun) -> Iterator[Tick]:
     Raises:
         BadInput: the world does not come out as it was in the run, or PyBullet is not installed.
     """
-    from peopleboy.sim.world import World  # here, as what is written can be exported without PyBullet
+    from peopleboy.sim.world import (
+        SimulatedWorld,  # here, as what is written can be exported without PyBullet
+    )
 
     files = run.files()
     tracks, people = files.tracks_by_frame(), files.people_by_frame()
     explanations = files.explanations_by_frame(run.about.tracker)
-    with World(run.world) as world:
+    with SimulatedWorld(run.world) as world:
         stage = FaultySensors(world, run.scenario.spec.faults, run.robot.sonar.farthest_m)
         for row in files.robot.to_pylist():
             frame = row["frame"]

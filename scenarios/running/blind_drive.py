@@ -10,21 +10,21 @@ from peopleboy.sim.observation import Observation
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, WHEEL_DISTANCE_M
 
 if TYPE_CHECKING:
-    from peopleboy.sim.world import World
+    from peopleboy.sim.world import SimulatedWorld
 
 
-def blind_drive(scenario: Scenario, seed: int) -> "Iterator[tuple[World, Observation]]":
+def blind_drive(scenario: Scenario, seed: int) -> "Iterator[tuple[SimulatedWorld, Observation]]":
     """Yield the world and its observation at each instant; images are rendered only when accessed.
 
     Raises:
         BadInput: the robot's behaviour needs a tracker.
     """
-    from peopleboy.sim.world import World  # here, so that cached data can be read without PyBullet
+    from peopleboy.sim.world import SimulatedWorld  # here, so that cached data can be read without PyBullet
 
     if scenario.robot.behaviour not in ("stand", "scripted"):
         raise BadInput(f"{scenario.name}: its robot needs a tracker; give one that stands or is scripted")
     config, drive = scenario.world(seed), scenario.make_behaviour()
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         for _ in range(round(scenario.duration_s * config.control_hz)):
             observation = world.observe()
             yield world, observation

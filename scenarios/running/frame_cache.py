@@ -185,12 +185,12 @@ def _shoot(scenario: Scenario, seed: int, home: Path, report: Callable[[int, int
 def _render(
     scenario: Scenario, seed: int, part: Path, report: Callable[[int, int], None] | None
 ) -> dict[str, Any]:
-    from peopleboy.sim.world import World  # here, so that cached frames can be read without PyBullet
+    from peopleboy.sim.world import SimulatedWorld  # here, so that cached frames can be read without PyBullet
 
     config = scenario.world(seed)
     count = round(scenario.duration_s * config.control_hz)
     with (
-        World(config) as world,
+        SimulatedWorld(config) as world,
         pq.ParquetWriter(part / "frames.parquet", _FRAMES, compression="zstd") as frames,
         pq.ParquetWriter(part / "truth.parquet", TRUTH, compression="zstd") as truth,
         (part / "gt.txt").open("w", encoding="utf-8", newline="\n") as boxes,

@@ -11,7 +11,7 @@ from peopleboy.behaviours.behaviour import Command
 from peopleboy.scenarios.files.recorded_drives import write_drive
 from peopleboy.scenarios.files.suite import SuiteRun, drive_path, load_suite, runs_of
 from peopleboy.scenarios.loop.loop import closed_loop
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
 
@@ -20,7 +20,7 @@ def record(run: SuiteRun) -> Iterator[Command]:
     config = run.scenario.world(run.seed)
     tracker = make_tracker(CONTOUR_TRACKER, run.seed)
     frames = round(run.scenario.duration_s * config.control_hz)
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         for tick in closed_loop(world, tracker, run.scenario.make_behaviour(), frames):
             yield tick.command
 

@@ -33,7 +33,7 @@ from peopleboy.scenarios.scores.corridor_metrics import legs_of, score_corridor
 from peopleboy.scenarios.scores.drive_record import DriveLog
 from peopleboy.scenarios.scores.following_metrics import following_task, score_following, tracks_on_target
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.checked_tracker import CheckedTracker
 from peopleboy.tracker.footage.box_kinds import BoxKind
@@ -124,7 +124,7 @@ def run(
     if options.seed < 0:
         raise BadInput(f"--seed {options.seed}: must be 0 or more")
     scenario = options.applied_to(scenario)
-    world: World  # the oracle accesses it only after it is built
+    world: SimulatedWorld  # the oracle accesses it only after it is built
     name, given = tracker_name(scenario, options), scenario.robot.cameras
     tracker = make_named_tracker(name, options.seed, lambda: world.truth())
     scenario = scenario.mounting(tracker.cameras)
@@ -149,7 +149,7 @@ def run(
     )
     with ExitStack() as stack:
         stack.enter_context(left_by_sigterm())
-        world = stack.enter_context(World(config))
+        world = stack.enter_context(SimulatedWorld(config))
         stack.enter_context(traceback_in(options.out / "run.json"))
         claim_folder(options.out, overwrite=options.overwrite)
         folder = stack.enter_context(

@@ -20,7 +20,7 @@ from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.observation import OnDemand
 from peopleboy.sim.physics.kinematic import turn_wheels
 from peopleboy.sim.shapes.shape_table import Numbers
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 
 Task = Callable[[], None]
 
@@ -194,7 +194,7 @@ class BatchCameras:
     """
 
     def __init__(
-        self, worlds: Sequence[World], joined: JoinedWorlds, wheels: Numbers, workers: WorkerPool
+        self, worlds: Sequence[SimulatedWorld], joined: JoinedWorlds, wheels: Numbers, workers: WorkerPool
     ) -> None:
         self._worlds, self._joined, self._crew = tuple(worlds), joined, workers
         self._wheels = wheels.reshape(-1)
@@ -251,7 +251,7 @@ class BatchCameras:
         return images, self._crew.start([partial(fill, *share) for share in pairwise(ends)])
 
 
-def shared_cameras(world: World) -> tuple[tuple[str, CameraConfig], ...] | None:
+def shared_cameras(world: SimulatedWorld) -> tuple[tuple[str, CameraConfig], ...] | None:
     """Return the key shared by worlds that are rendered together; None for a world that renders alone."""
     config = world.config
     if config.renderer != "raycast" or config.detail != "plain":

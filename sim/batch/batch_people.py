@@ -16,7 +16,7 @@ from peopleboy.sim.people.walking.script import Records, join_records
 from peopleboy.sim.physics.kinematic import Kinematic
 from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.shapes.shape_table import Numbers
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 
 
 class Parts(NamedTuple):
@@ -46,7 +46,7 @@ class BatchLimbs:
         joined: where all bodies are.
     """
 
-    def __init__(self, worlds: Sequence[World], walks: BatchWalks, joined: JoinedWorlds) -> None:
+    def __init__(self, worlds: Sequence[SimulatedWorld], walks: BatchWalks, joined: JoinedWorlds) -> None:
         self._walks, self._joined = walks, joined
         self._people = [person for world in worlds for person in world.crowd.people]
         self._stances = join_records([each.stance for each in self._people], STANCE)
@@ -87,7 +87,7 @@ class BatchLimbs:
         places = np.column_stack([walks.records["position"][who], walks.records["heading"][who]])
         _place(who, places, self._builds, self._stances, self._parts, self._joined)
 
-    def _know_parts(self, worlds: Sequence[World]) -> Parts:
+    def _know_parts(self, worlds: Sequence[SimulatedWorld]) -> Parts:
         frames = [person.frame for person in self._people]
         counts = [len(frame.bone) for frame in frames]
         return Parts(
@@ -108,7 +108,7 @@ class BatchLimbs:
         )
 
 
-def _number_of(world: World, person: Person, part: str) -> int:
+def _number_of(world: SimulatedWorld, person: Person, part: str) -> int:
     assert isinstance(world.physics, Kinematic)
     return world.physics.numbers[f"{person.name}/{part}"]
 

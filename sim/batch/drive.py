@@ -16,7 +16,7 @@ from peopleboy.sim.physics.vehicle import Vehicle, VehicleMotion, VehicleState, 
 from peopleboy.sim.robot.peoplebot import Gears, approach_target, count_travel
 from peopleboy.sim.robot.robot_body import WHEEL_RADIUS_M, wheel_speeds
 from peopleboy.sim.shapes.shape_table import JoinedTables, Numbers, ends, join_tables, table_of
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 
 
 class JoinedWorlds(NamedTuple):
@@ -108,7 +108,7 @@ class BatchWalks:
         records: (Q,) WALK of all people.
     """
 
-    def __init__(self, worlds: Sequence[World]) -> None:
+    def __init__(self, worlds: Sequence[SimulatedWorld]) -> None:
         crowds = [world.crowd for world in worlds]
         counts = [len(crowd.people) for crowd in crowds]
         self.first, self.world = ends(counts), np.repeat(np.arange(len(counts)), counts)
@@ -195,7 +195,7 @@ def drive_step(
     steps: int,
     touched: NDArray[np.bool_],
 ) -> None:
-    """Do the physics steps of `World.step` for the given worlds.
+    """Do the physics steps of `SimulatedWorld.step` for the given worlds.
 
     Args:
         active: (G,) numbers of the worlds.
@@ -285,7 +285,7 @@ class BatchDrive:
     """
 
     def __init__(
-        self, worlds: Sequence[World], walks: BatchWalks, joined: JoinedWorlds, vehicle: Vehicle
+        self, worlds: Sequence[SimulatedWorld], walks: BatchWalks, joined: JoinedWorlds, vehicle: Vehicle
     ) -> None:
         self._robots = [world.robot for world in worlds]
         self._walks, self._joined, self._vehicle = walks, joined, vehicle
@@ -343,7 +343,7 @@ class BatchDrive:
         return touched
 
 
-def _capsules(worlds: Sequence[World], walks: BatchWalks) -> BatchCapsules:
+def _capsules(worlds: Sequence[SimulatedWorld], walks: BatchWalks) -> BatchCapsules:
     """Return the solid capsules of people; their positions follow in each step."""
     people = [person for world in worlds for person in world.crowd.people]
     places = walks.records["position"]
@@ -357,6 +357,6 @@ def _capsules(worlds: Sequence[World], walks: BatchWalks) -> BatchCapsules:
     )
 
 
-def _capsule_numbers(world: World) -> list[int]:
+def _capsule_numbers(world: SimulatedWorld) -> list[int]:
     assert isinstance(world.physics, Kinematic)
     return [world.physics.numbers[name] for name in world.crowd.capsules]

@@ -36,7 +36,7 @@ from peopleboy.sim.cameras.thermal import (
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.rendering.render_canvas import Lens
 from peopleboy.sim.shapes.shape_table import Numbers
-from peopleboy.sim.world import World, light_level
+from peopleboy.sim.world import SimulatedWorld, light_level
 
 Images = tuple[NDArray[Any], ...]
 Fill = Callable[[int, int], None]  # fills the rows from one to before another
@@ -55,7 +55,9 @@ class RenderStage(Protocol):
 class ThermalStage:
     """Renders the images of `ThermalSensor`, of a simple camera."""
 
-    def __init__(self, name: str, config: ThermalConfig, scene: JoinedScene, worlds: Sequence[World]) -> None:
+    def __init__(
+        self, name: str, config: ThermalConfig, scene: JoinedScene, worlds: Sequence[SimulatedWorld]
+    ) -> None:
         self._name, self._config, self._scene, self._worlds = name, config, scene, tuple(worlds)
         self._camera = _kernel_camera(config.camera)
         self._surroundings = np.array([mirrored(world.config.place.surroundings_c) for world in worlds])
@@ -94,7 +96,9 @@ class ThermalStage:
 class ColourStage:
     """Renders the images of `ColourSensor`."""
 
-    def __init__(self, name: str, config: ColourConfig, scene: JoinedScene, worlds: Sequence[World]) -> None:
+    def __init__(
+        self, name: str, config: ColourConfig, scene: JoinedScene, worlds: Sequence[SimulatedWorld]
+    ) -> None:
         self._name, self._config, self._scene, self._worlds = name, config, scene, tuple(worlds)
         self._camera = _kernel_camera(config.camera)
         self._response = ColourResponse(
@@ -116,7 +120,9 @@ class ColourStage:
         return (image,), fill
 
 
-def make_stage(name: str, config: CameraConfig, scene: JoinedScene, worlds: Sequence[World]) -> RenderStage:
+def make_stage(
+    name: str, config: CameraConfig, scene: JoinedScene, worlds: Sequence[SimulatedWorld]
+) -> RenderStage:
     """Make the render stage of a camera that `has_stage`."""
     if isinstance(config, ThermalConfig):
         return ThermalStage(name, config, scene, worlds)
@@ -136,13 +142,13 @@ def _kernel_camera(camera: Pinhole) -> KernelCamera:
     return KernelCamera(lens, rays_through(camera), sweep_of_one_rad(camera))
 
 
-def _thermal(world: World, name: str) -> ThermalSensor:
+def _thermal(world: SimulatedWorld, name: str) -> ThermalSensor:
     sensor = world.rig.take_over(name)
     assert isinstance(sensor, ThermalSensor)
     return sensor
 
 
-def _colour(world: World, name: str) -> ColourSensor:
+def _colour(world: SimulatedWorld, name: str) -> ColourSensor:
     sensor = world.rig.take_over(name)
     assert isinstance(sensor, ColourSensor)
     return sensor

@@ -17,7 +17,7 @@ from peopleboy.sim.physics.solid_shapes import Array, cast_into
 from peopleboy.sim.robot.sonar import read_rings
 from peopleboy.sim.shapes.shape_table import Numbers
 from peopleboy.sim.truth.scenes import BYSTANDER, Records, Scenes, known_people, look_at_people
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 
 Image = NDArray[Any]
 
@@ -30,7 +30,7 @@ class BatchSonar:
         joined: where all is that they hear.
     """
 
-    def __init__(self, worlds: Sequence[World], joined: JoinedWorlds) -> None:
+    def __init__(self, worlds: Sequence[SimulatedWorld], joined: JoinedWorlds) -> None:
         self._rings = [world.robot.ring for world in worlds]
         self._joined = joined
 
@@ -49,7 +49,7 @@ class PeopleVisibility:
         joined: where all is that may hide them.
     """
 
-    def __init__(self, worlds: Sequence[World], walks: BatchWalks, joined: JoinedWorlds) -> None:
+    def __init__(self, worlds: Sequence[SimulatedWorld], walks: BatchWalks, joined: JoinedWorlds) -> None:
         self._walks, self._joined = walks, joined
         self._camera = flat_geometry(worlds[0].config.robot.cameras, "thermal")
         self._known = np.concatenate(
@@ -164,7 +164,7 @@ class Snapshot(NamedTuple):
         )  # fmt: skip
 
 
-def take_snapshot(world: World) -> Snapshot:
+def take_snapshot(world: SimulatedWorld) -> Snapshot:
     """Read the sensors of one world once, including images if there are any."""
     senses, images = world.sense(), SeparateImages([world.take_images()]) if world.has_images else None
     at = senses.odometry

@@ -26,7 +26,7 @@ from peopleboy.sim.physics.solid_shapes import Array
 from peopleboy.sim.robot.robot_body import RADIUS_M, WHEEL_RADIUS_M
 from peopleboy.sim.shapes.shape_table import Numbers
 from peopleboy.sim.truth.scenes import SCENE, Scenes
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 
 
 class KinematicBatch:
@@ -42,7 +42,7 @@ class KinematicBatch:
         workers: threads that render images in the background.
     """
 
-    def __init__(self, worlds: Sequence[World], workers: WorkerPool) -> None:
+    def __init__(self, worlds: Sequence[SimulatedWorld], workers: WorkerPool) -> None:
         self._worlds = tuple(worlds)
         physics = [_kinematic(world) for world in worlds]
         states = [each.state() for each in physics]
@@ -64,7 +64,7 @@ class KinematicBatch:
         self._eyes = BatchCameras(worlds, self._joined, wheels, workers) if makes_images else None
 
     def step(self, active: Numbers, commands: Array) -> None:
-        """Step some of the worlds, as `World.step` does.
+        """Step some of the worlds, as `SimulatedWorld.step` does.
 
         Args:
             active: (G,) numbers of the worlds, rising.
@@ -116,7 +116,7 @@ class KinematicBatch:
             world.end_step(names, is_settled=not is_changed)
 
     def look(self, active: Numbers) -> Snapshot:
-        """Return readings and truth of some of the worlds, as `World.sense` and `World.scene` do.
+        """Return readings and truth of some of the worlds, like `SimulatedWorld.sense` and `.scene`.
 
         Args:
             active: (G,) numbers of the worlds, rising.
@@ -161,7 +161,7 @@ class KinematicBatch:
         return np.stack([ahead, velocity[:, 2]], axis=1)
 
 
-def batch_key(world: World) -> tuple[object, ...] | None:
+def batch_key(world: SimulatedWorld) -> tuple[object, ...] | None:
     """Return the key shared by all worlds of a batch; None for a world that cannot be in one."""
     config = world.config
     if config.physics != "kinematic":
@@ -177,7 +177,7 @@ def _planar(poses: Matrix) -> Array:
     return np.column_stack([poses[:, :2, 3], list(headings)])
 
 
-def _kinematic(world: World) -> Kinematic:
+def _kinematic(world: SimulatedWorld) -> Kinematic:
     assert isinstance(world.physics, Kinematic)
     return world.physics
 
@@ -185,7 +185,7 @@ def _kinematic(world: World) -> Kinematic:
 class WorldBatch:
     """Worlds by number: kinematic worlds in one batch per kind, others separately."""
 
-    def __init__(self, worlds: Sequence[World], workers: WorkerPool) -> None:
+    def __init__(self, worlds: Sequence[SimulatedWorld], workers: WorkerPool) -> None:
         self._worlds = tuple(worlds)
         kinds: dict[object, list[int]] = defaultdict(list)
         for number, world in enumerate(worlds):

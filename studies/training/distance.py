@@ -127,9 +127,11 @@ def check_floor(config: WorldConfig, scenario: str) -> PanoramaView:
 
 def panoramas(config: WorldConfig, duration_s: float) -> Iterator[tuple[NDArray[np.uint8], ImageFreeTruth]]:
     """Yield every image (H, W, 3) of the panoramic camera, and the people present; render no other images."""
-    from peopleboy.sim.world import World  # imported late: reading existing samples does not need PyBullet
+    from peopleboy.sim.world import (
+        SimulatedWorld,  # imported late: reading existing samples does not need PyBullet
+    )
 
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         for _ in range(round(duration_s * config.control_hz)):
             observation = world.observe()
             if PANORAMA in observation.images:

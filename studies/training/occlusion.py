@@ -177,13 +177,15 @@ def collect_pairs(scenario: str, seed: int, config: TrackerConfig) -> PairSample
     Raises:
         BadInput: an unknown scenario.
     """
-    from peopleboy.sim.world import World  # imported late: reading existing samples does not need PyBullet
+    from peopleboy.sim.world import (
+        SimulatedWorld,  # imported late: reading existing samples does not need PyBullet
+    )
 
     loaded = load_scenario(scenario)
     order, episodes = RecordingOrder(config.depth.remembers_feet), Episodes()
     people = ContourTracker(config, stream(seed, "tracker"), order)
     rows: list[PairRow] = []
-    with World(loaded.world(seed)) as world:
+    with SimulatedWorld(loaded.world(seed)) as world:
         frames = round(loaded.duration_s * world.config.control_hz)
         for tick in closed_loop(world, people, loaded.make_behaviour(), frames):
             for *pair, features in order.asked:

@@ -10,7 +10,7 @@ from peopleboy.behaviours.safety_guard import Guarded
 from peopleboy.behaviours.scripted import Scripted
 from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, WHEEL_DISTANCE_M, outline_gap
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.some_of import some_of
 
 LENGTH, WIDTH = 8.0, 6.0
@@ -55,7 +55,7 @@ def gaps_under_guard(tmp_path, seed):
     )
     guarded = Guarded(Scripted(any_commands(np.random.default_rng(seed))))
     walls, people, touched, way = [], [], set(), 0.0
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         for _ in range(60 * 15):
             senses, scene = world.sense(), world.scene()
             left, right = senses.wheel_speeds_m_s

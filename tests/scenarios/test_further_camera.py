@@ -18,7 +18,7 @@ from peopleboy.scenarios.drawing.contact_sheet import read_tiles
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.export.video import BAR_PX, HEIGHT_PX
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.runs.exported import SCENE, export, run_cli
 
 # It looks back, where only carl is, at every third instant.
@@ -133,7 +133,7 @@ def test_what_it_sees_depends_neither_on_others_nor_on_who_looked_before(scene: 
     config = load_scenario(scene).world(0)
     seen = []
     for asked in (["rear"], ["colour", "thermal", "rear"], []):
-        with World(config) as world:
+        with SimulatedWorld(config) as world:
             for tick in range(4):
                 images = world.observe().images
                 assert ("rear" in images) == (tick in (0, 3))

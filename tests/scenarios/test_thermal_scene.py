@@ -11,7 +11,7 @@ from peopleboy.scenarios.files.library import LIBRARY
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.cameras.camera_config import ThermalConfig
 from peopleboy.sim.cameras.kinds import THERMAL_PRESETS
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.some_of import some_of
 
 NAMES = sorted(path.stem for path in LIBRARY.glob("*.yaml"))
@@ -20,7 +20,7 @@ NAMES = sorted(path.stem for path in LIBRARY.glob("*.yaml"))
 @pytest.mark.slow
 @pytest.mark.parametrize("name", some_of(NAMES, 8))
 def test_less_than_one_percent_of_what_people_are_shown_is_clipped(name: str) -> None:
-    with World(load_scenario(name).world(0)) as world:
+    with SimulatedWorld(load_scenario(name).world(0)) as world:
         for _ in range(3):
             scene = world.observe().images["thermal_scene"]
             assert scene.dtype == np.uint8
@@ -43,7 +43,7 @@ def test_nor_of_what_the_robot_gets_by_an_automatic_gain_while_it_turns(
 ) -> None:
     config = load_scenario(name).world(0)
     cameras = {**config.robot.cameras, "thermal": thermal}
-    with World(replace(config, robot=replace(config.robot, cameras=cameras))) as world:
+    with SimulatedWorld(replace(config, robot=replace(config.robot, cameras=cameras))) as world:
         for k in range(16):
             grey = world.observe().images["thermal"]
             assert np.isin(grey, (0, 255)).mean() < 0.01

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 from tests.helpers.worlds.small_worlds import config, person
 
@@ -25,7 +25,7 @@ def world_config(shine: float, detail: str = "full") -> WorldConfig:
 
 def shot(config: WorldConfig) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray]:
     """The images, the masks and the depths of the second instant."""
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         world.step(0.0, 0.0)
         images, truth = world.observe().images, world.truth()
         return {name: images[name] for name in IMAGES}, truth.instance, truth.depth_m

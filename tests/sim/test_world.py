@@ -17,7 +17,7 @@ from peopleboy.sim.physics import bullet
 from peopleboy.sim.places.place import Fixture
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Material, Painting
-from peopleboy.sim.world import World, light_level
+from peopleboy.sim.world import SimulatedWorld, light_level
 from peopleboy.sim.world_config import WorldConfig
 from tests.helpers.calls.refused import refused
 from tests.helpers.worlds.small_worlds import NO_NOISE, SMALL, box_thing, config, hall, person, robot
@@ -51,7 +51,7 @@ def test_a_world_of_one_temperature_gives_one_value(monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr(world_module, "make_material_table", at_one_temperature)
     place = replace(hall(), surroundings_c=29.0)
-    with World(config(*WALKERS, place=place, robot=robot(thermal=QUIET))) as world:
+    with SimulatedWorld(config(*WALKERS, place=place, robot=robot(thermal=QUIET))) as world:
         for _ in range(5):
             image = world.observe().images["thermal_c"]
             assert image == pytest.approx(29.0, abs=2e-3)
@@ -62,12 +62,12 @@ def test_a_world_of_one_temperature_gives_one_value(monkeypatch: pytest.MonkeyPa
 def test_a_black_body_reads_its_temperature(temperature: float) -> None:
     material = Material(temperature_c=temperature, emissivity=1.0)
     target = box_thing("target", (0.2, 3.0, 2.6), (3.0, 0.0, 1.3), material)
-    with World(config(place=hall(target), robot=robot(thermal=QUIET))) as world:
+    with SimulatedWorld(config(place=hall(target), robot=robot(thermal=QUIET))) as world:
         assert world.observe().images["thermal_c"] == pytest.approx(temperature, abs=0.05)
 
 
 def test_the_8_bit_image_is_the_source_s_line() -> None:
-    with World(config(*WALKERS)) as world:
+    with SimulatedWorld(config(*WALKERS)) as world:
         images = dict(world.observe().images)
     exact = np.clip(np.round((images["thermal_c"].astype(float) - 24.0) / 12.0 * 255.0), 0, 255)
     assert np.abs(images["thermal"] - exact).max() <= 1
@@ -78,7 +78,7 @@ def test_the_8_bit_image_is_the_source_s_line() -> None:
 
 
 def test_people_are_warmer_than_what_is_behind_them() -> None:
-    with World(config(*WALKERS)) as world:
+    with SimulatedWorld(config(*WALKERS)) as world:
         image, mask = world.observe().images["thermal_c"], world.truth().instance > 0
     assert mask.sum() > 300
     assert image[mask].mean() > image[~mask].mean() + 5.0
@@ -94,7 +94,7 @@ def test_the_light_goes_out_at_its_time() -> None:
         0,
         0,
     ]
-    with World(config(*WALKERS, place=place)) as world:
+    with SimulatedWorld(config(*WALKERS, place=place)) as world:
         colours, thermals = [], []
         for _ in range(8):
             observation = world.observe()
@@ -111,7 +111,7 @@ def test_turning_blurs_the_image_and_driving_straight_does_not() -> None:
 
     def width_of_edge(command: tuple[float, float], steps: int, heading_deg: float) -> int:
         settings = {"place": hall(edge), "robot": robot(heading_deg=heading_deg, thermal=QUIET)}
-        with World(config(**settings)) as world:
+        with SimulatedWorld(config(**settings)) as world:
             for _ in range(steps):
                 world.step(*command)
             row = world.observe().images["thermal_c"][40]
@@ -127,7 +127,9 @@ def test_turning_blurs_the_image_and_driving_straight_does_not() -> None:
 def test_both_renderers_give_nearly_the_same_thermal_image() -> None:
     images = {}
     for name in ("raycast", "bullet"):
-        with World(config(*WALKERS, robot=robot(camera=Pinhole(), thermal=NO_NOISE), renderer=name)) as world:
+        with SimulatedWorld(
+            config(*WALKERS, robot=robot(camera=Pinhole(), thermal=NO_NOISE), renderer=name)
+        ) as world:
             world.step(0.1, 0.1)
             images[name] = world.observe().images["thermal_c"]
     difference = np.abs(images["raycast"] - images["bullet"])
@@ -139,7 +141,7 @@ def test_both_renderers_give_nearly_the_same_thermal_image() -> None:
 def fingerprints(seed: int) -> list[str]:
     """Digests of all that a world gives in 20 ticks, one a tick."""
     digests = []
-    with World(config(*WALKERS, robot=robot(camera=Pinhole()), seed=seed)) as world:
+    with SimulatedWorld(config(*WALKERS, robot=robot(camera=Pinhole()), seed=seed)) as world:
         for _ in range(20):
             senses, truth = world.observe(), world.truth()
             arrays = [
@@ -171,7 +173,7 @@ def test_a_seed_gives_the_same_bytes_in_a_fresh_process_and_another_seed_does_no
 
 
 def test_worlds_that_are_open_at_once_do_not_disturb_each_other() -> None:
-    def fingerprint(world: World) -> bytes:
+    def fingerprint(world: SimulatedWorld) -> bytes:
         senses = world.observe()
         return (
             senses.images["thermal_c"].tobytes()
@@ -180,12 +182,16 @@ def test_worlds_that_are_open_at_once_do_not_disturb_each_other() -> None:
         )
 
     settings = config(*WALKERS)
-    with World(settings) as alone:
+    with SimulatedWorld(settings) as alone:
         expected = []
         for _ in range(6):
             alone.step(0.5, 0.2)
             expected.append(fingerprint(alone))
-    with World(settings) as one, World(config(WALKERS[0], seed=5)) as other, World(settings) as third:
+    with (
+        SimulatedWorld(settings) as one,
+        SimulatedWorld(config(WALKERS[0], seed=5)) as other,
+        SimulatedWorld(settings) as third,
+    ):
         for k in range(6):
             other.step(-0.5, 1.0)
             one.step(0.5, 0.2)
@@ -195,7 +201,7 @@ def test_worlds_that_are_open_at_once_do_not_disturb_each_other() -> None:
 
 
 def test_observing_and_asking_for_the_truth_changes_nothing_in_the_world() -> None:
-    with World(config(*WALKERS)) as watched, World(config(*WALKERS)) as left_alone:
+    with SimulatedWorld(config(*WALKERS)) as watched, SimulatedWorld(config(*WALKERS)) as left_alone:
         for _ in range(10):
             watched.observe()
             watched.truth()
@@ -207,23 +213,23 @@ def test_observing_and_asking_for_the_truth_changes_nothing_in_the_world() -> No
 
 def test_closing_frees_the_world_and_a_failed_one_leaves_nothing_open() -> None:
     before = open_worlds()
-    world = World(config())
+    world = SimulatedWorld(config())
     assert open_worlds() == before + 1
     world.close()
     assert open_worlds() == before
     broken = Fixture(name="broken")
     with refused("'broken'"):
-        World(config(place=replace(hall(), fixtures=(*hall().fixtures, broken))))
+        SimulatedWorld(config(place=replace(hall(), fixtures=(*hall().fixtures, broken))))
     missing = Fixture(name="missing", urdf="no/such.urdf", material=Material(temperature_c=20.0))
     with refused("no/such.urdf"):
-        World(config(place=replace(hall(), fixtures=(*hall().fixtures, missing))))
+        SimulatedWorld(config(place=replace(hall(), fixtures=(*hall().fixtures, missing))))
     assert open_worlds() == before
 
 
 @pytest.mark.parametrize("name", ["robot", "border", "floor", "ann", "a/b"])
 def test_names_that_could_be_mistaken_are_refused(name: str) -> None:
     with refused(f"'{name}'"):
-        World(config(WALKERS[0], person(name, (5.0, 0.0))))
+        SimulatedWorld(config(WALKERS[0], person(name, (5.0, 0.0))))
 
 
 def test_a_control_step_must_be_a_whole_number_of_physics_steps() -> None:
@@ -231,19 +237,19 @@ def test_a_control_step_must_be_a_whole_number_of_physics_steps() -> None:
         WorldConfig(place=hall(), control_hz=14)
     with refused("seed", -1):
         WorldConfig(place=hall(), seed=-1)
-    with refused("'magic'", "raycast"), World(config(renderer="magic")) as world:
+    with refused("'magic'", "raycast"), SimulatedWorld(config(renderer="magic")) as world:
         world.truth()
 
 
 def test_a_command_that_is_no_number_is_refused_and_moves_nothing() -> None:
-    with World(config()) as world:
+    with SimulatedWorld(config()) as world:
         with pytest.raises(BadInput, match="finite"):
             world.step(math.nan, 0.0)
         assert world.time_s == 0.0
 
 
 def test_its_own_body_is_not_in_the_robot_s_default_cameras() -> None:
-    with World(WorldConfig(place=hall(), robot=RobotConfig(at_m=(3.0, 0.0)))) as world:
+    with SimulatedWorld(WorldConfig(place=hall(), robot=RobotConfig(at_m=(3.0, 0.0)))) as world:
         keys = world.physics.parts()
         own = [k for k, key in enumerate(keys) if key.name == "robot"]
         for command in [(0.0, 0.0), (0.8, 2.6), (-0.8, -2.6)]:
@@ -254,7 +260,7 @@ def test_its_own_body_is_not_in_the_robot_s_default_cameras() -> None:
 
 
 def test_time_goes_by_control_steps_and_people_are_where_their_script_says() -> None:
-    with World(config(person("ann", (4.0, 0.0), (9.0, 0.0)))) as world:
+    with SimulatedWorld(config(person("ann", (4.0, 0.0), (9.0, 0.0)))) as world:
         assert world.time_s == 0.0
         assert world.truth().people[0].position_m == (4.0, 0.0)
         for _ in range(45):
@@ -265,7 +271,7 @@ def test_time_goes_by_control_steps_and_people_are_where_their_script_says() -> 
 
 
 def test_what_the_cameras_see_is_where_the_truth_says() -> None:
-    with World(config(*WALKERS)) as world:
+    with SimulatedWorld(config(*WALKERS)) as world:
         for _ in range(20):
             world.step(0.4, 0.3)
             truth = world.truth()
@@ -280,7 +286,7 @@ def test_what_the_cameras_see_is_where_the_truth_says() -> None:
 def test_a_person_who_walks_on_past_a_robot_that_comes_from_the_side_pushes_it() -> None:
     path = (Waypoint(at_m=(1.9, 0.9)), Waypoint(at_m=(9.0, 0.9), speed_m_s=0.5))
     walker = PersonConfig(name="walker", path=path)
-    with World(config(walker, robot=robot(1.5, 0.0, heading_deg=30.0))) as world:
+    with SimulatedWorld(config(walker, robot=robot(1.5, 0.0, heading_deg=30.0))) as world:
         contacts, tilts = [], []
         for _ in range(60):
             world.step(0.8, 0.0)
@@ -292,7 +298,7 @@ def test_a_person_who_walks_on_past_a_robot_that_comes_from_the_side_pushes_it()
 
 
 def test_a_person_who_appears_inside_the_robot_is_solid_once_they_are_apart() -> None:
-    with World(config(person("ann", (1.1, 0.1), enter_s=0.2), robot=robot(1.0))) as world:
+    with SimulatedWorld(config(person("ann", (1.1, 0.1), enter_s=0.2), robot=robot(1.0))) as world:
         for _ in range(8):
             world.step(0.0, 0.0)
         assert world.truth().people[0].name == "ann"
@@ -308,7 +314,7 @@ def test_a_person_who_appears_inside_the_robot_is_solid_once_they_are_apart() ->
 
 
 def test_a_robot_that_drives_into_a_person_touches_it_and_is_stopped() -> None:
-    with World(config(person("ann", (3.0, 0.0)))) as world:
+    with SimulatedWorld(config(person("ann", (3.0, 0.0)))) as world:
         contacts = []
         for _ in range(75):
             world.step(0.5, 0.0)

@@ -22,7 +22,7 @@ from peopleboy.scenarios.drawing.plan_sheet import Labels, draw_floor, draw_wall
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import closed_loop
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.studies.training.panorama_sequences import panorama_calibration, render_panoramas
 from peopleboy.tracker.frame import PANORAMA, THERMAL, Frame
 from peopleboy.tracker.panoramic.people.figure_patch import ACROSS, BOTTOM_M, HALF_WIDTH_M, LAYERS, TOP_M, UP
@@ -199,7 +199,7 @@ def _spots(scenario: Scenario, seed: int, name: str) -> Iterator[tuple[int, tupl
     """Yield id, position, and presence in the thermal image of tracks every third of a second."""
     config = scenario.world(seed)
     frames = round(scenario.duration_s * config.control_hz)
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         tracker = make_tracker(name, seed)
         for tick in closed_loop(world, tracker, Stand(), frames):
             for track in tick.tracks if tick.frame % EVERY == 0 else ():

@@ -16,7 +16,7 @@ from peopleboy.sim.places.make_place import build_place
 from peopleboy.sim.places.place_config import straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.truth import Truth
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 
 PEOPLE = {"anna": (3.9, -0.8), "carl": (5.6, 0.6), "dora": (8.2, -0.35)}
@@ -36,7 +36,7 @@ def scales() -> Figure:
     people = tuple(PersonConfig(name=name, path=(Waypoint(at_m=at),)) for name, at in PEOPLE.items())
     depth = {name: DepthConfig(scale=scale) for name, scale in SCALES.items()}
     robot = RobotConfig(at_m=(0.5, 0.0), cameras={"thermal": ThermalConfig(), **depth})
-    with World(
+    with SimulatedWorld(
         WorldConfig(place=build_place(straight_corridor(14.0, 4.0)), people=people, robot=robot)
     ) as world:
         images = dict(world.observe().images)

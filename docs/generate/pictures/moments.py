@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from peopleboy.behaviours.scripted import Stand
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.contour.explanation import ContourExplanation
 from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
@@ -21,18 +21,18 @@ CROSSING = ("crossing_2", 3)
 
 def ticks(
     scenario: str, seed: int, frames: int, tracker: str = CONTOUR_TRACKER
-) -> Iterator[tuple[World, Tick]]:
+) -> Iterator[tuple[SimulatedWorld, Tick]]:
     """Yield the first ticks of a scenario with a standing robot, as in `peopleboy run`."""
-    with World(load_scenario(scenario).world(seed)) as world:
+    with SimulatedWorld(load_scenario(scenario).world(seed)) as world:
         eyes = make_tracker(tracker, seed)
         for tick in closed_loop(world, eyes, Stand(), frames):
             yield world, tick
 
 
-def world_at(scenario: str, seed: int, time_s: float) -> World:
+def world_at(scenario: str, seed: int, time_s: float) -> SimulatedWorld:
     """Return a world advanced to a time; the caller closes it."""
     config = load_scenario(scenario).world(seed)
-    world = World(config)
+    world = SimulatedWorld(config)
     for _ in range(round(time_s * config.control_hz)):
         world.step(0.0, 0.0)
     return world

@@ -15,7 +15,7 @@ from peopleboy.sim.people.person_config import PersonConfig, Waypoint
 from peopleboy.sim.places.make_place import build_place
 from peopleboy.sim.places.place_config import straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 from peopleboy.studies.reproductions.pictures.panoramic_figures import draw_ranges
 from peopleboy.studies.reproductions.plan import Plan
@@ -32,7 +32,7 @@ def raw_and_unrolled() -> Image.Image:
     cameras = {"thermal": ThermalConfig(), "panorama": PanoramaConfig(raw=True)}
     robot = RobotConfig(at_m=(4.0, 0.0), cameras=cameras)
     place = build_place(straight_corridor(10.0, 8.0))
-    with World(WorldConfig(place=place, people=people, robot=robot)) as world:
+    with SimulatedWorld(WorldConfig(place=place, people=people, robot=robot)) as world:
         images, truth = dict(world.observe().images), world.truth("panorama")
     panorama = draw_truth(enlarge(images["panorama"], SCALE), people_parts(truth.people, truth.camera), SCALE)
     raw = enlarge(images["panorama_raw"], SCALE)

@@ -27,7 +27,7 @@ from peopleboy.sim.places.make_place import build_place
 from peopleboy.sim.places.place_config import straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Detail
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 
 SCALE = {"cmap": "inferno", "vmin": 18.0, "vmax": 38.0}
@@ -118,7 +118,7 @@ def finely() -> Figure:
     ]
     figure, axes = panels(titles, 2.35)
     for column, detail in enumerate(get_args(Detail)):
-        with World(_three(detail)) as world:
+        with SimulatedWorld(_three(detail)) as world:
             for _ in range(6):
                 world.step(0.0, 0.0)
             images = dict(world.observe().images)

@@ -192,10 +192,10 @@ def play_focus(scenario: Scenario, seed: int, every: int = EVERY) -> Iterator[Mo
     if scenario.robot.behaviour != FOLLOWS:
         yield from play(scenario, seed, COLOUR, images=(COLOUR,), every=every)
         return
-    from peopleboy.sim.world import World  # here, as stored results can be read without PyBullet
+    from peopleboy.sim.world import SimulatedWorld  # here, as stored results can be read without PyBullet
 
     config = scenario.world(seed)
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         oracle, behaviour = OracleTracker(lambda: world.truth()), scenario.make_behaviour()
         for tick in closed_loop(world, oracle, behaviour, round(scenario.duration_s * config.control_hz)):
             if tick.frame % every == 1:
@@ -347,14 +347,14 @@ def watch_follower(scenario: str, seed: int, name: str) -> Result:
         "absences", how often it did not follow the person for longer, and "resumed", after how many of those
         it went on with this person.
     """
-    from peopleboy.sim.world import World  # here, as stored results can be read without PyBullet
+    from peopleboy.sim.world import SimulatedWorld  # here, as stored results can be read without PyBullet
 
-    world: World  # the tracker looks at it only once it is built
+    world: SimulatedWorld  # the tracker looks at it only once it is built
     tracker = make_named_tracker(name, seed, lambda: world.truth())
     played = load_scenario(scenario).mounting(tracker.cameras)
     config = played.world(seed)
     leader = config.people[0].name
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         frames = round(played.duration_s * config.control_hz)
         followed = [
             None if tick.following is None else people_of_tracks(tick.tracks, tick.truth).get(tick.following)

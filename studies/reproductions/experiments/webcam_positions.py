@@ -208,9 +208,9 @@ def _shoot(
     background = _empty_room(config)
     columns = np.full((frames, len(cameras)), np.nan)
     hat, speed, seen = np.zeros((frames, 2)), np.zeros(frames), np.full(frames, np.nan)
-    from peopleboy.sim.world import World  # here, as stored results can be read without PyBullet
+    from peopleboy.sim.world import SimulatedWorld  # here, as stored results can be read without PyBullet
 
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         for frame in range(frames):
             images = world.observe().images
             found = [hat_column(images[camera]) for camera in cameras]

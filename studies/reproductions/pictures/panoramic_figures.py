@@ -130,9 +130,9 @@ def _round_image() -> Picture:
 
 def _images_after(config: WorldConfig, time_s: float) -> Mapping[str, Picture]:
     """Return the images of a world whose robot stands, after some time [s]."""
-    from peopleboy.sim.world import World  # here, as curves of stored results need no PyBullet
+    from peopleboy.sim.world import SimulatedWorld  # here, as curves of stored results need no PyBullet
 
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         for _ in range(round(time_s * config.control_hz)):
             world.step(0.0, 0.0)
         return dict(world.observe().images)

@@ -19,7 +19,7 @@ from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.observations import KINDS
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.scores.following_metrics import following_task
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.calls.refused import refused
 from tests.helpers.some_of import some_of
 
@@ -114,7 +114,7 @@ def test_images_of_one_camera_alone_are_those_of_all_cameras(shown: str, scene: 
 def test_an_episode_of_a_seed_is_the_world_of_a_run_of_that_seed() -> None:
     env = PeopleBoyEnv("corridor_meeting", observation="pixels")
     observation, info = env.reset(seed=4)
-    with World(load_scenario("corridor_meeting").world(4)) as world:
+    with SimulatedWorld(load_scenario("corridor_meeting").world(4)) as world:
         seen = world.observe()
         assert np.array_equal(observation["thermal"][:, :, 0], seen.images["thermal"])
         assert np.array_equal(observation["colour"], seen.images["colour"])
@@ -329,7 +329,7 @@ def test_an_episode_is_the_world_of_a_run_with_the_same_commands() -> None:
     env = PeopleBoyEnv("single_follow", observation="truth")
     env.reset(seed=3)
     drive = scenario.world(3).robot.drive
-    with World(scenario.world(3)) as world:
+    with SimulatedWorld(scenario.world(3)) as world:
         for step in range(60):
             shares = (0.3, 0.2 if step % 20 < 10 else -0.1)
             *_, info = env.step(shares)

@@ -13,7 +13,7 @@ from peopleboy.scenarios.environments.vector_environment import PeopleBoyVectorE
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.batch.batch_cameras import WorkerPool
 from peopleboy.sim.batch.world_batch import WorldBatch
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.some_of import some_of
 
 SLOW_REAR = """
@@ -160,7 +160,7 @@ def test_threads_change_no_byte_and_cameras_take_images_at_rates_of_their_own(tm
 
 def test_images_made_together_are_there_by_all_their_names_until_their_instant_is_over() -> None:
     config = replace(load_scenario("crossing_2").world(3), physics="kinematic")
-    with World(config) as world, World(config) as other:
+    with SimulatedWorld(config) as world, SimulatedWorld(config) as other:
         together = WorldBatch([world], WorkerPool(1))
         only, command = np.array([0]), np.array([[0.3, 0.2]])
         found = together.step(only, command)[0].senses(0)

@@ -10,7 +10,7 @@ from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.sim.places.moving import Mover
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.calls.refused import assert_names
 from tests.helpers.some_of import some_of
 
@@ -167,7 +167,7 @@ def test_a_seed_sends_nobody_through_what_is_moved() -> None:
 def _hands(name: str) -> list[tuple[Mover, float]]:
     """How far the acting hand is from what it moves, at every instant of a run."""
     scenario, gaps = load_scenario(name), []
-    with World(scenario.world(0)) as world:
+    with SimulatedWorld(scenario.world(0)) as world:
         people = {person.name: person for person in world.crowd.people}
         for _ in range(round(scenario.duration_s * 15)):
             for mover in scenario.place.movers:

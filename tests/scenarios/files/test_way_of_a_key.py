@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.runs.exported import SCENE
 
 MOST = 6
@@ -41,7 +41,7 @@ def modules_on_the_way(path: Path) -> set[str]:
 
     sys.setprofile(note)
     try:
-        world = World(load_scenario(path).world(0))
+        world = SimulatedWorld(load_scenario(path).world(0))
     finally:
         sys.setprofile(None)
     world.close()

@@ -2,7 +2,7 @@ from peopleboy.scenarios.files.load import parse_scenario
 from peopleboy.scenarios.loop.loop import Perception, thermal_box
 from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.contour.box_interaction import standing_box
 from peopleboy.tracker.frame import THERMAL
 from tests.helpers.runs.hand_made_tracks import track
@@ -32,7 +32,7 @@ class Counter:
 def test_images_of_a_cold_wall_are_new_ones_though_all_of_them_are_black(tmp_path):
     scenario = parse_scenario(EMPTY, source="test", folder=tmp_path)
     tracker = Counter()
-    with World(scenario.world(0)) as world:
+    with SimulatedWorld(scenario.world(0)) as world:
         perception = Perception(tracker, calibrations_of(world.cameras))
         for _ in range(3):
             observation = world.observe()

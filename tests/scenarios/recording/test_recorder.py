@@ -21,7 +21,7 @@ from peopleboy.scenarios.recording.recorder import Recorder
 from peopleboy.scenarios.recording.recording_file import pack
 from peopleboy.scenarios.recording.rows import PIXEL_STEP
 from peopleboy.sim.cameras.kinds import colour_from_thermal
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 from peopleboy.tracker.contour.measurement.section_evidence import section_lines
 from peopleboy.tracker.contour.variants import VARIANTS
@@ -238,7 +238,7 @@ def _written(path: Path, config: WorldConfig, ticks: list[Tick]) -> int:
 def test_a_minute_with_four_people_fits_into_eleven_megabytes(tmp_path: Path) -> None:
     scenario = load_scenario("crossing_4")
     config = scenario.world(0)
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         tracker = make_tracker("contour")
         loop = closed_loop(world, tracker, scenario.make_behaviour(), 75)
         ticks = [replace(tick, truths=dict(tick.truths)) for tick in loop]

@@ -11,7 +11,7 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.recorded_drives import read_drive, write_drive
 from peopleboy.scenarios.running.frame_cache import Film, film, film_key, frames_of, open_film
 from peopleboy.sim.cameras.camera_config import calibrations_of
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.footage.box_kinds import BoxKind
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from tests.helpers.calls.refused import refused
@@ -26,7 +26,7 @@ def shot(tmp_path_factory: pytest.TempPathFactory) -> Film:
 
 def played() -> Iterator[Frame]:
     before = None
-    with World(SCENARIO.world(3)) as world:
+    with SimulatedWorld(SCENARIO.world(3)) as world:
         calibrations = calibrations_of(world.cameras)
         for k in range(39):
             seen = world.observe()
@@ -59,7 +59,7 @@ def test_truth_lies_beside_the_frames(shot: Film) -> None:
 
 
 def test_a_film_is_made_once(shot: Film, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("peopleboy.sim.world.World", None)
+    monkeypatch.setattr("peopleboy.sim.world.SimulatedWorld", None)
     assert film(SCENARIO, 3, shot.folder.parent) == shot
 
 

@@ -10,7 +10,7 @@ from peopleboy.scenarios.loop.loop import closed_loop
 from peopleboy.scenarios.scores.corridor_metrics import Leg, centre_line, legs_of, score_corridor
 from peopleboy.scenarios.scores.drive_record import DriveLog
 from peopleboy.sim.places.floor_plan import Rectangle
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.drives import made_drive
 
 LEG = Leg((0.0, 0.0), (20.0, 0.0), 3.0)
@@ -72,7 +72,7 @@ def test_a_robot_in_a_world_follows_its_corridor_by_the_image_and_keeps_the_midd
     robot = replace(scenario.spec.robot, walls_by="image")
     scenario = replace(scenario, spec=replace(scenario.spec, robot=robot))
     log = DriveLog()
-    with World(scenario.world(0)) as world:
+    with SimulatedWorld(scenario.world(0)) as world:
         modes = set()
         for tick in closed_loop(world, NoTracker(), scenario.make_behaviour(), 7 * 15):
             log.add(tick.truth, track=0)

@@ -28,7 +28,7 @@ from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Material
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.images.camera_view import camera_view
 from tests.helpers.worlds.small_worlds import config, person
 
@@ -51,7 +51,7 @@ def view_of(depth: np.ndarray, part: np.ndarray | None = None) -> View:
 
 
 def seen(robot: RobotConfig, steps: int = 0) -> dict[str, np.ndarray]:
-    with World(config(person("anna", (4.0, 0.4), (5.0, -2.0)), robot=robot, seed=3)) as world:
+    with SimulatedWorld(config(person("anna", (4.0, 0.4), (5.0, -2.0)), robot=robot, seed=3)) as world:
         for _ in range(steps):
             world.step(0.2, 0.1)
         return dict(world.observe().images)
@@ -67,8 +67,10 @@ def images() -> dict[str, np.ndarray]:
 
 
 @pytest.fixture(scope="module")
-def world() -> Iterator[World]:
-    with World(config(person("anna", (4.0, 0.4), (5.0, -2.0)), robot=robot_with(**ALL), seed=3)) as world:
+def world() -> Iterator[SimulatedWorld]:
+    with SimulatedWorld(
+        config(person("anna", (4.0, 0.4), (5.0, -2.0)), robot=robot_with(**ALL), seed=3)
+    ) as world:
         yield world
 
 
@@ -183,7 +185,7 @@ def test_time_of_flight_has_noise_by_depth_and_darkness_and_reads_between_surfac
     assert (edge > 0.0).all()
 
 
-def test_without_noise_it_is_the_true_depth_in_its_range(world: World) -> None:
+def test_without_noise_it_is_the_true_depth_in_its_range(world: SimulatedWorld) -> None:
     true, image = world.truth("exact").depth_m, world.observe().images["exact"]
     inside = (true >= 0.5) & (true <= 10.0)
     assert 0.1 < inside.mean() < 1.0
@@ -192,7 +194,9 @@ def test_without_noise_it_is_the_true_depth_in_its_range(world: World) -> None:
     assert (image.shape, image.dtype) == ((480, 640), np.uint16)
 
 
-def test_colour_is_that_of_the_same_pixels_and_of_a_colour_camera_in_that_place(world: World) -> None:
+def test_colour_is_that_of_the_same_pixels_and_of_a_colour_camera_in_that_place(
+    world: SimulatedWorld,
+) -> None:
     truth, images = world.truth("quiet"), world.observe().images
     colour = ColourConfig(camera=USUAL.camera, read_noise=0.0, shot_noise=0.0)
     same = seen(robot_with(other=colour))["other"]
@@ -222,7 +226,10 @@ def test_images_that_nobody_asks_for_are_not_drawn_and_change_no_later_one(
     settings: dict[str, object],
 ) -> None:
     robot = robot_with(depth=DepthConfig(camera=replace(SMALL, width=121, height=91), **settings))
-    with World(config(person("anna", (4.0, 0.4)), robot=robot)) as one, World(one.config) as other:
+    with (
+        SimulatedWorld(config(person("anna", (4.0, 0.4)), robot=robot)) as one,
+        SimulatedWorld(one.config) as other,
+    ):
         for world, asks in ((one, True), (other, False)):
             images = world.observe().images
             assert all(camera.width != 121 for _, camera in world._seen)

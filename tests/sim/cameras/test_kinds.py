@@ -18,7 +18,7 @@ from peopleboy.sim.cameras.imaging.noise import gaussian, skip_gaussian
 from peopleboy.sim.cameras.kinds import KINDS, CameraKind, affine_between, image_folders
 from peopleboy.sim.geometry.pinhole import Pinhole, invert_pose, transform
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 from tests.helpers.worlds.small_worlds import SMALL, config, person, robot
 
@@ -51,7 +51,7 @@ def seen_by(cameras: Mapping[str, CameraConfig]) -> WorldConfig:
 def test_a_kind_is_added_by_one_entry(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(KINDS, "near", CameraKind(config=NearConfig, sensor=NearSensor))
     cameras = {**robot().cameras, "scout": NearConfig(camera=SMALL)}
-    with World(
+    with SimulatedWorld(
         config(person("anna", (4.0, 0.0)), robot=RobotConfig(at_m=(1.0, 0.0), cameras=cameras))
     ) as world:
         image, truth = world.observe().images["scout"], world.truth("scout")
@@ -99,7 +99,7 @@ def test_a_rate_that_does_not_divide_is_refused() -> None:
 
 
 def test_images_and_truths_of_an_instant_that_is_over_are_refused() -> None:
-    with World(config(person("anna", (4.0, 0.0)))) as world:
+    with SimulatedWorld(config(person("anna", (4.0, 0.0)))) as world:
         before, truths = world.observe().images, world.truths()
         kept = before["thermal"]
         world.step(0.0, 0.0)
@@ -122,7 +122,7 @@ def test_a_skipped_image_leaves_the_generator_as_a_drawn_one_does() -> None:
 def test_the_truth_of_a_camera_is_that_of_its_own_image() -> None:
     high = Pinhole(width=96, height=64, position_m=(0.14, 0.0, 2.0), pitch_rad=0.3)
     cameras = {**robot().cameras, "high": ThermalConfig(camera=high)}
-    with World(
+    with SimulatedWorld(
         config(person("anna", (4.0, 0.0)), robot=RobotConfig(at_m=(1.0, 0.0), cameras=cameras))
     ) as world:
         truth, usual = world.truth("high"), world.truth()

@@ -11,7 +11,7 @@ from peopleboy.sim.cameras.camera_config import PanoramaConfig, ThermalConfig
 from peopleboy.sim.cameras.panoramic import finer, roll_up, shift_blur, unroll
 from peopleboy.sim.geometry.panorama import Panorama
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.worlds.small_worlds import config, person
 
 USUAL = PanoramaConfig()
@@ -22,7 +22,9 @@ CAMERAS = {"panorama": USUAL, "quiet": QUIET, "round": replace(QUIET, raw=True)}
 @pytest.fixture(scope="module")
 def images() -> Iterator[dict[str, np.ndarray]]:
     robot = RobotConfig(at_m=(5.0, 0.0), cameras={"thermal": ThermalConfig(), **CAMERAS})
-    with World(config(person("behind", (2.5, 0.0)), person("left", (5.0, 2.0)), robot=robot)) as world:
+    with SimulatedWorld(
+        config(person("behind", (2.5, 0.0)), person("left", (5.0, 2.0)), robot=robot)
+    ) as world:
         yield dict(world.observe().images)
 
 
@@ -75,7 +77,7 @@ def test_the_same_instant_has_the_same_image_whatever_was_read_before() -> None:
         robot = RobotConfig(at_m=(5.0, 0.0), cameras={"thermal": ThermalConfig(), "panorama": camera})
         taken = []
         for reads in ((0, 1, 2), (2,)):
-            with World(config(person("behind", (2.5, 0.0)), robot=robot)) as world:
+            with SimulatedWorld(config(person("behind", (2.5, 0.0)), robot=robot)) as world:
                 for step in range(3):
                     image = world.observe().images
                     if step in reads:

@@ -26,7 +26,7 @@ from peopleboy.sim.places.place_config import straight_corridor
 from peopleboy.sim.rendering.view import View
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.shapes.materials import Material
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 from tests.helpers.images.camera_view import camera_view
 
@@ -94,7 +94,7 @@ def test_the_offset_of_a_camera_stays_and_that_of_another_seed_differs() -> None
     place, found = build_place(straight_corridor(6.0, 4.0)), []
     for seed in (1, 2):
         config = WorldConfig(place=place, robot=RobotConfig(cameras=cameras), seed=seed)
-        with World(config) as world:
+        with SimulatedWorld(config) as world:
             for _ in range(2):
                 images = world.observe().images
                 found.append(images["off"].astype(int) - images["exact"])
@@ -108,7 +108,7 @@ def test_the_time_of_flight_camera_gives_amplitude_instead_of_colour() -> None:
     config = DEPTH_PRESETS["tof"]
     assert image_names("tof", config) == ("tof", "tof_amplitude")
     robot = RobotConfig(cameras={**RobotConfig().cameras, "tof": config})
-    with World(WorldConfig(place=build_place(straight_corridor(6.0, 4.0)), robot=robot)) as world:
+    with SimulatedWorld(WorldConfig(place=build_place(straight_corridor(6.0, 4.0)), robot=robot)) as world:
         images = world.observe().images
         assert images["tof"].shape == images["tof_amplitude"].shape == (144, 176)
         assert (images["tof"] > 0).all()

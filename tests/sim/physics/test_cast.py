@@ -10,7 +10,7 @@ from peopleboy.sim.physics.kinematic import Kinematic
 from peopleboy.sim.robot.robot_body import NAME
 from peopleboy.sim.robot.sonar import SonarRing
 from peopleboy.sim.shapes.shapes import Shape, ShapeKind
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.pybullet_rays import PyBulletRays
 
 TILTED = (0.18257419, 0.36514837, 0.54772256, 0.73029674)
@@ -57,7 +57,7 @@ def test_sonars_hear_in_the_library_what_they_hear_through_pybullet(name: str) -
     config = replace(
         config, robot=replace(config.robot, sonar=replace(config.robot.sonar, noise_m=0.0, drop_out=0.0))
     )
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         differences = []
         for _ in range(30):
             world.step(0.1, 0.8)

@@ -17,7 +17,7 @@ from peopleboy.sim.robot.peoplebot import PeopleBot
 from peopleboy.sim.robot.robot_body import NAME, URDF
 from peopleboy.sim.robot.robot_config import DriveConfig, RobotConfig
 from peopleboy.sim.shapes.shapes import UPRIGHT, Shape, ShapeKind
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.calls.command_line import refusal
 
 EXACT = RobotConfig(drive=DriveConfig(encoder_noise_m=0.0))
@@ -131,7 +131,7 @@ def test_only_one_body_that_rolls_on_two_wheels_can_move() -> None:
 
 def test_an_image_is_the_same_by_either_physics_until_the_robot_moves() -> None:
     config = load_scenario("single_follow").world(3)
-    with World(config) as theirs, World(replace(config, physics="kinematic")) as ours:
+    with SimulatedWorld(config) as theirs, SimulatedWorld(replace(config, physics="kinematic")) as ours:
         assert theirs.physics.parts() == ours.physics.parts()
         for one, other in zip(theirs.physics.visual_shapes(), ours.physics.visual_shapes(), strict=True):
             assert (one.part, one.kind, one.mesh) == (other.part, other.kind, other.mesh)
@@ -148,7 +148,7 @@ def test_an_image_is_the_same_by_either_physics_until_the_robot_moves() -> None:
 def test_it_gets_as_far_as_with_pybullet_to_a_few_millimetres() -> None:
     config = replace(load_scenario("corridor_straight").world(0), renderer="none")
     rng, off = np.random.default_rng(1), []
-    with World(config) as theirs, World(replace(config, physics="kinematic")) as ours:
+    with SimulatedWorld(config) as theirs, SimulatedWorld(replace(config, physics="kinematic")) as ours:
         for step in range(200):
             if step % 15 == 0:
                 command = tuple(rng.uniform((-0.1, -0.8), (0.3, 0.8)))
@@ -164,13 +164,13 @@ def test_it_gets_as_far_as_with_pybullet_to_a_few_millimetres() -> None:
 def test_a_world_with_people_needs_no_pybullet() -> None:
     play = (
         "from peopleboy.scenarios.files.load import load_scenario\n"
-        "from peopleboy.sim.world import World\n"
+        "from peopleboy.sim.world import SimulatedWorld\n"
         "scenario = load_scenario('single_follow')\n"
         "assert scenario.spec.physics == 'kinematic'\n"
-        "with World(scenario.world(0)) as world:\n"
+        "with SimulatedWorld(scenario.world(0)) as world:\n"
         "    world.step(0.2, 0.1)\n"
         "    print(len(world.truth().people), world.sense().sonar_m.shape)\n"
-        "try: World(scenario.moved_by('bullet').world(0))\n"
+        "try: SimulatedWorld(scenario.moved_by('bullet').world(0))\n"
         "except Exception as error: print(error)\n"
     )
     done = subprocess.run([sys.executable, "-c", GONE + play], capture_output=True, text=True, check=False)

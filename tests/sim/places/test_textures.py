@@ -12,7 +12,7 @@ from peopleboy.sim.places.textures.sunlight import _shade
 from peopleboy.sim.places.textures.surface_texture import draw_clouds
 from peopleboy.sim.places.textures.texture_place import paint_place
 from peopleboy.sim.shapes.materials import Painting
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.calls.refused import refused
 
 ROOM: dict[str, Any] = {
@@ -110,7 +110,7 @@ def test_the_sky_over_a_street_is_colder_the_steeper_one_looks() -> None:
 
 def test_a_plain_world_has_no_paintings(tmp_path: Any) -> None:
     scenario = parse_scenario(ROOM | {"detail": "plain"}, source="room.yaml", folder=tmp_path)
-    with World(scenario.world(0)) as world:
+    with SimulatedWorld(scenario.world(0)) as world:
         assert world.materials.paint_texels.size == 0
 
 

@@ -14,7 +14,7 @@ from peopleboy.sim.geometry.panorama import MIRRORS, Panorama
 from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.rendering.panoramic_renderer import first_and_last
 from peopleboy.sim.robot.robot_config import RobotConfig
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.worlds.small_worlds import box_thing, config, hall, person
 
 COLUMNS = (*range(0, 480, 7), 239, 240, 479)
@@ -56,18 +56,18 @@ QUIET = {
 
 
 @pytest.fixture(scope="module")
-def world() -> Iterator[World]:
+def world() -> Iterator[SimulatedWorld]:
     box = box_thing("box", (0.4, 0.5, 0.6), (5.6, -1.5, 0.3))
     cameras = {"thermal": ThermalConfig(), "colour": ColourConfig(), **CAMERAS, **QUIET, **SLITS}
     robot = RobotConfig(at_m=(4.0, 0.0), cameras=cameras)
-    with World(config(*PEOPLE, place=hall(box), robot=robot)) as world:
+    with SimulatedWorld(config(*PEOPLE, place=hall(box), robot=robot)) as world:
         for _ in range(8):
             world.step(0.1, 0.4)
         yield world
 
 
 @pytest.mark.parametrize("name", CAMERAS)
-def test_each_column_is_what_a_camera_that_looks_that_way_sees(world: World, name: str) -> None:
+def test_each_column_is_what_a_camera_that_looks_that_way_sees(world: SimulatedWorld, name: str) -> None:
     camera, seen = CAMERAS[name].camera, world.truth(name)
     rows = np.arange(camera.height)
     outwards = np.cos(camera.depression(rows)) / np.cos(camera.mirror.axis_rad - camera.depression(rows))
@@ -81,7 +81,7 @@ def test_each_column_is_what_a_camera_that_looks_that_way_sees(world: World, nam
 
 
 @pytest.mark.parametrize("name", CAMERAS)
-def test_each_column_has_the_colours_that_camera_sees(world: World, name: str) -> None:
+def test_each_column_has_the_colours_that_camera_sees(world: SimulatedWorld, name: str) -> None:
     images = world.observe().images
     for u in COLUMNS:
         slit = images[f"{name}_{u}"][:120, 0].astype(int)
@@ -90,7 +90,7 @@ def test_each_column_has_the_colours_that_camera_sees(world: World, name: str) -
         assert np.count_nonzero(off > 1) <= 1
 
 
-def test_boxes_and_areas_count_on_over_the_seam(world: World) -> None:
+def test_boxes_and_areas_count_on_over_the_seam(world: SimulatedWorld) -> None:
     truth = world.truth("default")
     for who in truth.people:
         mask = truth.instance == who.id
@@ -108,14 +108,14 @@ def test_boxes_and_areas_count_on_over_the_seam(world: World) -> None:
 
 
 @pytest.fixture
-def turned() -> Iterator[World]:
+def turned() -> Iterator[SimulatedWorld]:
     cameras = {"thermal": ThermalConfig(), "panorama": PanoramaConfig()}
     people = (person("ahead", (9.0, 0.0)), person("behind", (4.0, 0.05)), person("hidden", (2.6, 0.1)))
-    with World(config(*people, robot=RobotConfig(at_m=(6.4, 0.0), cameras=cameras))) as world:
+    with SimulatedWorld(config(*people, robot=RobotConfig(at_m=(6.4, 0.0), cameras=cameras))) as world:
         yield world
 
 
-def test_who_stands_behind_the_robot_spans_the_seam_and_hides_others(turned: World) -> None:
+def test_who_stands_behind_the_robot_spans_the_seam_and_hides_others(turned: SimulatedWorld) -> None:
     _, behind, hidden = turned.truth("panorama").people
     for box in (behind.box, behind.whole_box, behind.visible_box):
         assert 460.0 < box[0] < 479.5 < box[0] + box[2] < 500.0
@@ -126,7 +126,7 @@ def test_who_stands_behind_the_robot_spans_the_seam_and_hides_others(turned: Wor
     assert behind.joints_px[:, 0].max() > 460.0
 
 
-def test_turning_on_the_axis_rolls_the_panorama(turned: World) -> None:
+def test_turning_on_the_axis_rolls_the_panorama(turned: SimulatedWorld) -> None:
     before = turned.truth("panorama")
     heading = before.robot.heading
     for _ in range(12):

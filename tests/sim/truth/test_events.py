@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from peopleboy.sim.truth.events import CONTACT_ENDS_S, Event, EventLog
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.worlds.small_worlds import box_thing, config, hall, person, pillar, robot
 
 
@@ -44,7 +44,7 @@ def hidden(*shares: float, occluder: str = "b") -> list[Instant]:
     ]
 
 
-def play(world: World, steps: int, command: tuple[float, float] = (0.0, 0.0)) -> list[Event]:
+def play(world: SimulatedWorld, steps: int, command: tuple[float, float] = (0.0, 0.0)) -> list[Event]:
     log, events = EventLog(), []
     for _ in range(steps):
         events += log.update(world.truth())
@@ -162,7 +162,7 @@ def test_a_scripted_pass_behind_something_gives_each_event_once_in_order(is_pill
     broad = person("broad", (2.7, 0.0), height_m=2.0, build="stout")
     place = hall(pillar(3.0, 0.0, 1.0)) if is_pillar else hall()
     others = () if is_pillar else (broad,)
-    with World(config(walker, *others, place=place)) as world:
+    with SimulatedWorld(config(walker, *others, place=place)) as world:
         told = [(event.kind, event.other) for event in play(world, 120) if event.person == "walker"]
     other = "pillar" if is_pillar else "broad"
     assert told == [
@@ -182,14 +182,14 @@ def test_a_pair_that_walks_abreast_gives_no_flicker(gap: float) -> None:
         person("left", (8.0, gap / 2.0 + 0.4), (3.0, gap / 2.0 + 0.4), (9.0, gap / 2.0)),
         person("right", (8.2, -gap / 2.0 + 0.4), (3.2, -gap / 2.0 + 0.4), (9.2, -gap / 2.0)),
     )
-    with World(config(*pair)) as world:
+    with SimulatedWorld(config(*pair)) as world:
         told = [(event.kind, event.person) for event in play(world, 160, (0.0, 0.05))]
     assert max(told.count(line) for line in told) <= 2
 
 
 def test_driving_into_a_wall_and_away_is_one_contact() -> None:
     block = box_thing("block", (0.4, 2.0, 1.0), (2.0, 0.0, 0.5))
-    with World(config(place=hall(block), robot=robot(1.2))) as world:
+    with SimulatedWorld(config(place=hall(block), robot=robot(1.2))) as world:
         log, events = EventLog(), []
         for k in range(60):
             world.step(0.5 if k < 30 else -0.5, 0.0)

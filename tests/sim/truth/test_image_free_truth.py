@@ -5,11 +5,11 @@ import pytest
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.truth.scenes import is_seen
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 
 
 def test_an_upright_body_is_about_where_the_exact_boxes_and_pixels_say() -> None:
-    with World(load_scenario("crossing_2").world(0)) as world:
+    with SimulatedWorld(load_scenario("crossing_2").world(0)) as world:
         compared = 0
         for _ in range(60):
             world.step(0.0, 0.0)
@@ -30,7 +30,7 @@ def test_an_upright_body_is_about_where_the_exact_boxes_and_pixels_say() -> None
 
 def test_rays_and_pixels_agree_on_who_is_seen() -> None:
     agree = []
-    with World(load_scenario("crossing_2").world(0)) as world:
+    with SimulatedWorld(load_scenario("crossing_2").world(0)) as world:
         for _ in range(150):
             world.step(0.0, 0.0)
             exact = {person.id: person for person in world.truth().people}
@@ -50,7 +50,7 @@ def test_who_is_seen_shows_more_than_the_least_share(share: float, expected: boo
 
 def test_a_world_without_images_moves_like_one_with_them_and_refuses_to_look() -> None:
     config = load_scenario("corridor_meeting").world(1)
-    with World(config) as seeing, World(replace(config, renderer="none")) as blind:
+    with SimulatedWorld(config) as seeing, SimulatedWorld(replace(config, renderer="none")) as blind:
         for _ in range(30):
             seeing.step(0.4, 0.2)
             blind.step(0.4, 0.2)

@@ -16,7 +16,7 @@ from peopleboy.sim.places.place_config import straight_corridor
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.truth.events import STANDS_S, ThingLog
 from peopleboy.sim.truth.truth import Backgrounds
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 from tests.helpers.calls.refused import refused
 
@@ -44,12 +44,12 @@ def hall(*movers: Mover, things: bool = True) -> Place:
 
 
 @pytest.fixture(scope="module")
-def world() -> Iterator[World]:
-    with World(WorldConfig(robot=ROBOT, place=hall(box(GLIDE, GO)), people=(ANNA,))) as world:
+def world() -> Iterator[SimulatedWorld]:
+    with SimulatedWorld(WorldConfig(robot=ROBOT, place=hall(box(GLIDE, GO)), people=(ANNA,))) as world:
         yield world
 
 
-def test_pixels_belong_to_whom_they_show_and_things_are_told_where_they_are(world: World) -> None:
+def test_pixels_belong_to_whom_they_show_and_things_are_told_where_they_are(world: SimulatedWorld) -> None:
     truth = world.truth()
     owners = truth.owners
     (thing,) = truth.things
@@ -64,8 +64,8 @@ def test_pixels_belong_to_whom_they_show_and_things_are_told_where_they_are(worl
     assert (thing.position_m, thing.is_there, thing.is_moving) == ((*AT, 0.0), True, False)
 
 
-def test_the_background_is_what_a_world_without_people_and_movables_shows(world: World) -> None:
-    with World(WorldConfig(robot=ROBOT, place=hall(things=False))) as empty:
+def test_the_background_is_what_a_world_without_people_and_movables_shows(world: SimulatedWorld) -> None:
+    with SimulatedWorld(WorldConfig(robot=ROBOT, place=hall(things=False))) as empty:
         bare = empty.truth().depth_m
     assert np.array_equal(world.truth().background_m(), bare)
     assert (world.truth().depth_m <= bare).all()
@@ -73,7 +73,7 @@ def test_the_background_is_what_a_world_without_people_and_movables_shows(world:
 
 def test_events_say_from_where_to_where_and_by_whom() -> None:
     log, told, ever = ThingLog(), [], Backgrounds()
-    with World(WorldConfig(robot=ROBOT, place=hall(box(GLIDE, GO)), people=(ANNA,))) as world:
+    with SimulatedWorld(WorldConfig(robot=ROBOT, place=hall(box(GLIDE, GO)), people=(ANNA,))) as world:
         for _ in range(40):
             truth = world.truth()
             told += log.update(truth)
@@ -98,7 +98,7 @@ def test_events_say_from_where_to_where_and_by_whom() -> None:
 
 def test_a_background_starts_anew_when_the_camera_moves() -> None:
     found = Backgrounds()
-    with World(WorldConfig(robot=ROBOT, place=hall(), people=(ANNA,))) as world:
+    with SimulatedWorld(WorldConfig(robot=ROBOT, place=hall(), people=(ANNA,))) as world:
         for _ in range(3):
             found.update(world.truth())
         assert found.frames == 3
@@ -113,7 +113,7 @@ def test_what_is_hidden_is_neither_seen_nor_in_anybodys_way() -> None:
     come = replace(GO, kind=ActionKind.APPEAR, at_s=0.1, target=START)
     place = hall(box(come, hidden=True))
     assert len(place.obstacles_at(0.0)) == len(place.obstacles_at(1.0)) - 1 == len(place.obstacles)
-    with World(WorldConfig(robot=ROBOT, place=place)) as world:
+    with SimulatedWorld(WorldConfig(robot=ROBOT, place=place)) as world:
         assert world.truth().things[0].visible_px == 0
         for _ in range(3):
             world.step(0.0, 0.0)
@@ -126,7 +126,7 @@ def test_a_moved_thing_stops_the_sonar_where_it_is_and_the_bullet_renderer_sees_
     config = WorldConfig(robot=ROBOT, place=hall(box(action, hidden=True)))
     sonar = []
     for renderer in ("raycast", "bullet"):
-        with World(replace(config, renderer=renderer)) as world:
+        with SimulatedWorld(replace(config, renderer=renderer)) as world:
             before = world.sense().sonar_m.min()
             world.step(0.0, 0.0)
             sonar.append((before, world.sense().sonar_m.min(), world.truth().things[0].visible_px))
@@ -138,6 +138,6 @@ def test_a_moved_thing_stops_the_sonar_where_it_is_and_the_bullet_renderer_sees_
 def test_a_thing_is_not_moved_by_nobody() -> None:
     with (
         refused("'box'", "'ana'"),
-        World(WorldConfig(robot=ROBOT, place=hall(box(replace(GLIDE, by="ana"))))),
+        SimulatedWorld(WorldConfig(robot=ROBOT, place=hall(box(replace(GLIDE, by="ana"))))),
     ):
         pass

@@ -11,7 +11,7 @@ from peopleboy.sim.geometry.pinhole import Pinhole
 from peopleboy.sim.people.person import PART_CLASSES
 from peopleboy.sim.physics.bullet import Bullet
 from peopleboy.sim.truth.truth import BORDER, PersonTruth, Truth, is_counted
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from tests.helpers.worlds.small_worlds import SMALL, box_thing, config, hall, person, pillar, robot
 
 CAMERA = Pinhole()
@@ -33,7 +33,7 @@ PEOPLE = (
 
 @dataclass(frozen=True)
 class Scene:
-    world: World
+    world: SimulatedWorld
     truth: Truth
     whole: dict[str, np.ndarray]
     alone: dict[str, np.ndarray]
@@ -42,7 +42,7 @@ class Scene:
         return next(person for person in self.truth.people if person.name == name)
 
 
-def draw_alone(world: World, k: int, pose: np.ndarray) -> np.ndarray:
+def draw_alone(world: SimulatedWorld, k: int, pose: np.ndarray) -> np.ndarray:
     """(3 H, 3 W) where TinyRenderer draws a person in a PyBullet world of its own, image in the middle."""
     somebody = world.crowd.people[k]
     with Bullet() as bullet:
@@ -59,7 +59,7 @@ def draw_alone(world: World, k: int, pose: np.ndarray) -> np.ndarray:
 @pytest.fixture(scope="module", params=[0, 9])
 def scene(request: pytest.FixtureRequest) -> Iterator[Scene]:
     """The same crowd after a number of control steps."""
-    with World(config(*PEOPLE, place=hall(*THINGS), robot=robot(camera=CAMERA))) as world:
+    with SimulatedWorld(config(*PEOPLE, place=hall(*THINGS), robot=robot(camera=CAMERA))) as world:
         for _ in range(request.param):
             world.step(0.1, 0.05)
         truth = world.truth()
@@ -72,8 +72,8 @@ def scene(request: pytest.FixtureRequest) -> Iterator[Scene]:
 
 
 @pytest.fixture(scope="module")
-def empty() -> Iterator[World]:
-    with World(config()) as world:
+def empty() -> Iterator[SimulatedWorld]:
+    with SimulatedWorld(config()) as world:
         yield world
 
 
@@ -240,7 +240,7 @@ def test_truth_cannot_be_written_to(scene: Scene) -> None:
             array[0] = 0
 
 
-def test_an_empty_hall_has_nobody(empty: World) -> None:
+def test_an_empty_hall_has_nobody(empty: SimulatedWorld) -> None:
     truth = empty.truth()
     assert truth.people == ()
     assert not truth.instance.any()
@@ -251,7 +251,7 @@ def test_an_empty_hall_has_nobody(empty: World) -> None:
 
 def test_who_has_not_entered_or_has_left_is_nowhere() -> None:
     guest = person("guest", (3.0, 0.0), enter_s=0.4, leave_s=0.8)
-    with World(config(guest)) as world:
+    with SimulatedWorld(config(guest)) as world:
         for tick in range(18):
             is_there = 6 <= tick < 12
             truth, observation = world.truth(), world.observe()
@@ -263,7 +263,7 @@ def test_who_has_not_entered_or_has_left_is_nowhere() -> None:
 
 
 def test_the_pose_of_the_camera_follows_the_robot() -> None:
-    with World(config(robot=robot(2.0, 1.0, heading_deg=90.0))) as world:
+    with SimulatedWorld(config(robot=robot(2.0, 1.0, heading_deg=90.0))) as world:
         truth = world.truth()
     assert truth.camera == SMALL
     assert truth.world_from_camera[:3, 3] == pytest.approx([2.0, 1.14, 1.2], abs=1e-3)

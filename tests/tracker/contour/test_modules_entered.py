@@ -2,7 +2,7 @@ import sys
 from dataclasses import replace
 
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
 from peopleboy.tracker.trackers import CONTOUR_TRACKER, make_tracker
 
@@ -12,7 +12,7 @@ MOST = 12
 def frames_of_four(count):
     """Render the first frames of four people who cross, the robot standing still."""
     before = None
-    with World(load_scenario("crossing_4").world(0)) as world:
+    with SimulatedWorld(load_scenario("crossing_4").world(0)) as world:
         for _ in range(count):
             observation = world.observe()
             frame = Frame.from_observation(observation, before)

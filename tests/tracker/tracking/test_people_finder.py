@@ -9,7 +9,7 @@ from hypothesis.extra.numpy import arrays
 
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import closed_loop
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.detector.detector import PeopleDetector
@@ -78,7 +78,7 @@ def test_a_part_of_somebody_known_is_nobody_else() -> None:
 def frames() -> list[Frame]:
     """What a robot sees that stands by while two people cross."""
     scenario, frames, before = load_scenario("crossing_2"), [], None
-    with World(scenario.world(0)) as world:
+    with SimulatedWorld(scenario.world(0)) as world:
         tracker = make_tracker("contour")
         for tick in closed_loop(world, tracker, scenario.make_behaviour(), 60):
             frames.append(Frame.from_observation(tick.observation, before))

@@ -18,7 +18,7 @@ from peopleboy.scenarios.drawing.overlay import draw_tracks, enlarge, show_therm
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.tracker.trackers import DEFAULT_TRACKER, make_tracker
 
 PATH = Path(__file__).parents[3] / "pictures" / "crossing.webp"
@@ -42,7 +42,7 @@ TITLES = ("thermal image with tracks", "ground truth: visible fraction", "plan: 
 def frames(path: Path) -> Iterator[Image.Image]:
     """Run the scenario of a file, and draw every second tick."""
     scenario = load_scenario(path)
-    with World(scenario.world(SEED)) as world:
+    with SimulatedWorld(scenario.world(SEED)) as world:
         first, last = (round(time_s * world.config.control_hz) for time_s in (FROM_S, UNTIL_S))
         tracker = make_tracker(DEFAULT_TRACKER, SEED)
         for tick in islice(closed_loop(world, tracker, Stand(), last), first, None, EVERY):

@@ -11,7 +11,7 @@ from docs.generate.pictures.paper import panels, show
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.cameras.sensors import Image
 from peopleboy.sim.shapes.materials import Detail
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 
 SCALE = {"cmap": "gray", "vmin": 18.0, "vmax": 34.0}
 WINDOW = slice(230, 470), slice(150, 420)  # rows and columns of 640 x 480
@@ -45,7 +45,7 @@ def _images(scenario: str, time_s: float, detail: Detail) -> dict[str, Image]:
         robot=replace(config.robot, cameras=cameras),
         place=replace(config.place, fixtures=fixtures),
     )
-    with World(config) as world:
+    with SimulatedWorld(config) as world:
         for _ in range(round(time_s * config.control_hz)):
             world.step(0.0, 0.0)
         return dict(world.observe().images)

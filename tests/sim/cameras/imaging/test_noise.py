@@ -13,7 +13,7 @@ from peopleboy.sim.cameras.imaging.noise import PIXEL_SHARE, SMOOTH_SHARE, Drift
 from peopleboy.sim.cameras.kinds import THERMAL_PRESETS
 from peopleboy.sim.cameras.thermal import make_detector
 from peopleboy.sim.geometry.pinhole import Pinhole
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 from tests.helpers.worlds.small_worlds import SMALL, config, person, robot
 
@@ -75,7 +75,7 @@ def seen_by(thermal: ThermalConfig) -> WorldConfig:
 def shots(thermal: ThermalConfig, asked: set[int], count: int = 30) -> dict[int, tuple[bytes, bytes]]:
     """What a turning robot's camera gives at the instants at which it is asked."""
     found = {}
-    with World(seen_by(thermal)) as world:
+    with SimulatedWorld(seen_by(thermal)) as world:
         for k in range(count):
             images = world.observe().images
             if k in asked:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from peopleboy.sim.truth.truth import Box
-from peopleboy.sim.world import World
+from peopleboy.sim.world import SimulatedWorld
 from peopleboy.sim.world_config import WorldConfig
 from tests.helpers.worlds.small_worlds import config, person
 
@@ -19,7 +19,7 @@ FULL: WorldConfig = replace(PLAIN, detail="full")
 def play(settings: WorldConfig) -> list[tuple[dict[str, np.ndarray], np.ndarray, tuple[Box | None, ...]]]:
     """Images, each pixel's person, and boxes of four instants."""
     found = []
-    with World(settings) as world:
+    with SimulatedWorld(settings) as world:
         for _ in range(4):
             world.step(0.0, 0.0)
             images = {name: image.copy() for name, image in dict(world.observe().images).items()}
