@@ -108,7 +108,7 @@ LIMITS: Final[Mapping[str, tuple[float, float]]] = {
 
 warmer_k [K] is added to the temperatures of the place and of everything in it; light is a factor on the
 light, and noise a factor on the noise of all cameras; people is the number of people, the first ones of the
-scenario, so that fewer people occlude each other; clothes, 1 or True, samples everybody's clothes anew; pace
+scenario, so that fewer people occlude each other; clothes, 1 or True, samples all clothes anew; pace
 is a factor on all walking speeds, which stay within 0.1..2.5 m/s; facing, 1 or True, makes the robot
 initially face the point where the first person enters.
 

@@ -137,7 +137,7 @@ def why_lost(now: Track, was: Track, width_px: int, heir: int | None = None) -> 
         by = "" if was.occluder is None else f" by track {was.occluder}"
         return f"hidden{by} for too long to know where"
     if was.status is Status.UNKNOWN:
-        return "unknown, as its tracker does not tell"
+        return "unknown, because its tracker gives no reason"
     return f"not found any more, confidence {now.confidence:.2f}"
 
 

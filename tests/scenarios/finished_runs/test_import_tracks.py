@@ -72,7 +72,7 @@ def test_the_tracks_are_theirs_and_what_they_do_not_tell_is_unknown(driven: Path
     assert metrics["counts"]["candidates"] == 20
     lost = [line for line in open_whole_runs([adopted])[0].events if line.kind == "lost"]
     assert [(line.frame, line.who) for line in lost] == [(21, "track 7")]
-    assert "does not tell" in lost[0].why
+    assert "gives no reason" in lost[0].why
 
 
 @pytest.mark.slow
