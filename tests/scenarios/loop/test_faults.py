@@ -69,10 +69,10 @@ def test_the_robot_brakes_at_once_without_images_or_tracker_and_rests(finished):
 def test_deaf_sonars_stop_the_robot_and_the_reason_is_in_the_log(finished):
     kind, robot, events, _ = finished
     if kind != "sonar_maximum":
-        pytest.skip("the sonars hear")
+        pytest.skip("the sonars work")
     # Three readings are looked at together, lest a drop-out stop the robot.
     assert np.abs(np.array(robot["linear_m_s"])[np.array(robot["time_s"]) > FROM_S + 0.6]).max() < 0.02
-    assert any("hear" in event.get("why", "") for event in events)
+    assert any("sonars have failed" in event.get("why", "") for event in events)
 
 
 def test_a_jumping_odometry_does_not_end_the_following(finished):
