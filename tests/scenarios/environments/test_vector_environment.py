@@ -207,14 +207,14 @@ def test_what_does_not_fit_many_worlds_is_refused() -> None:
         PeopleBoyVectorEnv(2, threads=0)
     with pytest.raises(BadInput, match="threads 'a'"):
         PeopleBoyVectorEnv(2, threads="a")  # type: ignore[arg-type]
-    with pytest.raises(BadInput, match="autoreset_mode: gymnasium's own"):
+    with pytest.raises(BadInput, match="autoreset_mode: only gymnasium's own"):
         PeopleBoyVectorEnv(2, autoreset_mode=gymnasium.vector.AutoresetMode.SAME_STEP)
     with pytest.raises(BadInput, match="render_mode"):
         PeopleBoyVectorEnv(2, render_mode="rgb_array")
     many = PeopleBoyVectorEnv(2, observation="truth", physics="kinematic")
     with pytest.raises(BadInput, match="no episode"):
         many.step(np.zeros((2, 2), np.float32))
-    with pytest.raises(BadInput, match="one each"):
+    with pytest.raises(BadInput, match="one per world"):
         many.reset(seed=[1])
     with pytest.raises(BadInput, match=r"\(2, 2\)"):
         many.step(np.zeros(2, np.float32))
