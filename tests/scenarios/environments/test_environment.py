@@ -308,14 +308,13 @@ def test_the_picture_shows_both_images_and_the_plan(scene: Path) -> None:
 
 @pytest.mark.pages
 def test_the_code_in_the_readme_is_short_and_works_as_pasted(tmp_path: Path) -> None:
-    section = README.read_text(encoding="utf-8").split("## Try your own controller")[1].split("\n## ")[0]
-    code = re.search(r"```python\n(.*?)```", section, re.DOTALL)[1]
+    (code,) = re.findall(r"```python\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
     assert len(code.splitlines()) <= 12
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=300
+        [sys.executable, "-W", "error", "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=900
     )
     assert done.returncode == 0, done.stderr
-    assert float(done.stdout.split()[0]) > 10.0
+    assert float(re.search(r"'followed': ([\d.]+)", done.stdout)[1]) > 0.9
 
 
 def test_stable_baselines_own_check_finds_nothing(scene: Path) -> None:
