@@ -1,5 +1,6 @@
 """Safety guard: validates and limits every command before it reaches the robot."""
 
+import math
 from collections import deque
 from dataclasses import dataclass, replace
 
@@ -7,7 +8,7 @@ import numpy as np
 
 from peopleboy.behaviours.behaviour import EMERGENCY_STOP, Behaviour, Command
 from peopleboy.behaviours.percept import Percept, Points
-from peopleboy.behaviours.safety_limits import SafetyConfig, limit
+from peopleboy.behaviours.safety_limits import SafetyConfig, limit, safe_speed
 from peopleboy.behaviours.sonar_echoes import (
     BESIDE_RAD,
     EchoMemory,
@@ -27,41 +28,65 @@ class SonarFailureConfig:
         sure_m: [m] an obstacle nearer than this cannot leave the range of all sonars between two frames.
         sure_height: [image heights] a person of at least this height is in range: 3.1 m for 1.75 m.
         ahead: [half image widths] greatest distance of that person from the middle.
+        moving_m_s: [m/s] a robot that drives faster cannot read the same ranges twice.
     """
 
     sure_m: float = 3.5
     sure_height: float = 0.7
     ahead: float = 0.3
+    moving_m_s: float = 0.05
 
 
 class SonarFailure:
     """Detector of a failure of all sonars.
 
     A ring without echoes reports its full range for all sonars. That is normal in a large hall, but not
-    directly after a near echo, nor with a person in front.
+    directly after a near echo, nor with a person in front, nor for longer than the robot's motion explains:
+    the last echoes prove the floor free up to the nearest of them, and the robot can drive so far only
+    before another one is due. A ring that repeats its readings while the robot moves is stuck, because
+    readings have noise.
 
     Attributes:
         has_heard: whether there has been an echo. Before the first echo, a failed ring cannot be
             distinguished from one in the middle of a hall.
+        free_m: [m] radius about the robot's origin within which the last echoes prove the floor free; inf
+            while there are echoes.
     """
 
     def __init__(self, config: SonarFailureConfig | None = None) -> None:
         self._config = SonarFailureConfig() if config is None else config
         self._nearest_m = np.inf
-        self._is_deaf = False
+        self._driven_m = 0.0
+        self._is_silent = self._is_deaf = False
+        self._time_s = np.nan
+        self._raw: Points = np.zeros(0)
         self.has_heard = False
+        self.free_m = np.inf
 
-    def listen(self, percept: Percept) -> bool:
-        """Return whether the sonars have failed; this lasts until one of them has an echo."""
-        ranges = percept.sonar_m
+    def listen(self, percept: Percept, raw: Points) -> str:
+        """Return why the sonars have failed; empty if they work. No echo is a failure until there is one.
+
+        Args:
+            percept: percept with ranges without drop-outs.
+            raw: (N,) [m] ranges as they were read.
+        """
+        ranges, step_s = percept.sonar_m, percept.time_s - self._time_s
+        is_repeated = bool(np.any(raw != raw[:1])) and np.array_equal(raw, self._raw)
+        self._time_s, self._raw = percept.time_s, raw
         if len(ranges) < 2 or not np.all(ranges == ranges[0]):
-            self._nearest_m, self._is_deaf = float(np.min(ranges, initial=np.inf)), False
+            self._nearest_m, self.free_m, self._driven_m = float(np.min(ranges, initial=np.inf)), np.inf, 0.0
+            self._is_silent = self._is_deaf = False
             self.has_heard = True
-            return False
-        misses_echo = self._nearest_m < min(self._config.sure_m, float(ranges[0]))
+            is_stuck = is_repeated and abs(percept.linear_m_s) > self._config.moving_m_s
+            return "the sonars have failed: they repeat their readings" if is_stuck else ""
+        reach_m = float(ranges[0])
+        misses_echo = not self._is_silent and self._nearest_m < min(self._config.sure_m, reach_m)
+        self._is_silent = True
         self._is_deaf = self._is_deaf or misses_echo or self._is_person_near(percept)
-        self._nearest_m = np.inf
-        return self._is_deaf
+        if step_s > 0.0:
+            self._driven_m += abs(percept.linear_m_s) * step_s
+        self.free_m = min(self._nearest_m, reach_m) - self._driven_m
+        return "the sonars have failed: no echoes" if self._is_deaf else ""
 
     def _is_person_near(self, percept: Percept) -> bool:
         """Return whether a person in front is so near that there must be an echo."""
@@ -81,7 +106,9 @@ class Guarded:
     """Wrapper that passes sonar ranges without drop-outs to a behaviour, and limits its commands by them.
 
     The robot stops at once when images are missing, people cannot be detected in them, or the sonars have
-    failed; the behaviour is not called then, and resumes afterwards. Until the first echo, the robot creeps.
+    failed; the behaviour is not called then, and resumes afterwards. Without echoes the robot drives only as
+    fast and as far as it can stop within the floor that the last echoes proved free. Until the first echo, it
+    creeps.
 
     Attributes:
         is_limited: whether the last command was changed.
@@ -120,22 +147,32 @@ class Guarded:
             return EMERGENCY_STOP
         self._recent.append(percept.sonar_m)
         steady = replace(percept, sonar_m=fill_drop_outs(list(self._recent)))
-        if self._deafness.listen(steady):
-            self._fault, self.is_limited = "the sonars have failed: no echoes", True
+        self._fault = self._deafness.listen(steady, percept.sonar_m)
+        room_m = self._room_m()
+        if not self._fault and room_m <= self._config.last_m:
+            self._fault = "the sonars have failed: no echoes over as far as the last ones proved free"
+        if self._fault:
+            self.is_limited = True
             return EMERGENCY_STOP
         wanted = self._behaviour.command(steady)
         self._memory = remember(self._memory, steady, EchoMemoryConfig())
         self._passing = remember(self._passing, steady, PASSING, BESIDE_RAD)
-        safe = limit(wanted, steady, self._limits(), self._memory.points, self._passing.points)
+        safe = limit(wanted, steady, self._limits(room_m), self._memory.points, self._passing.points)
         self.is_limited = safe != wanted
         return safe
 
-    def _limits(self) -> SafetyConfig:
-        """Creep until the first echo: the sonars may have failed."""
+    def _room_m(self) -> float:
+        """Return how far [m] the robot can drive on floor that the last echoes proved free."""
+        hull_m = max(self._config.front_m, self._config.rear_m)
+        return self._deafness.free_m - hull_m - self._config.margin_m
+
+    def _limits(self, room_m: float) -> SafetyConfig:
+        """Bound the speed so that the robot stops within room_m [m]; creep before the first echo."""
         config = self._config
-        if self._deafness.has_heard:
-            return config
-        return replace(config, max_linear_m_s=min(config.max_linear_m_s, config.unproven_m_s))
+        highest = safe_speed(room_m, config) if math.isfinite(room_m) else config.max_linear_m_s
+        if not self._deafness.has_heard:
+            highest = min(highest, config.unproven_m_s)
+        return replace(config, max_linear_m_s=highest)
 
     def _blindness(self, percept: Percept) -> str:
         """Return why the images are unusable; empty if they are usable."""

@@ -25,7 +25,8 @@ class SafetyConfig:
         max_linear_m_s: [m/s] forward speed limit, also backwards.
         max_angular_rad_s: [rad/s] turn rate limit.
         unproven_m_s: [m/s] forward speed limit until the first echo: slow enough for a harmless collision
-            with a wall, and fast enough to leave a hall without echoes.
+            with a wall.
+        last_m: [m] a robot without echoes stops when it has no more than this left to drive.
         braking_m_s2: [m/s2] assumed deceleration; lower than the drive's 0.6, as a reserve.
         reaction_s: [s] from an echo until the brakes act: a frame of latency, and a drive that still
             accelerates.
@@ -47,7 +48,8 @@ class SafetyConfig:
 
     max_linear_m_s: float = 0.8
     max_angular_rad_s: float = math.radians(150.0)
-    unproven_m_s: float = 0.2
+    unproven_m_s: float = 0.05
+    last_m: float = 0.1
     braking_m_s2: float = 0.5
     reaction_s: float = 0.25
     margin_m: float = 0.45

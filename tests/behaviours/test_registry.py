@@ -101,6 +101,34 @@ def test_a_robot_sent_into_a_wall_stops_before_it(speed, slant, aside, seed):
 
 def test_until_the_sonars_have_heard_anything_the_robot_creeps():
     behaviour = make_behaviour("scripted", script=((0.0, Command(linear_m_s=0.8, angular_rad_s=0.0)),))
-    assert behaviour.command(free()).linear_m_s == pytest.approx(0.2)
+    assert behaviour.command(free()).linear_m_s == pytest.approx(0.05)
     assert behaviour.command(free(i12=4.0)).linear_m_s == pytest.approx(0.8)
     assert behaviour.command(at(2.0, free())).linear_m_s == pytest.approx(0.8)
+
+
+def ahead_at(time_s, percept, speed=0.8):
+    return dataclasses.replace(at(time_s, percept), linear_m_s=speed)
+
+
+def test_a_robot_without_echoes_slows_down_and_stops_within_what_the_last_echoes_proved_free():
+    behaviour = make_behaviour("scripted", script=((0.0, Command(linear_m_s=0.8, angular_rad_s=0.0)),))
+    behaviour.command(at(0.0, free(i12=4.0)))
+    speed, driven, k = 0.8, 0.0, 0
+    while behaviour.mode != "stop" and k < 300:
+        k += 1
+        speed = behaviour.command(ahead_at(k / 15.0, free(), speed)).linear_m_s
+        driven += speed / 15.0
+    assert 2.5 < driven < 4.0 - 0.32
+    assert "sonars have failed" in behaviour.reason
+    heard = behaviour.command(at((k + 1) / 15.0, free(i12=4.0)))
+    assert heard.linear_m_s == pytest.approx(0.8)
+    assert behaviour.mode != "stop"
+
+
+def test_sonars_that_repeat_their_readings_while_the_robot_drives_are_stuck():
+    behaviour = make_behaviour("scripted", script=((0.0, Command(linear_m_s=0.8, angular_rad_s=0.0)),))
+    behaviour.command(ahead_at(0.0, free(i12=4.0), 0.0))
+    assert behaviour.command(ahead_at(0.1, free(i12=4.0), 0.0)).linear_m_s > 0.0
+    assert behaviour.command(ahead_at(0.2, free(i12=4.0))).is_emergency
+    assert "repeat" in behaviour.reason
+    assert behaviour.command(ahead_at(0.3, free(i12=3.9))).linear_m_s > 0.0
