@@ -121,7 +121,7 @@ def make_behaviour(
         return Guarded(checked_behaviour(own, f"behaviour {name!r}"), safety)
     if name not in BEHAVIOURS:
         known = ", ".join(sorted(BEHAVIOURS))
-        raise BadInput(f"behaviour: unknown name '{name}'; choose from {known}, or your own as module:Class")
+        raise BadInput(f"unknown behaviour {name!r}; choose from {known}, or your own as module:Class")
     if is_own(name):
         made = guarded("behaviour", name, _CALL, BEHAVIOURS[name])()
         return Guarded(checked_behaviour(made, f"behaviour {name!r}"), safety)

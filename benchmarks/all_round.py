@@ -22,7 +22,7 @@ from benchmarks.timing import spent_ms, timed_ms
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.scenarios.running.blind_drive import blind_drive
-from peopleboy.scenarios.running.engine.task import Tell, chosen_workers
+from peopleboy.scenarios.running.engine.task import ReportProgress, chosen_workers
 from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.truth.truth import PersonTruth
 from peopleboy.sim.world import SimulatedWorld
@@ -128,7 +128,7 @@ class Play:
         """Name of the run."""
         return f"{self.scenario} {self.tracker} {self.seed}"
 
-    def __call__(self, tell: Tell) -> Played:  # noqa: ARG002
+    def __call__(self, report_progress: ReportProgress) -> Played:  # noqa: ARG002
         """Execute the run."""
         tracker = _Timed(_make(self.tracker, self.seed))
         scenario = load_scenario(self.scenario).mounting(tracker.cameras)

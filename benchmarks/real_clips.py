@@ -14,7 +14,7 @@ from benchmarks.timing import timed_ms
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.views import ThermalViews, open_views
-from peopleboy.scenarios.running.engine.task import Tell
+from peopleboy.scenarios.running.engine.task import ReportProgress
 from peopleboy.tracker.boxes import Floats
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_truth
@@ -65,7 +65,7 @@ def open_clips(home: Path, only: Sequence[str] = (), frames: int | None = None) 
     missing = [name for name in only if name not in there]
     if missing or not there:
         found = ", ".join(sorted(there)) or "none"
-        raise BadInput(f"{home}: no clip {' '.join(missing)} with images and {TRUTH}; there are: {found}")
+        raise BadInput(f"{home}: no clip {' '.join(missing)} with images and {TRUTH}; choose from {found}")
     names = sorted(only or there, key=lambda name: (name not in CHOSEN_BY, name))
     return [_open(there[name], frames) for name in names]
 
@@ -128,7 +128,7 @@ class ClipTask:
         """Number of frames."""
         return self.clip.frames
 
-    def __call__(self, tell: Tell) -> ClipResult:
+    def __call__(self, report_progress: ReportProgress) -> ClipResult:
         """Run the tracker from the first frame on.
 
         Raises:
@@ -145,7 +145,7 @@ class ClipTask:
             frame_ms, (boxes, ids) = timed_ms(partial(contestant.step, frame))
             times_ms.append(frame_ms)
             rows += [(number, identity, box) for box, identity in zip(boxes, ids, strict=True)]
-            tell(number)
+            report_progress(number)
         return ClipResult(score_clip(self.clip, rows), float(np.median(times_ms)) / 1000.0)
 
 

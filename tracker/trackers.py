@@ -329,7 +329,7 @@ def make_tracker(name: str, seed: int = 0) -> Tracker:
         return _checked(name, load_own("tracker", name, _CALL)(rng))
     if name not in TRACKERS:
         known = ", ".join(TRACKERS)
-        raise BadInput(f"unknown tracker {name!r}; there are: {known}, and your own as module:Class")
+        raise BadInput(f"unknown tracker {name!r}; choose from {known}, or your own as module:Class")
     if is_own(name):
         return _checked(name, guarded("tracker", name, _CALL, TRACKERS[name])(rng))
     shipped: Tracker = TRACKERS[name](rng)
@@ -341,7 +341,7 @@ _CALL: Final = "with a numpy.random.Generator"
 
 def _checked(name: str, tracker: object) -> Tracker:
     if not isinstance(tracker, Tracker):
-        raise BadInput(f"tracker {name!r}: is no tracker; give it `cameras` and `update(frame)`")
+        raise BadInput(f"tracker {name!r}: not a tracker; it needs `cameras` and `update(frame)`")
     cameras = tracker.cameras
     if not isinstance(cameras, tuple) or not all(isinstance(camera, str) for camera in cameras):
         raise BadInput(

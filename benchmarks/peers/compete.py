@@ -14,7 +14,7 @@ from benchmarks.peers.contestants import JOINT, PEERS, RATE_HZ, make_contestant
 from benchmarks.timing import timed_ms
 from peopleboy import tracker
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.scenarios.running.engine.task import Tell
+from peopleboy.scenarios.running.engine.task import ReportProgress
 from peopleboy.scenarios.running.frame_cache import Film, film, frames_of
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks, write_tracks
@@ -57,7 +57,7 @@ class SequenceTask:
         """Scenario and seed."""
         return f"{self.scenario}-{self.seed}"
 
-    def __call__(self, tell: Tell) -> list[Result]:  # noqa: ARG002
+    def __call__(self, report_progress: ReportProgress) -> list[Result]:  # noqa: ARG002
         """Score the trackers one after another."""
         return [compete(name, self.scenario, self.seed, self.folder) for name in self.names]
 

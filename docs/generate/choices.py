@@ -36,7 +36,7 @@ def walls() -> str:
 def garments() -> str:
     """List all garments."""
     kinds = {"top": TOPS, "bottom": BOTTOMS, "shoes": SHOES, "hair": HAIR}
-    head = ("key", "garment", "surface", "colour", "seen in heat")
+    head = ("key", "garment", "surface", "colour", "thermal pattern")
     return table(
         head, [_garment(key, name, worn) for key, kind in kinds.items() for name, worn in kind.items()]
     )

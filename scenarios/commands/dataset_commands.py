@@ -53,8 +53,8 @@ def render(
 
     A data set contains scenarios with many seeds each, or, with --random-worlds, one random world per seed,
     with its own place, objects, temperatures, people and cameras. With 7 seeds or more, every split has runs.
-    A killed call resumes when you run the command again. If you add --seeds later, the data set grows and all
-    earlier runs stay in their splits.
+    An interrupted call resumes when you run the command again. If you add --seeds later, the data set grows
+    and all earlier runs stay in their splits.
     """
     from peopleboy.scenarios.export.make_dataset import render_set
 

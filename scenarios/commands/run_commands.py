@@ -61,7 +61,7 @@ def run(
     """Run a scenario: ground truth, tracks, scores, recording.
 
     SCENARIO is a name from `peopleboy list`, the path of a YAML file, or a suite, such as dataset1. Runs of a
-    suite have their own seeds and no recordings; a killed suite resumes when you run the command again.
+    suite have their own seeds and no recordings; an interrupted suite resumes when you run the command again.
     --workers and --scheduler are for suites only.
     """
     from peopleboy.scenarios.files.library import suite_names
@@ -211,9 +211,9 @@ def sweep(
 ) -> None:
     """Run and score many seeds of a scenario, or random worlds.
 
-    No recordings are written. A killed sweep resumes when you run the command again. In random worlds many
-    people are occluded, so scores are printed for all people, and for people with a visible fraction above
-    30 %.
+    No recordings are written. An interrupted sweep resumes when you run the command again. In random worlds
+    many people are occluded, so scores are printed for all people, and for people with a visible fraction
+    above 30 %.
     """
     from peopleboy.scenarios.running.many_runs import sweep as run_seeds
     from peopleboy.scenarios.running.many_runs import sweep_worlds
@@ -272,7 +272,7 @@ def compare(
     """Compare controllers on the same scenarios.
 
     Prints metrics with confidence intervals, and writes tables and plots. SCENARIO is single_follow by
-    default. A killed comparison resumes when you run the command again.
+    default. An interrupted comparison resumes when you run the command again.
     """
     from peopleboy.scenarios.files.load import load_scenario
     from peopleboy.scenarios.running.compare_controllers import (

@@ -65,7 +65,8 @@ def reproduce(
     """Reproduce tables and figures of the publications.
 
     Prints results next to the published values, and writes one page about them. ID is an entry of `--list`,
-    or its number: 4.9 means figures 4.9a and 4.9b. A killed call resumes when you run the command again.
+    or its number: 4.9 means figures 4.9a and 4.9b. An interrupted call resumes when you run the command
+    again.
     """
     from peopleboy.studies.reproductions.catalogue import choose
     from peopleboy.studies.reproductions.runner import (
@@ -119,7 +120,7 @@ def tune(
 
     Each parameter is varied as in sections 4.4 to 7.5 of the thesis, with the tracker of its chapter, and
     scored by area accuracy. Seeds from 100 on are used for tuning only, never for reported scores. Writes a
-    curve for each parameter and a page. A killed call resumes when you run the command again.
+    curve for each parameter and a page. An interrupted call resumes when you run the command again.
     """
     from peopleboy.studies.reproductions.tune import chosen_parameters, print_tuned
     from peopleboy.studies.reproductions.tune import tune as tune_all
@@ -161,7 +162,7 @@ class _Models(click.Group):
 def train() -> None:
     """Train a model of the trackers on rendered sequences.
 
-    Writes samples and weights to a folder; a killed call resumes when you run the command again. Needs
+    Writes samples and weights to a folder; an interrupted call resumes when you run the command again. Needs
     pip install 'peopleboy[studies]'.
     """
 

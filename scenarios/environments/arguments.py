@@ -34,7 +34,7 @@ def check_word(name: str, word: str | None, known: Sequence[str | None]) -> None
         BadInput: the word is not in `known`.
     """
     if word not in known:
-        raise BadInput(f"{name}: unknown value {word!r}; choose from {', '.join(map(str, known))}")
+        raise BadInput(f"unknown {name} {word!r}; choose from {', '.join(map(str, known))}")
 
 
 def check_size(size: tuple[int, int]) -> None:

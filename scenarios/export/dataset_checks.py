@@ -55,7 +55,7 @@ def check_set(folder: Path, runs: Sequence[Path], first: Scenario, options: RunO
     images = [_each(of_images, runs, _check_images)] if options.frames else []
     return [
         *images,
-        _each("of everybody, what is visible and what is hidden sum to one", runs, _check_shares),
+        _each("the visible and hidden fractions of each person sum to one", runs, _check_shares),
         _each(
             "visible boxes lie inside whole boxes, to half a pixel, and inside the image", runs, _check_boxes
         ),

@@ -86,9 +86,9 @@ def tracks_text(shots: OneCamera) -> str:
 
 
 def gt_text(shots: OneCamera, boxes: BoxKind = BoxKind.TORSO) -> str:
-    """Return the truth in a camera's images, whomever our own scores leave out marked as a distractor.
+    """Return the truth in a camera's images, with people who do not count marked as distractors.
 
-    These are people nearer than 3 m or farther than 10 m, and those of whom nothing is visible.
+    These are people nearer than 3 m or farther than 10 m, and people who are not visible.
     """
     cells = _numbered(shots, _truth_lines(shots, boxes))
     return "".join(f"{','.join(_judged(each))}\n" for each in cells)

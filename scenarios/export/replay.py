@@ -191,13 +191,11 @@ def one_camera(run: FinishedRun, name: str) -> OneCamera:
     """Find a camera of a run.
 
     Raises:
-        BadInput: there is none of that name.
+        BadInput: the camera is unknown.
     """
     cameras = run.robot.cameras
     if name not in cameras:
-        raise BadInput(
-            f"{run.folder}: there is no camera {name!r}; give --camera one of {', '.join(cameras)}"
-        )
+        raise BadInput(f"{run.folder}: unknown camera {name!r}; choose from {', '.join(cameras)}")
     return OneCamera(run, name, run.rate_hz // (cameras[name].rate_hz or run.rate_hz))
 
 
@@ -205,7 +203,7 @@ def with_people(run: FinishedRun, name: str) -> OneCamera:
     """Find a camera of a run in whose images boxes make sense.
 
     Raises:
-        BadInput: there is none of that name.
+        BadInput: the camera is unknown.
     """
     found = one_camera(run, name)
     if not kind_of(run.robot.cameras[name]).has_boxes:

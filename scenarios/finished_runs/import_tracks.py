@@ -20,7 +20,7 @@ from peopleboy.scenarios.run_folder.finished_run import FinishedRun, open_whole_
 from peopleboy.scenarios.run_folder.folder import RunFolder
 from peopleboy.scenarios.run_folder.image_files import about_gains
 from peopleboy.scenarios.run_folder.run_files import check_end
-from peopleboy.scenarios.running.run import Watchers
+from peopleboy.scenarios.running.run import RunObservers
 from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.scenarios.scores.run_scores import RunScores, score_run
 from peopleboy.settings import meaning_of
@@ -158,16 +158,16 @@ def import_tracks(what: TrackImport, report: Callable[[int, int], None]) -> RunS
 
             path = part / "recording.rrd"
             recorder = stack.enter_context(Recorder(path, run.world, title=title, watched=(what.camera,)))
-        watchers = Watchers(run.world, title, recorder, faults=run.scenario.spec.faults)
+        observers = RunObservers(run.world, title, recorder, faults=run.scenario.spec.faults)
         for played in replay(run):
             why, theirs = whys.get(played.frame, ""), tracks.get(played.frame, ())
             tick = replace(played, tracks=theirs, explanation=None, reason=why)
-            events = watchers.update(tick)
+            events = observers.update(tick)
             folder.write(tick, [event.to_json() for event in events])
             report(tick.frame, run.frames)
         folder.flush()
         scores = score_run(part, run.frames, following=None, boxes=what.boxes)
-        watchers.save(part)
+        observers.save(part)
         folder.complete(scores.to_json())
     return scores
 

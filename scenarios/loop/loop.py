@@ -124,7 +124,7 @@ class Perception:
         new.
         """
         newest = self._newest
-        tell = partial(
+        percept_of = partial(
             make_percept,
             observation,
             self._calibrations[THERMAL],
@@ -132,7 +132,7 @@ class Perception:
         )
         images = {name: observation.images[name] for name in self._watched if name in observation.images}
         if newest is not None and _are_same(self._images, images):
-            return tell(self.tracks, image_age_s=observation.time_s - newest.time_s)
+            return percept_of(self.tracks, image_age_s=observation.time_s - newest.time_s)
         before = None if newest is None else newest.odometry
         self._newest, self._images = observation, images
         try:
@@ -141,8 +141,8 @@ class Perception:
             )
         except TrackerDown as error:  # the robot must keep driving safely without its tracker
             self.tracks = ()
-            return tell((), fault=f"the tracker failed: {error}")
-        return tell(self.tracks)
+            return percept_of((), fault=f"the tracker failed: {error}")
+        return percept_of(self.tracks)
 
 
 def closed_loop(

@@ -128,17 +128,17 @@ def why_lost(now: Track, was: Track, width_px: int, heir: int | None = None) -> 
         heir: id of a new track in its place; None for none.
     """
     if heir is not None:
-        return f"track {heir} is there instead"
+        return f"replaced by track {heir}"
     left, _, width, _ = now.boxes.get(THERMAL, _INSIDE)
     for out_px, side in ((-left, "left"), (left + width - width_px, "right")):
         if out_px > OUT_SHARE * width:
             return f"left the image on the {side}"
     if was.status is Status.TOTALLY_OCCLUDED:
         by = "" if was.occluder is None else f" by track {was.occluder}"
-        return f"hidden{by} for too long to know where"
+        return f"occluded{by} for too long"
     if was.status is Status.UNKNOWN:
         return "unknown, because its tracker gives no reason"
-    return f"not found any more, confidence {now.confidence:.2f}"
+    return f"not detected any more, confidence {now.confidence:.2f}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -91,7 +91,7 @@ _HEAD_BYTES = 20_000  # within which the title stands
 
 
 def check_place(out: Path) -> None:
-    """Refuse a file that is no place for a report.
+    """Refuse a file that a report cannot be written to.
 
     Raises:
         BadInput: it is a folder, does not end in .html or .htm, or holds something else than a report.
@@ -99,7 +99,7 @@ def check_place(out: Path) -> None:
     with writing_to(out):
         is_other = out.is_dir() or (out.exists() and not _is_report(out))
     is_page = out.suffix.lower() in _ENDINGS and not out.is_dir()
-    what = "is a folder" if out.is_dir() else "is no report and will not be replaced" if is_other else ""
+    what = "is a folder" if out.is_dir() else "is not a report and will not be replaced" if is_other else ""
     if what or not is_page:
         advice = "give another --out" if is_page else "give --out a file that ends in .html"
         raise BadInput(f"{out}: {what or 'a report is a page'}; {advice}")

@@ -69,7 +69,7 @@ def losses(found: RunFindings) -> PageTable:
         Head("number", "n", "number"),
         Head("on", "row", "on"),
         Head("what happened"),
-        Head("what the tracker believed", label="tracker believed:"),
+        Head("tracker's explanation", label="tracker's explanation:"),
         Head("afterwards"),
     )
     rows = [

@@ -183,7 +183,7 @@ def _notes(columns: Sequence[Column]) -> list[str]:
 
 
 def _unknown(columns: Sequence[Column]) -> list[str]:
-    """Describe what tracks that were made elsewhere do not tell, a line a tracker."""
+    """Return one line per tracker with the unknown properties of its imported tracks."""
     adopted = {f.run.about.tracker: f.run.about.adopted for column in columns for f in column.runs}
     return [
         f"the tracks of {name} were made elsewhere: their {listed(imported.unknown)} are unknown"

@@ -26,7 +26,7 @@ _FILES = (
 )  # fmt: skip
 
 
-class Adopted(BaseModel):
+class ImportedTracks(BaseModel):
     """Entry of run.json about imported tracks."""
 
     model_config = ConfigDict(strict=True, frozen=True)
@@ -51,7 +51,7 @@ class About(BaseModel):
     images: bool = False
     boxes: Literal["torso", "whole"] = "torso"
     behaviour: str | None = None
-    adopted: Adopted | None = None
+    adopted: ImportedTracks | None = None
 
 
 @dataclass(frozen=True, eq=False)

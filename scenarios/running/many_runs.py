@@ -14,7 +14,7 @@ from peopleboy.scenarios.files.suite import load_suite, runs_of
 from peopleboy.scenarios.loop.tracker_by_name import tracker_cameras
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
 from peopleboy.scenarios.run_folder.atomic_output import check_out
-from peopleboy.scenarios.running.engine.task import Task, Tell, Workers
+from peopleboy.scenarios.running.engine.task import ReportProgress, Task, Workers
 from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.scenarios.running.frame_cache import Film, film
 from peopleboy.scenarios.running.run import is_finished, run, tracker_name
@@ -41,11 +41,11 @@ class RunTask:
         """Frames."""
         return round(self.scenario.duration_s * _RATE_HZ)
 
-    def __call__(self, tell: Tell) -> None:
+    def __call__(self, report_progress: ReportProgress) -> None:
         """Run the scenario unless the run is complete; an unfinished run is replaced."""
         if not is_finished(self.scenario, self.options):
             options = replace(self.options, overwrite=True)
-            run(self.scenario, options, lambda tick, _frames: tell(tick.frame))
+            run(self.scenario, options, lambda tick, _frames: report_progress(tick.frame))
 
 
 _LOG = logging.getLogger(__name__)

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 _LOG = logging.getLogger(__name__)
 
 
-class Watchers:
+class RunObservers:
     """Pass each tick to the event log, the metrics, the contact sheet and, if there is one, the recorder.
 
     Args:
@@ -179,7 +179,7 @@ def run(
                 )
             )
         faults, is_secret = scenario.spec.faults, scenario.drive is not None
-        watchers = Watchers(config, title, recorder, options.boxes, faults=faults, is_secret=is_secret)
+        observers = RunObservers(config, title, recorder, options.boxes, faults=faults, is_secret=is_secret)
         frames = round(scenario.duration_s * config.control_hz)
         _LOG.info("%s: the world is built; running %d frames", scenario.name, frames)
         began_s = time.monotonic()
@@ -187,13 +187,13 @@ def run(
         checked = CheckedTracker(tracker, f"tracker {name!r}", config.robot.cameras)
         eyes = FaultyTracker(checked, faults)
         for tick in closed_loop(stage, eyes, scenario.make_behaviour(), frames):
-            events = watchers.update(tick)
+            events = observers.update(tick)
             folder.write(tick, [event.to_json() for event in events])
             report(tick, frames)
         folder.flush()
         took_s = time.monotonic() - began_s
         _LOG.info("%s: %.1f s, %.0f frames/s", scenario.name, took_s, frames / max(took_s, 1e-3))
-        drive, following, corridor, comfort = watchers.drive.record(), None, None, None
+        drive, following, corridor, comfort = observers.drive.record(), None, None, None
         if scenario.robot.behaviour in FOLLOWERS and config.people:
             task = following_task(config, scenario.follow_config().keep_height)
             following = score_following(drive, task)
@@ -202,7 +202,7 @@ def run(
         if scenario.robot.behaviour != "stand" and config.people:
             comfort = score_comfort(drive)
         scores = score_run(options.out, frames, following, corridor, comfort, options.boxes, name)
-        watchers.save(options.out)
+        observers.save(options.out)
         folder.complete(scores.to_json())
         _LOG.info("wrote %s", options.out)
     return scores

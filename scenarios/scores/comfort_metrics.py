@@ -45,7 +45,7 @@ class ComfortScore(ScoreRecord):
     personal_intrusions: float = metric("intrusions, 1.2 m", "", "entries into personal space")
     intimate_intrusions: float = metric("intrusions, 0.45 m", "", "entries into intimate space")
     min_time_to_collision_s: float = metric(
-        "time to collision", "s", "least, if both had gone on as they were"
+        "time to collision", "s", "minimum over the run, at constant velocities"
     )
     jerk_m_s3: float = metric("jerk", "m/s3", "forward jerk of the robot, root mean square")
     felt_jerk_m_s3: float = metric("jerk felt", "m/s3", "the same while a person is within 3.6 m")

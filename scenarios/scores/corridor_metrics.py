@@ -47,8 +47,8 @@ class CorridorScore(ScoreRecord):
     heading_error_rad: float = metric("heading error", "deg", "mean angle to the centre line")
     contacts: int = metric("contacts", "", "contacts that began in the run")
     mean_speed_m_s: float = metric("mean speed", "m/s", "distance driven divided by time")
-    way_m: float = metric("way", "m", "distance driven in the run")
-    legs: int = metric("legs", "", "straight pieces of corridor that the robot was on")
+    way_m: float = metric("distance driven", "m", "over the run")
+    legs: int = metric("legs", "", "straight corridor sections that the robot drove along")
 
 
 def score_corridor(run: DriveRecord, legs: Sequence[Leg]) -> CorridorScore:

@@ -79,10 +79,10 @@ def read_reference_boxes(folder: Path, by: BoxReference) -> tuple[TrueBoxes, Tra
         return true_boxes(text, table, by.boxes), read_tracks(folder / "tracks.txt")
     cameras, given = cameras_of(folder), folder / "tracks" / f"{by.camera}.txt"
     if by.camera not in cameras:
-        raise BadInput(f"{folder}: there is no camera {by.camera!r}; choose from {', '.join(cameras)}")
+        raise BadInput(f"{folder}: unknown camera {by.camera!r}; choose from {', '.join(cameras)}")
     for path in (text, given):
         if not path.is_file():
-            raise BadInput(f"{path}: there is no such file; no boxes were given in camera {by.camera!r}")
+            raise BadInput(f"{path}: no such file; the tracker returned no boxes in camera {by.camera!r}")
     around = around_px(cameras[by.camera].camera)
     return replace(true_boxes(text, table, by.boxes), around_px=around), read_tracks(given)
 

@@ -93,7 +93,7 @@ def find_clips(folders: Sequence[Path]) -> list[Clip]:
 
 def _homes(folder: Path) -> list[Path]:
     if not folder.is_dir():
-        raise BadInput(f"{folder}: there is no such folder")
+        raise BadInput(f"{folder}: no such folder")
     if _pictures_of(folder) is not None:
         return [folder]
     within = [path for path in sorted(folder.iterdir()) if path.is_dir() and _pictures_of(path) is not None]

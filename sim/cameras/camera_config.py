@@ -325,12 +325,8 @@ class DepthConfig(LightConfig):
             description="factor on the depth noise; 0 gives exact depth, with holes only beyond its range",
         ),
     ] = 1.0
-    nearest_m: Annotated[float, Field(ge=0.0, le=FARTHEST_M, description="least depth that it measures")] = (
-        0.5
-    )
-    farthest_m: Annotated[
-        float, Field(gt=0.0, le=FARTHEST_M, description="greatest depth that it measures")
-    ] = 10.0
+    nearest_m: Annotated[float, Field(ge=0.0, le=FARTHEST_M, description="minimum measured depth")] = 0.5
+    farthest_m: Annotated[float, Field(gt=0.0, le=FARTHEST_M, description="maximum measured depth")] = 10.0
     colour: Annotated[bool, Field(description="whether it also gives colour, registered with the depth")] = (
         True
     )

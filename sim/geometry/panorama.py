@@ -116,8 +116,8 @@ class Panorama:
         Mirror,
         ByName(MIRRORS),
         Field(
-            description="`default` sees from 8 to 55 degrees below the horizon, `narrow` from 8 to 35; or "
-            "the values of another"
+            description="mirror: `default` covers 8 to 55 degrees below the horizon, `narrow` 8 to 35; "
+            "or the geometry of another one"
         ),
     ] = field(default_factory=Mirror)
 

@@ -124,7 +124,7 @@ class Lead:
         BadInput: a value is out of range.
     """
 
-    follower: Annotated[Literal["robot"], Field(description="the one that follows")] = "robot"
+    follower: Annotated[Literal["robot"], Field(description="robot that follows")] = "robot"
     waits_beyond_m: Annotated[
         Meeting,
         Field(description="distance beyond which the person stops for the robot, turns to it and calls it"),
@@ -212,15 +212,16 @@ class WalkConfig:
             description="the points of the path, in order",
         ),
     ]
-    enter_s: Annotated[Seconds, Field(description="time at which they appear, at the first point")] = 0.0
+    enter_s: Annotated[Seconds, Field(description="time of appearance, at the first waypoint")] = 0.0
     leave_s: Annotated[
-        Seconds | None, Field(description="time at which they vanish; by default they stay at the last point")
+        Seconds | None,
+        Field(description="time of disappearance; by default people stay at the last waypoint"),
     ] = None
     yields: Annotated[
         bool,
         Field(
-            description="whether they give way to the robot and to each other; if not, they walk their path "
-            "exactly, and wait for a robot that is in their way"
+            description="whether people give way to the robot and to each other; if not, they walk their "
+            "path exactly, and wait for a robot that is in their way"
         ),
     ] = False
     group: Annotated[
@@ -232,7 +233,7 @@ class WalkConfig:
     ] = None
     reacts: Annotated[
         Reaction | None,
-        Field(description="how they react to the robot; by default they have no particular reaction"),
+        Field(description="reaction to the robot; none by default"),
     ] = None
 
     def __post_init__(self) -> None:
@@ -280,7 +281,7 @@ class PersonConfig(ActorConfig):
         1.75
     )
     sex: Annotated[Sex, Field(description="determines proportions and the default height")] = "male"
-    build: Annotated[Build, Field(description="how wide the body is for its height")] = "average"
+    build: Annotated[Build, Field(description="body width relative to height")] = "average"
     clothes: Annotated[Clothes, Field(description="clothes of the person")] = field(default_factory=Clothes)
 
     def __post_init__(self) -> None:

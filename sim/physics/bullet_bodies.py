@@ -67,8 +67,8 @@ class BulletBody:
         """
         for joint in joints:
             if joint not in self.joints:
-                known = ", ".join(self.joints) or "none"
-                raise BadInput(f"body {self.name!r} has no joint {joint!r}; it has: {known}")
+                known = f"choose from {', '.join(self.joints)}" if self.joints else "the body has no joints"
+                raise BadInput(f"body {self.name!r}: unknown joint {joint!r}; {known}")
         return [self.joints[joint] for joint in joints]
 
 

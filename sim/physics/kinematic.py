@@ -250,7 +250,7 @@ class Kinematic(Physics):
         for joint in joints:
             if joint not in rolling.joints:
                 known = ", ".join(rolling.joints)
-                raise BadInput(f"body {name!r} has no wheel on a joint {joint!r}; it has: {known}")
+                raise BadInput(f"body {name!r}: unknown wheel joint {joint!r}; choose from {known}")
         return rolling
 
 

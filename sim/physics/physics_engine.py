@@ -34,8 +34,8 @@ class BodiesByName(dict[str, B]):
     """
 
     def __missing__(self, name: str) -> B:
-        known = ", ".join(self) or "none"
-        raise BadInput(f"unknown body {name!r}; known bodies: {known}")
+        known = f"choose from {', '.join(self)}" if self else "the world has no bodies"
+        raise BadInput(f"unknown body {name!r}; {known}")
 
     def check_new(self, name: str) -> None:
         """Check that a name is not taken.

@@ -67,9 +67,9 @@ class AnyPlaceConfig:
     height_m: Annotated[float, Field(ge=2.2, le=8.0, description="height of the ceiling")] = 2.7
     doors: Annotated[tuple[Door, ...], Field(strict=False, description="openings in the walls")] = ()
     temperatures: Annotated[
-        Temperatures, BeforeValidator(_follow_air), Field(description="temperatures of its surfaces")
+        Temperatures, BeforeValidator(_follow_air), Field(description="surface temperatures")
     ] = field(default_factory=Temperatures)
-    colours: Annotated[Colours, Field(description="colours of its surfaces")] = field(default_factory=Colours)
+    colours: Annotated[Colours, Field(description="surface colours")] = field(default_factory=Colours)
     floor_shine: Annotated[
         Share,
         Field(

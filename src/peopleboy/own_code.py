@@ -38,7 +38,7 @@ def load_own(what: str, name: str, call: str) -> Callable[..., Any]:
         A function that makes one; what keeps it from that is bad input.
 
     Raises:
-        BadInput: there is no such module or class, or the module cannot be imported.
+        BadInput: the module cannot be imported or has no such class.
     """
     home, _, member = name.rpartition(":")
     if home.endswith(".py") or "/" in home or "\\" in home:
@@ -55,7 +55,7 @@ def load_own(what: str, name: str, call: str) -> Callable[..., Any]:
             f"{what} {name!r}: module {home!r} cannot be imported: {in_one_line(error)}"
         ) from error
     if not hasattr(found, member):
-        raise BadInput(f"{what} {name!r}: there is no {member!r} in {home}")
+        raise BadInput(f"{what} {name!r}: module {home!r} has no {member!r}")
 
     return guarded(what, name, call, lambda *arguments: getattr(found, member)(*arguments))
 

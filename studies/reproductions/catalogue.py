@@ -127,12 +127,12 @@ def _function(place: str, declared: Mapping[str, Any]) -> Callable[[Measurement]
     """Find a declaration's function, and give it its arguments.
 
     Raises:
-        BadInput: there is no such function, or it takes other arguments.
+        BadInput: the kind is unknown, or it takes other arguments.
     """
     arguments = dict(declared)
     kind = str(arguments.pop("kind", None))
     if kind not in KINDS:
-        raise BadInput(f"{place}.kind: {kind!r} must be one of {', '.join(KINDS)}")
+        raise BadInput(f"{place}.kind: unknown kind {kind!r}; choose from {', '.join(KINDS)}")
     try:
         inspect.signature(KINDS[kind]).bind(None, **arguments)
     except TypeError as error:
@@ -157,10 +157,10 @@ def of_paper(paper: str) -> dict[str, Experiment]:
     """Return one source's experiments by id.
 
     Raises:
-        BadInput: there is no such source.
+        BadInput: the source is unknown.
     """
     if paper not in PAPERS:
-        raise BadInput(f"unknown paper {paper!r}; there are: {', '.join(PAPERS)}")
+        raise BadInput(f"unknown paper {paper!r}; choose from {', '.join(PAPERS)}")
     return {one.id: one for one in PAPERS[paper].experiments}
 
 
@@ -189,7 +189,7 @@ def choose(names: Sequence[str], paper: str | None = None) -> list[Experiment]:
 def _matching(name: str, among: Mapping[str, Experiment]) -> list[str]:
     found = [number for number in among if _is_called(number, name.lower())]
     if not found:
-        raise BadInput(f"nothing is called {name!r}; choose from {', '.join(among)}")
+        raise BadInput(f"unknown ID {name!r}; choose from {', '.join(among)}")
     return found
 
 

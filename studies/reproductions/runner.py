@@ -154,19 +154,19 @@ class ReproduceOptions:
     paper: Annotated[
         str | None,
         Field(
-            description="Results of one source only: thesis, of 2007; 2005, its evaluation; panoramic, of "
-            "2003; situation, a thesis on depth and colour."
+            description="Reproduce one source only: thesis (2007), 2005 (paper that evaluates it), panoramic "
+            "(2003), or situation (thesis on depth and colour)."
         ),
     ] = None
     quick: Annotated[
-        bool, Field(description="A small part of everything, in minutes; the page lists it.")
+        bool, Field(description="Reproduce a small part of everything in minutes; the page lists what.")
     ] = False
     seeds: Annotated[
         int | None,
         Field(
             ge=1,
-            description="Number of seeds, or random streams, of every result; a later call with more reuses "
-            "what is there.  [default: 10, as in the sources]",
+            description="Number of seeds, or random streams, of every result; a later call with more seeds "
+            "reuses existing results.  [default: 10, as in the sources]",
         ),
     ] = None
     out: Annotated[
@@ -179,10 +179,7 @@ class ReproduceOptions:
     films: Path
     so_far: Annotated[
         bool,
-        Field(
-            description="Measure nothing: write the page from the results in the folder, each with the seeds "
-            "it has."
-        ),
+        Field(description="Do not measure anything: write the page from the existing results in the folder."),
     ] = False
 
     def __post_init__(self) -> None:

@@ -307,7 +307,9 @@ def _amount(plan: Plan, papers: Set[str], repeats: Set[int]) -> str:
         share=share,
         **{name: len(getattr(plan, name)) for name in ("sets", "scenes", "presets")},
         turns=2 * plan.drives,
-        repeats=f"{most}" if least == most else f"{least} to {most}, as each part says,",
+        repeats=f"{most} repeats"
+        if least == most
+        else f"{least} to {most} repeats of each part, as stated there",
         runs=", ".join(f"{name}: {len(runs)} runs" for name, runs in plan.suites.items()),
     )
 

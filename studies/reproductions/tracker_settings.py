@@ -61,10 +61,10 @@ class TrackerSetting:
         """Return the tracker's settings.
 
         Raises:
-            BadInput: there is no such base or setting.
+            BadInput: the base or a setting is unknown.
         """
         if self.base not in BASES:
-            raise BadInput(f"unknown base {self.base!r}; there are: {', '.join(BASES)}")
+            raise BadInput(f"unknown base {self.base!r}; choose from {', '.join(BASES)}")
         config = BASES[self.base]
         for path, value in self.changes:
             config = changed(config, path, value)
@@ -88,10 +88,10 @@ def changed(record: Any, path: str, value: Value) -> Any:
     """Copy nested records with the setting at a path, such as "person.count", changed.
 
     Raises:
-        BadInput: there is no such setting.
+        BadInput: the setting is unknown.
     """
     head, _, rest = path.partition(".")
     names = [field.name for field in fields(record)]
     if head not in names:
-        raise BadInput(f"{type(record).__name__} has no {head!r}; it has: {', '.join(names)}")
+        raise BadInput(f"{type(record).__name__}: unknown setting {head!r}; choose from {', '.join(names)}")
     return replace(record, **{head: changed(getattr(record, head), rest, value) if rest else value})

@@ -92,11 +92,11 @@ def chosen_parameters(names: Sequence[str]) -> list[Parameter]:
     """Find parameters by name; all there are if none is named.
 
     Raises:
-        BadInput: there is no such parameter.
+        BadInput: a parameter is unknown.
     """
     for name in names:
         if name not in PARAMETERS:
-            raise BadInput(f"--parameter {name}: must be one of {', '.join(PARAMETERS)}")
+            raise BadInput(f"--parameter: unknown parameter {name!r}; choose from {', '.join(PARAMETERS)}")
     return [one for name, one in PARAMETERS.items() if not names or name in names]
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
 from peopleboy.scenarios.running.engine.store import Result, Store, code_digest
-from peopleboy.scenarios.running.engine.task import Failure, Task, TasksFailed, Tell, Workers
+from peopleboy.scenarios.running.engine.task import Failure, ReportProgress, Task, TasksFailed, Workers
 from peopleboy.scenarios.running.engine.work_through import work_through
 from peopleboy.studies.reproductions.plan import Plan
 
@@ -59,7 +59,7 @@ class Unit:
         """Make the call."""
         return self.function(*self.arguments)
 
-    def __call__(self, tell: Tell) -> tuple[Result, float]:  # noqa: ARG002
+    def __call__(self, report_progress: ReportProgress) -> tuple[Result, float]:  # noqa: ARG002
         """Make the call; return the processor's time [s] that it took, too."""
         start = time.process_time()
         result = self.run()

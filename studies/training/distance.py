@@ -318,7 +318,7 @@ class DistanceTraining(Specification[list[DistanceSamples]]):
             about={
                 "trained on": f"{len(samples)} images of {scenario.name}, seeds 0 to {len(data) - 1}",
                 "training": f"{settings.epochs} epochs, rate {settings.rate:g}, online",
-                "left out": f"{samples.missed.sum()} images in which the person was not detected",
+                "excluded": f"{samples.missed.sum()} images in which the person was not detected",
             },
         )
         return {file_name(scenario.name): model}

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from peopleboy.scenarios.run_folder.atomic_output import atomic, writing_to
 from peopleboy.scenarios.running.engine.store import code_digest
-from peopleboy.scenarios.running.engine.task import Tell, Workers
+from peopleboy.scenarios.running.engine.task import ReportProgress, Workers
 from peopleboy.scenarios.running.engine.work_through import work_through
 
 
@@ -92,7 +92,7 @@ class SampleTask:
         """Name of the sequence."""
         return self.path.stem
 
-    def __call__(self, tell: Tell) -> None:  # noqa: ARG002
+    def __call__(self, report_progress: ReportProgress) -> None:  # noqa: ARG002
         """Collect the samples and write them."""
         self.collect(*self.arguments).save(self.path)
 

@@ -201,7 +201,7 @@ def _jittered(window: Box, rng: np.random.Generator) -> Box:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WindowsTraining(Specification[Split[WindowSamples]]):
-    """Train classifiers of near and far windows, on colour alone and with depth, on random scenes."""
+    """Train classifiers of near and far windows on random scenes, with and without depth."""
 
     sequences: Annotated[
         int, Field(ge=1, alias="seeds", description="Number of random scenes to train on.")
@@ -235,7 +235,7 @@ class WindowsTraining(Specification[Split[WindowSamples]]):
         }
 
     def evaluate(self, model: WindowModel, data: Split[WindowSamples]) -> Mapping[str, str]:
-        """Measure recall and false alarms by range."""
+        """Measure recall and false positive rate by range."""
         return {
             f"{kind}, on other scenes": evaluate_machine(model, data.validation, kind) for kind in WindowRange
         }
@@ -276,12 +276,13 @@ def scores_of(model: WindowModel, samples: WindowSamples, kind: WindowRange) -> 
 
 
 def evaluate_machine(model: WindowModel, samples: WindowSamples, kind: WindowRange) -> str:
-    """Return a text with recall and false alarms of the classifier of a range."""
+    """Return a text with recall and false positive rate of the classifier of a range."""
     scores, is_person = scores_of(model, samples, kind), samples.is_person(kind)
     if is_person.all() or not is_person.any():
         return "no samples"
     return (
         f"{is_person.sum()} people, {(~is_person).sum()} others; recall "
-        f"{recall_at(scores, is_person, FALSE_ALARMS):.3f} at 1 % false alarms; at 0: recall "
-        f"{np.mean(scores[is_person] > 0):.3f}, false alarms {np.mean(scores[~is_person] > 0):.3f}"
+        f"{recall_at(scores, is_person, FALSE_ALARMS):.3f} at a false positive rate of 1 %; "
+        f"at threshold 0: recall {np.mean(scores[is_person] > 0):.3f}, "
+        f"false positive rate {np.mean(scores[~is_person] > 0):.3f}"
     )

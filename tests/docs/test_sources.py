@@ -36,7 +36,7 @@ def test_parts_of_a_later_run_take_their_places_and_are_said_to_be_later() -> No
     ids = [[one.experiment.id for one in run.outcomes] for run in (shipped, joined)]
     assert ids[0] == ids[1]
     assert [one.left_out for one in joined.outcomes if one.experiment.id == number] == [("both",)]
-    assert joined.head.facts[number] == "of a later run: recorded 2030-01-02; machine a toaster; code abc"
+    assert joined.head.facts[number] == "from a later run: recorded 2030-01-02; machine a toaster; code abc"
     assert number not in joined.without([part]).head.facts
     assert {**shipped.head.facts, number: joined.head.facts[number]} == joined.head.facts
     assert ("Parts", f"{joined.head.facts[number]} ({number})") in joined.head.lines

@@ -112,9 +112,9 @@ def test_the_same_run_in_a_fresh_process_gives_the_same_tracks(came: Path, tmp_p
 @pytest.mark.parametrize(
     ("camera", "named"),
     [
-        ({"kind": "panorama", "mirror": "narrow"}, ("panorama", "deg down", "none for another")),
-        ({"kind": "panorama", "width_px": 360}, ("360x", "480x120", "none for another")),
-        ({"kind": "colour"}, ("'panorama'", "sees all round")),
+        ({"kind": "panorama", "mirror": "narrow"}, ("panorama", "deg down", "other network")),
+        ({"kind": "panorama", "width_px": 360}, ("360x", "480x120", "other network")),
+        ({"kind": "colour"}, ("'panorama'", "calibrated panoramic camera")),
     ],
     ids=["another mirror", "another size", "a flat one"],
 )

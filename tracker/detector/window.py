@@ -1,4 +1,4 @@
-"""Geometry of the detector's window: its cells, and the person that fills it."""
+"""Geometry of the detector's window: its cells, and the person inside it."""
 
 from enum import StrEnum
 from typing import Final, TypeVar
@@ -12,10 +12,10 @@ Top = TypeVar("Top", float, Floats)
 CELL_PX: Final = 2  # side of a cell of a level of the pyramid
 ROWS: Final = 20
 COLUMNS: Final = 10
-PERSON_PX: Final = 32.0  # height of the person that fills a window, in pixels of its level
+PERSON_PX: Final = 32.0  # height of the person in a window of 40 pixels, in pixels of its level
 WIDTH_PER_HEIGHT: Final = 0.41  # of a person's box
 ABOVE_PX: Final = (ROWS * CELL_PX - PERSON_PX) / 2.0
-"""Share of a window above the head, and below the feet."""
+"""Margin of a window above the head and below the feet, in pixels of its level."""
 
 
 class WindowKind(StrEnum):
@@ -31,7 +31,7 @@ def row_of(top: Top, down: float) -> Top:
 
 
 def boxes_of(row: Floats, column: Floats, scale: tuple[float, float]) -> Floats:
-    """Return the boxes (N, 4) [px] of the people who fill windows.
+    """Return the boxes (N, 4) [px] of the people in windows.
 
     Args:
         row: (N,) of a window's first cell.

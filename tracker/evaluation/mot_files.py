@@ -1,11 +1,12 @@
 """Ground truth and tracks as MOTChallenge text: one line per box, comma separated, frames from 1.
 
-Truth: frame, id, left, top, width, height, 1 if counted else 0, class, visible fraction. PeopleBoy only
-    writes
-class 1 (person); of the other classes of MOT16 to MOT20, distractors are read as uncounted. If the last
-columns are missing, or -1 for unknown, all are counted and visible persons. Lines of ten numbers end with a
-world position instead of class and visible fraction, as in MOT15.
+Truth: frame, id, left, top, width, height, 1 if counted else 0, class, visible fraction. PeopleBoy writes
+class 1 (person) only. Of the other classes of MOT16 to MOT20, distractors are read as uncounted. If the last
+columns are missing, or -1 for unknown, all lines are counted and visible people. Lines of ten numbers end
+with a world position instead of class and visible fraction, as in MOT15.
+
 Results: frame, id, left, top, width, height, confidence, -1, -1, -1 (no world position).
+
 An empty file is a sequence without people, or a tracker without tracks.
 """
 
@@ -28,7 +29,7 @@ WIDTHS = range(6, 11)
 """Allowed numbers of values per line of truth."""
 
 _PLACED = 10  # values of a line with a position, of which the first 7 are read
-_UNTOLD = -1.0
+_UNKNOWN = -1.0
 
 Kind = TypeVar("Kind", bound=Rows)
 
@@ -61,7 +62,7 @@ def read_rows(path: Path) -> Floats:
     table = np.ones((len(given), columns))
     table[:, : given.shape[1]] = given
     others = table[:, 6:]
-    others[others == _UNTOLD] = 1.0
+    others[others == _UNKNOWN] = 1.0
     return table
 
 

@@ -176,7 +176,7 @@ class GivenTruth:
         """
         boxes = self.truth.box[self.truth.frame == frame]
         if not len(boxes):
-            raise BadInput(f"{self.path}: there is no box in frame {frame} to start from")
+            raise BadInput(f"{self.path}: frame {frame} has no box to start from")
         left, top, width, height = boxes[0].tolist()
         return left, top, width, height
 
@@ -203,7 +203,7 @@ def load_truth(path: Path, frames: int | None, numbers: range | None = None) -> 
         BadInput: the file cannot be read, or does not match the pictures.
     """
     if not path.exists():
-        raise BadInput(f"{path}: there is no such file")
+        raise BadInput(f"{path}: no such file")
     try:
         lines = path.read_text(encoding="utf-8").split("\n")
     except (OSError, UnicodeDecodeError) as error:

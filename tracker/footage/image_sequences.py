@@ -62,7 +62,7 @@ def open_footage(path: Path) -> Footage:
     if path.is_dir():
         return _open_folder(_home_of_pictures(path), path.name)
     if not path.is_file():
-        raise BadInput(f"{path}: there is no such folder or video")
+        raise BadInput(f"{path}: no such folder or video")
     if path.suffix.lower() in PAGED:
         return Pages(path, path.stem)
     if path.suffix.lower() in SUFFIXES:  # which a video reader would reduce to 8 bits

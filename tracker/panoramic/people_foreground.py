@@ -149,7 +149,7 @@ class Foreground:
         if self._rows is None or not is_same:
             why = known.refusal(view_of(calibration, width, height))
             if why:
-                raise BadInput(f"{why}; there is none for another")
+                raise BadInput(f"{why}; no other network is available")
             self._calibration, self._rows = calibration, floor_rows(calibration, height)
         return self._rows
 

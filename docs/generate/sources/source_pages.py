@@ -30,5 +30,5 @@ def overview(run: SourceRun) -> str:
         for part in map(section, run.outcomes)
     ]
     head = ("", "what", "repeats", *(f"{what}, {who}" for what in ("claims", "figures") for who in _WHO))
-    facts = table(("about", "the run"), [*run.head.lines, ("How much", run.head.amount)])
+    facts = table(("property", "value"), [*run.head.lines, ("Amount", run.head.amount)])
     return f"{facts}\n{table(head, rows)}"

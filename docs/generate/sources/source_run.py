@@ -66,7 +66,7 @@ class SourceRun:
         kept = self.without(later.outcomes)
         facts = {
             **{name: fact for name, fact in kept.head.facts.items() if name not in _OF_A_RUN},
-            **{one.experiment.id: f"of a later run: {said}" for one in later.outcomes},
+            **{one.experiment.id: f"from a later run: {said}" for one in later.outcomes},
         }
         places = list(EXPERIMENTS)
         every = sorted((*kept.outcomes, *later.outcomes), key=lambda one: places.index(one.experiment.id))

@@ -13,7 +13,7 @@ from peopleboy.own_code import OwnCodeFailed, in_one_line
 
 Result_co = TypeVar("Result_co", covariant=True)
 
-Tell = Callable[[int], None]
+ReportProgress = Callable[[int], None]
 """Receives the number of finished units of a task."""
 
 
@@ -30,7 +30,7 @@ class Task(Protocol[Result_co]):
         """Number of units by which it moves a progress bar."""
         ...
 
-    def __call__(self, tell: Tell) -> Result_co:
+    def __call__(self, report_progress: ReportProgress) -> Result_co:
         """Execute the task; parts that an earlier attempt left on disk are not repeated."""
         ...
 
@@ -59,10 +59,10 @@ class TasksFailed(Exception):  # noqa: N818
         self.failures = tuple(failures)
 
 
-def attempt(task: Task[Any], tell: Tell) -> Any:
+def attempt(task: Task[Any], report_progress: ReportProgress) -> Any:
     """Execute a task, and return its result, or a `Failure` if it raises an error."""
     try:
-        return task(tell)
+        return task(report_progress)
     except BadInput as error:
         return Failure(task.name, str(error), is_refused=True)
     except OwnCodeFailed as error:

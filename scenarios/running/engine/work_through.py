@@ -22,7 +22,14 @@ from joblib.externals.loky.process_executor import BrokenProcessPool
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.progress_bar import Show, progress_bar
 from peopleboy.scenarios.run_folder.atomic_output import left_by_sigterm
-from peopleboy.scenarios.running.engine.task import Failure, Task, TasksFailed, Tell, Workers, attempt
+from peopleboy.scenarios.running.engine.task import (
+    Failure,
+    ReportProgress,
+    Task,
+    TasksFailed,
+    Workers,
+    attempt,
+)
 
 ATTEMPTS = 3  # how often a task's process may be killed
 GRACE_S = 10.0  # [s] for processes to mark their work as cut off
@@ -150,7 +157,7 @@ class Tally:
         self._left, self._moved = len(tasks), 0
         self._done = self._failed = 0
 
-    def tell(self, part: int) -> None:
+    def report_progress(self, part: int) -> None:
         """Show that `part` units of the current task are done."""
         failed = f", {self._failed} failed" if self._failed else ""
         self._show(self._moved + part, self._total, f"{self._done} done, {self._left} left{failed}")
@@ -161,7 +168,7 @@ class Tally:
         self._left -= 1
         self._done += not is_failed
         self._failed += is_failed
-        self.tell(0)
+        self.report_progress(0)
 
 
 @contextmanager
@@ -202,7 +209,7 @@ def work_through(
     with (
         left_by_sigterm(),
         tally(title, tasks, unit) as shown,
-        closing(_outcomes(tasks, workers, shown.tell)) as outcomes,
+        closing(_outcomes(tasks, workers, shown.report_progress)) as outcomes,
     ):
         for number, outcome in outcomes:
             if isinstance(outcome, Failure):
@@ -217,7 +224,7 @@ def work_through(
 
 
 def _outcomes(
-    tasks: Sequence[Task[Result]], workers: Workers, tell: Tell
+    tasks: Sequence[Task[Result]], workers: Workers, report_progress: ReportProgress
 ) -> Generator[tuple[int, Any], None, None]:
     """Yield the number of each task with its result or failure, in the order of completion."""
     if not tasks:
@@ -229,4 +236,4 @@ def _outcomes(
     elif min(workers.count, len(tasks)) > 1:
         yield from in_processes(tasks, workers.count)
     else:
-        yield from ((number, attempt(task, tell)) for number, task in enumerate(tasks))
+        yield from ((number, attempt(task, report_progress)) for number, task in enumerate(tasks))

@@ -80,7 +80,7 @@ class ActionConfig:
 class ThingConfig:
     """An object on the floor, on another object, or on a wall."""
 
-    kind: Annotated[ThingKind, Field(description="kind of thing")]
+    kind: Annotated[ThingKind, Field(description="kind of object")]
     name: Annotated[
         Name | None, Field(description="name; by default the kind and a number, such as radiator_1")
     ] = None

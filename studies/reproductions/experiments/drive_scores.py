@@ -135,7 +135,7 @@ def associate(people: Sequence[FloorPerson], places_m: Floats, radius_m: float =
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class DriveRecord:
+class TrackingRecord:
     """The result of one drive, or of several together.
 
     Attributes:
@@ -159,7 +159,7 @@ class DriveRecord:
     false_sizes: int
 
     @classmethod
-    def of_plain(cls, plain: Mapping[str, Any]) -> "DriveRecord":
+    def of_plain(cls, plain: Mapping[str, Any]) -> "TrackingRecord":
         """Read what `DriveTracking.plain` gave."""
         hits = hit_rows(plain)
         return cls(
@@ -174,7 +174,7 @@ class DriveRecord:
         )
 
     @classmethod
-    def joined(cls, records: "Iterable[DriveRecord]") -> "DriveRecord":
+    def joined(cls, records: "Iterable[TrackingRecord]") -> "TrackingRecord":
         """Take drives together."""
         parts = list(records)
         join: dict[str, Callable[..., Any]] = {"hits": np.concatenate, "ms": np.mean}  # all others add up

@@ -8,7 +8,7 @@ import numpy as np
 
 from peopleboy.scenarios.running.engine.store import Result
 from peopleboy.studies.reproductions.experiment import Floats, Line, Row, Samples, as_columns, mean
-from peopleboy.studies.reproductions.experiments.drive_scores import RADIUS_M, DriveRecord
+from peopleboy.studies.reproductions.experiments.drive_scores import RADIUS_M, TrackingRecord
 from peopleboy.studies.reproductions.experiments.drive_tracking import (
     CHOICES,
     DEFAULT,
@@ -33,12 +33,12 @@ NOISIEST: Final = 3.0
 _FOLLOWED: Final = 2  # number of the set in which the robot follows a person
 _RANGES_M: Final = {"up to 3 m": (0.0, 3.0), "3 to 5 m": (3.0, 5.0), "5 to 10 m": (5.0, 10.0)}
 
-Value = Callable[[DriveRecord], float]
+Value = Callable[[TrackingRecord], float]
 Drives = Mapping[str, Sequence[Result]]
 """What trackers did, by scenario, seed by seed."""
 
 
-def tracked(record: DriveRecord) -> Row:
+def tracked(record: TrackingRecord) -> Row:
     """Return table 4.1's values."""
     return {
         "images": record.frames,
@@ -50,7 +50,7 @@ def tracked(record: DriveRecord) -> Row:
     }
 
 
-def compared(record: DriveRecord) -> Row:
+def compared(record: TrackingRecord) -> Row:
     """Return the values by which trackers are compared."""
     return {
         "rate": record.rate(),
@@ -62,14 +62,14 @@ def compared(record: DriveRecord) -> Row:
     }
 
 
-def errors_along(record: DriveRecord) -> Row:
+def errors_along(record: TrackingRecord) -> Row:
     """Return table B.1's errors, sideways (x) and along the robot's axis (z), against the surface."""
     off = np.abs(record.hits[:, 5:7])
     z, x = off[np.isfinite(off).all(axis=1)].T
     return {"x [m]": mean(x), "z [m]": mean(z), "sd x [m]": float(x.std()), "sd z [m]": float(z.std())}
 
 
-def position(record: DriveRecord, *, place: str, radius_m: float) -> Row:
+def position(record: TrackingRecord, *, place: str, radius_m: float) -> Row:
     """Return how well positions are found within a radius of the body's middle, or of the surface seen."""
     off = record.error_m if place == "body" else record.surface_error_m
     off = off[off <= radius_m]
@@ -81,12 +81,12 @@ def position(record: DriveRecord, *, place: str, radius_m: float) -> Row:
     }
 
 
-def recall(record: DriveRecord, *, band: int) -> Row:
+def recall(record: TrackingRecord, *, band: int) -> Row:
     """Return the pre-detection's recall of people by how much of them is hidden."""
     return {"recall": float(record.size_recall[band])}
 
 
-def false_sizes(record: DriveRecord) -> Row:
+def false_sizes(record: TrackingRecord) -> Row:
     """Return the pre-detection's false alarms."""
     return {"false sizes per image": record.false_sizes / record.frames}
 
@@ -131,8 +131,8 @@ def drives(
 
 
 _WANTED: Final[Mapping[str, Value]] = {
-    "rate": DriveRecord.rate,
-    "FP per image": DriveRecord.false_per_frame,
+    "rate": TrackingRecord.rate,
+    "FP per image": TrackingRecord.false_per_frame,
     "error, mean [m]": lambda record: mean(record.error_m),
     "error, median [m]": lambda record: median(record.error_m),
     "recall of the pre-detection, hidden < .1": lambda record: float(record.size_recall[0]),
@@ -148,21 +148,21 @@ def goals(using: Measurement) -> Samples:
     rows = {name: _with_interval(everything, _joined(value)) for name, value in _WANTED.items()}
     by_set = [by_seed({one: runs}, DEFAULT) for one, runs in played["sets"].items()]
     rows["rate of the worst set"] = _with_interval(list(zip(*by_set, strict=True)), _worst_rate)
-    rows["rate, noise x 3"] = _with_interval(by_seed(played["noisy"], DEFAULT), _joined(DriveRecord.rate))
+    rows["rate, noise x 3"] = _with_interval(by_seed(played["noisy"], DEFAULT), _joined(TrackingRecord.rate))
     pairs = zip(*(by_seed(played["turns"], name) for name in (NO_ODOMETRY, DEFAULT)), strict=True)
     rows["switches a run in turns, saved by odometry"] = _with_interval(list(pairs), _saved_switches)
     return {Line(name, DEFAULT): row for name, row in rows.items()}
 
 
-def _joined(value: Value) -> Callable[[Sequence[DriveRecord]], float]:
-    return lambda records: value(DriveRecord.joined(records))
+def _joined(value: Value) -> Callable[[Sequence[TrackingRecord]], float]:
+    return lambda records: value(TrackingRecord.joined(records))
 
 
-def _worst_rate(seeds: Sequence[Sequence[DriveRecord]]) -> float:
-    return float(np.nanmin([DriveRecord.joined(records).rate() for records in zip(*seeds, strict=True)]))
+def _worst_rate(seeds: Sequence[Sequence[TrackingRecord]]) -> float:
+    return float(np.nanmin([TrackingRecord.joined(records).rate() for records in zip(*seeds, strict=True)]))
 
 
-def _saved_switches(pairs: Sequence[Sequence[DriveRecord]]) -> float:
+def _saved_switches(pairs: Sequence[Sequence[TrackingRecord]]) -> float:
     return sum(without.switches - with_it.switches for without, with_it in pairs) / len(pairs)
 
 
@@ -225,10 +225,10 @@ def drive_units(plan: Plan, kind: str, scale: float) -> dict[str, list[Unit]]:
     }
 
 
-def by_seed(played: Drives, tracker: str) -> list[DriveRecord]:
+def by_seed(played: Drives, tracker: str) -> list[TrackingRecord]:
     """Return what a tracker did on drives, taken together by seed."""
     return [
-        DriveRecord.joined(DriveRecord.of_plain(run[tracker]) for run in runs)
+        TrackingRecord.joined(TrackingRecord.of_plain(run[tracker]) for run in runs)
         for runs in zip(*played.values(), strict=True)
     ]
 

@@ -44,7 +44,7 @@ _WARM_UP: Final = 300  # batches
 _DECAY: Final = 0.02  # weight decay of kernels per batch, relative to the learning rate
 _REPORTED: Final = 200  # batches between two progress lines
 _LAST: Final = 0.1  # first weights of the last layer, relative to He's
-_HELD_BACK: Final = 10  # one in so many worlds is held back
+_HELD_BACK: Final = 10  # one in so many worlds is held out
 _AT_ONCE: Final = 256  # crops per prediction batch
 
 
@@ -105,7 +105,7 @@ class CropData(NamedTuple):
 class CropTraining(Specification[CropData]):
     """Base class for training networks on crops, in worlds on which the cascade was not trained.
 
-    The cascade's scores are too high in its own training worlds. A tenth of the worlds is held back for
+    The cascade's scores are too high in its own training worlds. A tenth of the worlds is held out for
     validation.
     """
 

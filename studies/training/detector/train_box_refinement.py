@@ -81,8 +81,8 @@ class BoxRefinementTraining(CropTraining):
         others = data.samples.validation
         rows = np.ones(len(others), np.bool_)
         before, after = mean_overlaps(predictions(model, others), others, rows)
-        result = f"{len(rows)} boxes: mean overlap {before:.3f} before, {after:.3f} refined"
-        return {f"on {len(data.tasks.validation)} others": result}
+        result = f"{len(rows)} boxes: mean IoU {before:.3f} before, {after:.3f} refined"
+        return {f"on {len(data.tasks.validation)} other sequences": result}
 
 
 def _is_sampled(image: ThermalImage, rng: np.random.Generator) -> NDArray[np.bool_]:

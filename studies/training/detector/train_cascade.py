@@ -56,7 +56,7 @@ REGRESSION: Final = Boosting(trees=160, rate=0.1, features=300)
 _SEED_OF_PEOPLE: Final = 0
 _SEED_OF_BOXES: Final = 1
 _SEED_OF_NEGATIVES: Final = 100
-_HELD_BACK: Final = 10  # one in so many worlds is held back
+_HELD_BACK: Final = 10  # one in so many worlds is held out
 _MINED: Final = 16000  # a round
 _NEGATIVES: Final = 80000  # in memory, 3.6 kB each
 _FIRST_NEGATIVES: Final = 16000
@@ -75,9 +75,9 @@ _LINEAR_FROM: Final = 0.9  # quantile of errors from which on the loss of the bo
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CascadeTraining(Specification[Tasks]):
-    """Train on random worlds: ordinary, crowded, plain, crowded and plain, and warm ones.
+    """Train on random worlds, some of them crowded, without details, or as warm as people.
 
-    A tenth of the worlds is held back for calibrating scores.
+    A tenth of the worlds is held out for calibrating scores.
     """
 
     sequences: Annotated[
@@ -118,8 +118,8 @@ class CascadeTraining(Specification[Tasks]):
         }
         counts = ((len(kind.seeds(self.sequences)), kind) for kind in KINDS)
         drawn = ", ".join(f"{count} {kind.description} from seed {kind.first_seed}" for count, kind in counts)
-        parts = ("where {} people are",) if self.only_boxes else ("{} people", "where {} people are")
-        drawn += f"; {len(held)} of them held back"
+        parts = ("boxes of {} people",) if self.only_boxes else ("{} people", "boxes of {} people")
+        drawn += f"; {len(held)} of them held out"
         about = {part.format(kind): drawn for part in parts for kind in trees}
         before = shipped if self.only_boxes or len(trees) < len(WindowKind) else PeopleModel({})
         return {FILE: PeopleModel({**before.trees, **trees}, {**before.about, **about})}

@@ -93,9 +93,9 @@ class RescoringTraining(CropTraining):
         before, after = mean_overlaps(predicted[:, 1:], others, others.overlap >= POSITIVE)
         result = (
             f"{len(first)} detections, {is_person.sum()} of people: log loss {losses[0]:.3f} of the cascade, "
-            f"{losses[1]:.3f} rescored; mean overlap {before:.3f}, {after:.3f}"
+            f"{losses[1]:.3f} rescored; mean IoU {before:.3f}, {after:.3f}"
         )
-        return {f"on {len(data.tasks.validation)} others": result}
+        return {f"on {len(data.tasks.validation)} other sequences": result}
 
 
 def _jitter(found: Detections, rng: np.random.Generator) -> Detections:

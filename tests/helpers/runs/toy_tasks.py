@@ -12,7 +12,7 @@ from pathlib import Path
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.running.engine.store import Result, Store
-from peopleboy.scenarios.running.engine.task import Task, Tell, Workers
+from peopleboy.scenarios.running.engine.task import ReportProgress, Task, Workers
 from peopleboy.scenarios.running.engine.work_through import work_through
 
 _KEPT: list[bytes] = []
@@ -43,7 +43,7 @@ class ToyTask:
     def name(self) -> str:
         return f"toy {self.number}"
 
-    def __call__(self, tell: Tell) -> Result:
+    def __call__(self, report_progress: ReportProgress) -> Result:
         self._die()
         if self.fault:
             raise {"refused": BadInput, "wrong": ArithmeticError}[self.fault](
@@ -51,7 +51,7 @@ class ToyTask:
             )
         _KEPT.append(b"x" * (self.keeps_mb << 20))
         time.sleep(self.takes_s)
-        tell(1)
+        report_progress(1)
         with (self.folder / "diary").open("a", encoding="utf-8") as diary:
             diary.write(f"{self.number} {os.getpid()}\n")
         return {"square": self.number**2}

@@ -50,7 +50,7 @@ def test_truth_images_and_scenario_are_those_of_the_run(driven: Path, adopted: P
     assert len(list((adopted / "thermal").iterdir())) == 30
 
 
-def test_the_tracks_are_theirs_and_what_they_do_not_tell_is_unknown(driven: Path, adopted: Path) -> None:
+def test_the_tracks_are_theirs_and_what_they_lack_is_unknown(driven: Path, adopted: Path) -> None:
     rows = pq.read_table(adopted / "tracks.parquet").to_pylist()
     assert len(rows) == len((adopted / "tracks.txt").read_text(encoding="utf-8").splitlines()) == 20
     assert {(row["id"], row["status"], row["place_x_m"], row["occluder"]) for row in rows} == {

@@ -35,7 +35,7 @@ def test_who_was_hidden_and_forgotten_is_re_identified_under_the_old_id() -> Non
         ["detected"], ["hidden"], ["lost"], [], ["re-identified"],
     ]  # fmt: skip
     assert found[1][0].by == 2
-    assert_names(found[2][0].why, "hidden", "track 2")
+    assert_names(found[2][0].why, "occluded", "track 2")
     assert found[4][0].why == "after 3.0 s"
 
 
@@ -44,7 +44,7 @@ def test_a_lost_track_left_the_image_or_is_found_no_more() -> None:
     weak = replace(made.with_status(Status.TENTATIVE), confidence=0.12)
     assert play((outside,), ())[1][0].why.endswith("right")
     assert play((made.with_box((-20.0, 50.0, 40.0, 170.0)),), ())[1][0].why.endswith("left")
-    assert_names(play((made.TRACK,), (weak,))[1][0].why, "not found", "0.12")
+    assert_names(play((made.TRACK,), (weak,))[1][0].why, "not detected", "0.12")
 
 
 def test_who_is_known_again_after_some_images_goes_on_under_the_old_number_and_is_not_lost() -> None:
@@ -66,7 +66,7 @@ def test_who_comes_back_elsewhere_is_no_other_track_that_ends() -> None:
 def test_a_track_that_goes_on_under_a_new_number_did_not_lose_its_contour() -> None:
     found = play((made.TRACK,), (replace(made.TRACK, id=7),))[1]
     assert [(event.kind, event.track) for event in found] == [("lost", 1), ("detected", 7)]
-    assert found[0].why == "track 7 is there instead"
+    assert found[0].why == "replaced by track 7"
 
 
 def test_an_occlusion_is_told_once_per_pair_however_often_it_flickers() -> None:

@@ -222,11 +222,11 @@ def test_no_loss_of_the_log_is_counted_twice_or_not_at_all(
 
 def test_a_loss_gives_the_tracker_s_own_reason_and_names_on_whom_the_other_track_lay(tmp_path: Path) -> None:
     path = toy.write_run(tmp_path / "run", toy.until_75, toy.hidden_from_75) / "events.jsonl"
-    assert found_in(path.parent).losses[0].believed == "not found any more, confidence 0.90"
-    hidden = "hidden by track 1 for too long to know where"
-    path.write_text(path.read_text().replace("not found any more, confidence 0.90", hidden))
+    assert found_in(path.parent).losses[0].believed == "not detected any more, confidence 0.90"
+    hidden = "occluded by track 1 for too long"
+    path.write_text(path.read_text().replace("not detected any more, confidence 0.90", hidden))
     (loss,) = found_in(path.parent).losses
-    assert loss.believed == "hidden by number 1 (on Anna) for too long to know where"
+    assert loss.believed == "occluded by number 1 (on Anna) for too long"
 
 
 def test_who_is_hidden_until_the_end_is_neither_tracked_to_the_end_nor_lost(tmp_path: Path) -> None:

@@ -195,9 +195,9 @@ def test_a_page_that_cannot_be_written_is_refused_and_nothing_is_left(runs: Path
 @pytest.mark.parametrize(
     ("out", "why"),
     [
-        ("README.md", "is no report and will not be replaced; give --out a file that ends in .html"),
-        ("tracks.txt", "is no report and will not be replaced; give --out a file that ends in .html"),
-        ("other.html", "is no report and will not be replaced; give another --out"),
+        ("README.md", "is not a report and will not be replaced; give --out a file that ends in .html"),
+        ("tracks.txt", "is not a report and will not be replaced; give --out a file that ends in .html"),
+        ("other.html", "is not a report and will not be replaced; give another --out"),
         ("README.md/x", "a report is a page; give --out a file that ends in .html"),
         ("README.md/x.html", "cannot write here: Not a directory; give another --out"),
         ("new.txt", "a report is a page; give --out a file that ends in .html"),
@@ -264,7 +264,7 @@ def test_short_losses_that_are_left_out_are_counted_also_when_no_other_is_there(
 ) -> None:
     text = " ".join(structure(pages["blinking"]).text.split())
     assert "Losses of less than 0.3 s (1 of them) are left out" in text
-    assert "not found any more, confidence 0.90" in text
+    assert "not detected any more, confidence 0.90" in text
     write_report(
         [toy.write_run(tmp_path / "run", lambda frame: toy.flickering(min(frame, 40)))],
         tmp_path / "page.html",

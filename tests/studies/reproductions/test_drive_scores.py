@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from peopleboy.studies.reproductions.experiments.drive_scores import (
-    DriveRecord,
     DriveScore,
     FloorPerson,
+    TrackingRecord,
     associate,
 )
 from peopleboy.tracker.track import FloorPlace, Status, Track
@@ -26,12 +26,12 @@ def track(number: int, x: float, y: float) -> Track:
     return Track(id=number, boxes={}, place=place, confidence=1.0, status=Status.TRACKED, age_s=1.0)
 
 
-def record(score: DriveScore) -> DriveRecord:
+def record(score: DriveScore) -> TrackingRecord:
     pre = {"bands": [[4, 3], [0, 0], [0, 0], [0, 0]], "false": 2}
-    return DriveRecord.of_plain(score.plain() | {"ms": 1.0, "pre": pre})
+    return TrackingRecord.of_plain(score.plain() | {"ms": 1.0, "pre": pre})
 
 
-def scored(people: Sequence[FloorPerson], tracks: Sequence[Track]) -> DriveRecord:
+def scored(people: Sequence[FloorPerson], tracks: Sequence[Track]) -> TrackingRecord:
     score = DriveScore()
     score.add(1, people, tracks)
     return record(score)
@@ -91,7 +91,7 @@ def test_a_switch_is_another_track_on_the_same_person_also_after_a_gap() -> None
 
 def test_drives_together_have_the_sums_of_all() -> None:
     hit, miss = scored([person(1, 4.0, 0.0)], [track(7, 4.0, 0.1)]), scored([person(1, 4.0, 0.0)], [])
-    both = DriveRecord.joined([hit, miss, miss])
+    both = TrackingRecord.joined([hit, miss, miss])
     assert (both.frames, both.found(), both.missed, both.false_sizes) == (3, 1, 2, 6)
     assert both.rate() == pytest.approx(1.0 / 3.0)
     assert both.size_recall[0] == 0.75

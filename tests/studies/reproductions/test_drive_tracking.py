@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from peopleboy.scenarios.files.load import load_scenario
-from peopleboy.studies.reproductions.experiments.drive_scores import DriveRecord
+from peopleboy.studies.reproductions.experiments.drive_scores import TrackingRecord
 from peopleboy.studies.reproductions.experiments.drive_tracking import (
     CHOICES,
     DEFAULT,
@@ -26,7 +26,7 @@ def film() -> dict[str, Any]:
 
 
 def test_a_person_in_plain_view_is_found_and_placed(film: dict[str, Any]) -> None:
-    record = DriveRecord.of_plain(film[DEFAULT])
+    record = TrackingRecord.of_plain(film[DEFAULT])
     assert record.frames == len(film["robot"]) == 21
     assert record.missed <= 3
     assert record.rate() > 0.8

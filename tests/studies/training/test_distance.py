@@ -71,7 +71,7 @@ def test_it_leaves_a_network_that_knows_its_camera_and_what_it_was_trained_on(le
     top, middle, bottom = model.view.depression_deg
     assert 7.5 < top < middle < bottom < 55.5
     assert "stroll, seeds 0 to 0" in model.about["trained on"]
-    assert model.about["left out"].startswith("0 images")
+    assert model.about["excluded"].startswith("0 images")
 
 
 def test_a_second_lesson_takes_the_examples_that_are_there_and_gives_the_same_file(lesson: Path) -> None:
@@ -151,13 +151,13 @@ def test_another_mirror_is_refused_in_a_line_before_anything_is_written(
     assert not list(tmp_path.glob("sweep/*"))
 
 
-def test_a_camera_that_does_not_see_all_round_is_refused_before_anything_is_written(
+def test_a_camera_that_is_not_panoramic_is_refused_before_anything_is_written(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     flat = {"panorama": {"kind": "colour"}}
     scene = write(tmp_path, robot={"at_m": [0.5, 0.0], "cameras": flat})
     told = refusal(capsys, "run", scene, "--tracker", "panoramic-paper", "--out", tmp_path / "run")
-    assert "sees all round" in told
+    assert "needs a panoramic camera" in told
     assert not (tmp_path / "run").exists()
 
 

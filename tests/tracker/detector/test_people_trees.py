@@ -136,9 +136,9 @@ def test_the_pages_say_of_the_shipped_trees_what_their_file_does() -> None:
     about = shipped_people_trees().about
     for mount in ("known", "unknown"):
         measured = about[f"on worlds 0 to 29, mount {mount}"]
-        numbers = re.findall(r"(?:precision|recall|overlap) ([\d.]+)", measured)
+        numbers = re.findall(r"(?:precision|recall|IoU) ([\d.]+)", measured)
         assert f"| mount {mount} | {' | '.join(numbers)} |" in results
     for name, kind in (("cascade", "whole"), ("second cascade", "cut")):
         worlds = sum(map(int, re.findall(r"(\d+) [^,;]+ from seed", about[f"{kind} people"])))
-        (held,) = re.findall(r"(\d+) of them held back", about[f"{kind} people"])
+        (held,) = re.findall(r"(\d+) of them held out", about[f"{kind} people"])
         assert re.search(rf"\| {name} \| `--seeds {worlds}[^|]*` \| {held} sequences \|", data)

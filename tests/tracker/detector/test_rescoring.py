@@ -105,7 +105,7 @@ def test_nobody_found_is_nobody_placed() -> None:
 @pytest.mark.parametrize("network", [RescoringNetwork, BoxRefinementNetwork])
 def test_the_page_says_how_good_the_shipped_ones_are(network: type[CropNetwork]) -> None:
     about = network.shipped().about
-    assert "films" in about["learned from"]
+    assert "sequences" in about["trained on"]
     page = " ".join(PAGE.read_text(encoding="utf-8").split())
-    numbers = re.findall(r"\d+(?:\.\d+)?", about["on 200 others"])
+    numbers = re.findall(r"\d+(?:\.\d+)?", about["on 200 other sequences"])
     assert re.search(".{1,80}".join(map(re.escape, numbers)), page)

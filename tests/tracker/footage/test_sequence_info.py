@@ -29,7 +29,7 @@ def test_the_rate_of_a_sequence_is_taken_and_told_unless_one_is_given(tmp_path):
     for footage in (tmp_path / "seq", tmp_path / "seq" / "img1"):
         given, told = rate(tmp_path, footage)
         assert given == 30.0
-        assert_names(told, "note: ", info, "30 pictures a second")
+        assert_names(told, "note: ", info, "frame rate, 30 Hz")
         assert rate(tmp_path, footage, "--rate-hz", 12) == (12.0, "")
 
 

@@ -114,7 +114,7 @@ def test_people_are_new_and_the_background_lacks_them(standing):
 
 def test_another_mirror_or_size_is_refused(standing):
     film, calibration = standing
-    with refused("480x100", "480x120", "none for another"):
+    with refused("480x100", "480x120", "other network"):
         Foreground().update(film.images[0][:100], 0.0, None, calibration)
-    with refused("deg down", "none for another"):
+    with refused("deg down", "other network"):
         Foreground().update(film.images[0], 0.0, None, replace(calibration, axis_rad=0.6))

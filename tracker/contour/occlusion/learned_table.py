@@ -14,10 +14,9 @@ TABLES = Path(__file__).parent / "tables"
 """Folder of the shipped tables: NAME.yaml for the tracker of that name."""
 
 _HEADER = """\
-# Who of two overlapping people is in front: a boosted classifier (thesis, algorithm 5).
-# A weak classifier votes "the one is in front of the other" if parity * sum < parity * threshold, where the
-# sum adds up weight * feature / scale, and a feature is the one's value minus the other's. Votes count by
-# importance.
+# Boosted classifier of which of two overlapping people, A or B, is in front (thesis, algorithm 5).
+# A weak classifier votes for A if parity * sum < parity * threshold, where the sum adds up
+# weight * feature / scale, and a feature is A's value minus B's. Votes are weighted by importance.
 """
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]

@@ -124,7 +124,7 @@ def shipped_models(folder: Path = SHIPPED) -> dict[Path, DistanceModel]:
     found = {path: DistanceModel.load(path) for path in sorted(folder.glob(file_name("*")))}
     if not found:
         raise BadInput(
-            f"tracker panoramic-paper: there is no network in {folder.name} yet; "
+            f"tracker panoramic-paper: {folder.name} has no network yet; "
             f"`peopleboy train {MODEL} --ship` makes one"
         )
     return found

@@ -140,7 +140,7 @@ class PanoramicPaperTracker:
         if isinstance(camera, PanoramaCalibration):
             self._choose((camera.height, camera.width), camera)
         elif camera is not None:
-            raise BadInput(f"camera {PANORAMA!r}: the tracker wants one that sees all round")
+            raise BadInput(f"camera {PANORAMA!r}: the tracker needs a panoramic camera")
 
     def update(self, frame: Frame) -> tuple[Track, ...]:
         """Process the next frame and return the track, if there is one.

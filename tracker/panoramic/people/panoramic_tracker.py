@@ -98,9 +98,9 @@ class PanoramicTracker:
         if camera is self._camera and self._camera is not None:
             return self._camera
         if not isinstance(camera, PanoramaCalibration):
-            raise BadInput(f"camera {PANORAMA!r}: the tracker wants a calibrated one that sees all round")
+            raise BadInput(f"camera {PANORAMA!r}: the tracker needs a calibrated panoramic camera")
         if why := self._model.view.refusal(view_of(camera, camera.width, camera.height)):
-            raise BadInput(f"{why}; there are none for another")
+            raise BadInput(f"{why}; no other networks are available")
         self._camera = camera
         return camera
 

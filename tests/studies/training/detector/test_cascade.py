@@ -61,7 +61,7 @@ def test_the_lesson_leaves_films_and_trees_and_says_how_good_they_are(tmp_path: 
     trained_on = (
         "2 random worlds from seed 1000, 1 crowds from seed 2000, 2 worlds in the robot's own span "
         "from seed 3000, 1 plain worlds as warm as people from seed 4000, 1 crowds in the robot's own span "
-        "from seed 5000; 1 of them held back"
+        "from seed 5000; 1 of them held out"
     )
     assert about["cut people"] == about["whole people"] == trained_on
     assert "average precision" in about["on worlds 0 to 1, mount known"]
@@ -93,7 +93,7 @@ def test_places_alone_are_taught_for_the_trees_that_are_there(tmp_path: Path) ->
         taught.trees[WindowKind.CUT].regression.leaf, shipped.trees[WindowKind.CUT].regression.leaf
     )
     assert taught.about["whole people"] == shipped.about["whole people"]
-    assert taught.about["where whole people are"].startswith("2 random worlds")
+    assert taught.about["boxes of whole people"].startswith("2 random worlds")
 
 
 def one_image(folder: Path, seed: int) -> SampleTask:

@@ -180,7 +180,7 @@ def test_one_of_ten_is_held_back_and_sequences_that_are_there_are_used(
     ("model", "training", "network", "result"),
     [
         ("rescoring", RescoringTraining, RescoringNetwork, "log loss"),
-        ("box-refinement", BoxRefinementTraining, BoxRefinementNetwork, "mean overlap"),
+        ("box-refinement", BoxRefinementTraining, BoxRefinementNetwork, "mean IoU"),
     ],
 )
 def test_training_leaves_a_network_that_says_how_good_it_is(
@@ -196,7 +196,7 @@ def test_training_leaves_a_network_that_says_how_good_it_is(
     assert run_cli("train", model, "--seeds", 10, "--out", tmp_path, "--workers", 1) == 0
     about = network.load(tmp_path / f"{model}.npz").about
     assert about["trained on"].startswith("9 sequences, ")
-    assert result in about["on 1 others"]
+    assert result in about["on 1 other sequences"]
 
 
 @pytest.mark.usefixtures("drawn")

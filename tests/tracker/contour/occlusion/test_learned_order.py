@@ -17,7 +17,7 @@ WEAK = (
     WeakClassifier(weights={"top": 1.0}, threshold=0.5, parity=1, importance=2.0),
     WeakClassifier(weights={"bottom": 1.0, "colour": -0.5}, threshold=0.0, parity=-1, importance=1.0),
 )
-TABLE = LearnedTable(scale=dict.fromkeys(FEATURES, 2.0), classifiers=WEAK, about={"learned from": "nothing"})
+TABLE = LearnedTable(scale=dict.fromkeys(FEATURES, 2.0), classifiers=WEAK, about={"trained on": "nothing"})
 GOOD = """
 scale: {strength: 1.0, top: 1.0, bottom: 1.0, colour: 1.0, colour_o: 1.0, colour_no: 1.0}
 classifiers:

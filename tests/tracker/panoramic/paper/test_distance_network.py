@@ -91,5 +91,5 @@ def test_next_to_no_examples_and_examples_that_are_all_alike_are_refused():
     with refused("9 samples", "at least 10"):
         fit_distances(cues[:9], distances[:9], np.random.default_rng(0))
     for alike in ((cues, np.full(120, 2.0)), (np.ones((120, 3)), distances)):
-        with refused("all are alike"):
+        with refused("all are equal"):
             fit_distances(*alike, np.random.default_rng(0))

@@ -273,9 +273,9 @@ def test_it_explains_who_was_taken_for_whom():
 ])  # fmt: skip
 def test_another_camera_than_the_one_that_was_learned_is_refused(other):
     tracker = PanoramicTracker(CardboardModel())
-    with refused("panorama", "trained", "none for another"):
+    with refused("panorama", "trained", "other network"):
         tracker.check_cameras({"panorama": other})
-    with refused("panorama", "trained", "none for another"):
+    with refused("panorama", "trained", "other network"):
         tracker.update(Frame(images={"panorama": HALL}, time_s=0.0, calibrations={"panorama": other}))
     assert tracker.explanation is None
 
@@ -284,9 +284,9 @@ def test_a_camera_that_is_flat_or_unknown_is_refused():
     tracker = PanoramicTracker(CardboardModel())
     flat = PinholeCalibration(intrinsics=np.eye(3), robot_from_camera=np.eye(4))
     for calibrations in ({}, {"panorama": flat}, {"other": CAMERA}):
-        with refused("panorama", "sees all round"):
+        with refused("panorama", "calibrated panoramic camera"):
             tracker.check_cameras(calibrations)
-        with refused("panorama", "sees all round"):
+        with refused("panorama", "calibrated panoramic camera"):
             tracker.update(Frame(images={"panorama": HALL}, time_s=0.0, calibrations=calibrations))
 
 
