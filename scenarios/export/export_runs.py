@@ -82,7 +82,7 @@ def export(runs: Sequence[FinishedRun], options: ExportOptions, play: Play) -> N
         raise BadInput(f"--camera {camera}: {form} has the images of every camera; leave it out")
     if least_px is not None and not takes(form, "least_px"):
         raise BadInput(
-            f"--least-px {least_px:g}: {form} has everybody of whom a pixel is visible; leave it out"
+            f"--least-px {least_px:g}: {form} contains everyone with a visible pixel; omit this option"
         )
     if boxes is not None and not takes(form, "boxes"):
         having = [name for name in FORMATS if takes(name, "boxes")]

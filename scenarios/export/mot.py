@@ -131,9 +131,7 @@ def _sequences(every: Sequence[OneCamera]) -> _Sequences:
     everybody = {shots.run.about.tracker for shots in every}
     for name, own in found.items():
         for lacking in sorted(everybody - own.keys()):
-            raise BadInput(
-                f"{name}: there is no run of it with tracker {lacking}; export one tracker at a time"
-            )
+            raise BadInput(f"{name}: no run with tracker {lacking}; export one tracker at a time")
     return found
 
 

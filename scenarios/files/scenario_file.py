@@ -143,5 +143,9 @@ def to_data(spec: ScenarioSpec) -> dict[str, Any]:
 def json_schema() -> dict[str, Any]:
     """Return the JSON schema of scenario files, for editors; with `like`, required keys may be omitted."""
     schema = TypeAdapter(ScenarioSpec).json_schema()
+    for part in schema["$defs"].values():
+        # Descriptions are docstrings, whose list of errors says nothing to a writer of files.
+        if "description" in part:
+            part["description"] = part["description"].partition("\n\nRaises:")[0]
     required = schema.pop("required")
     return schema | {"anyOf": [{"required": required}, {"required": ["name", "description", "like"]}]}

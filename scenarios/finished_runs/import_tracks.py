@@ -80,7 +80,7 @@ def _shots(run: FinishedRun, camera: str) -> OneCamera:
     """Return the images of a camera, which the run may not have."""
     known = with_boxes(run.robot.cameras)
     if camera not in known:
-        raise BadInput(f"--camera {camera}: unknown camera; {run.folder} has boxes for {', '.join(known)}")
+        raise BadInput(f"--camera: unknown camera {camera!r}; choose from {', '.join(known)}")
     return one_camera(run, camera)
 
 

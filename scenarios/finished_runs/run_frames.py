@@ -31,7 +31,9 @@ def check_frames(run: FinishedRun) -> None:
     """
     if DEPTH not in run.robot.cameras:
         known = ", ".join(run.robot.cameras)
-        raise BadInput(f"{run.folder}: its robot has no camera {DEPTH!r}, only {known}; add one to the robot")
+        raise BadInput(
+            f"{run.folder}: the robot has no camera {DEPTH!r}, only {known}; add one to the scenario"
+        )
     if not (run.folder / DEPTH / image_file(1)).is_file():
         raise BadInput(f"{run.folder}: has no images; run the scenario with --frames")
 

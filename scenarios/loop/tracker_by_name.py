@@ -98,5 +98,5 @@ def tracker_cameras(name: str) -> tuple[str, ...]:
 def _make(name: str, seed: int) -> Tracker:
     if ":" not in name and name not in TRACKERS:
         known = ", ".join((*TRACKERS, ORACLE))
-        raise BadInput(f"unknown tracker {name!r}; available: {known}, or your own as module:Class")
+        raise BadInput(f"unknown tracker {name!r}; choose from {known}, or your own as module:Class")
     return make_tracker(name, seed)

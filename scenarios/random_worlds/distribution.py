@@ -215,7 +215,7 @@ def _range(usual: Range, value: Any) -> Range:
 
 def _share(usual: Mapping[str, float], value: Any) -> Mapping[str, float]:
     if value not in list(usual):
-        raise BadInput(f"{value!r} must be one of {', '.join(usual)}")
+        raise BadInput(f"unknown value {value!r}; choose from {', '.join(usual)}")
     return {str(value): 1.0}
 
 

@@ -85,14 +85,14 @@ def is_whole(recording: Path) -> bool:
 
 def _check(recording: Path) -> None:
     if not recording.is_file():
-        raise BadInput(f"{recording}: there is no recording; run the scenario without --no-recording")
+        raise BadInput(f"{recording}: no such recording; run the scenario without --no-recording")
     try:
         with recording.open("rb") as file:
             is_recording = file.read(len(_HEAD)) == _HEAD
     except OSError as error:
         raise BadInput(f"{recording}: cannot be read: {error.strerror}") from error
     if not is_recording:
-        raise BadInput(f"{recording}: is no rerun recording; run the scenario again")
+        raise BadInput(f"{recording}: not a rerun recording; run the scenario again")
 
 
 _ONLY_ERRORS = {"RUST_LOG": "error"}

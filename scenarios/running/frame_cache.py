@@ -125,7 +125,7 @@ def open_film(folder: Path) -> Film:
     try:
         about = json.loads((folder / "about.json").read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise BadInput(f"{folder}: there are no finished frames here") from error
+        raise BadInput(f"{folder}: contains no complete frames") from error
     shapes = {camera: tuple(shape) for camera, shape in about.pop("shapes").items()}
     calibrations = {
         camera: PinholeCalibration(*(np.array(matrix) for matrix in matrices))

@@ -36,7 +36,7 @@ class Temperatures:
         Celsius | None,
         Field(
             description="temperature of the air: floor, ceiling, walls, surroundings, and unheated objects "
-            "follow it unless they have their own temperature; if omitted, all are as at 21 degC"
+            "follow it unless they have their own temperature; if omitted, defaults for 21 degC apply"
         ),
     ] = None
     floor_c: Annotated[Celsius, Field(description="temperature of the floor")] = 20.0

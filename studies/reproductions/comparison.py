@@ -73,7 +73,7 @@ def judge(claim: Claim, samples: Samples) -> Iterator[Verdict]:
 def _verdict(claim: Claim, method: str, one: Values, other: Values) -> Verdict:
     if isinstance(one, ImageErrors) and isinstance(other, ImageErrors):
         difference = by_stretches(one, other)
-        tests = {"as the source, all images of a film's splits unpaired": ("d", unpaired(one, other))}
+        tests = {"as in the source, all images of a sequence's splits unpaired": ("d", unpaired(one, other))}
         paired_test = paired_by_blocks(one, other)
         if paired_test is not None:
             tests = {"paired by stretches of time": ("d_z", paired_test)} | tests
@@ -130,7 +130,7 @@ class Standing(StrEnum):
     """How a value of ours compares with the source's."""
 
     BETTER = "better"
-    ALIKE = "as the source"
+    ALIKE = "equal"
     WORSE = "worse"
     UNCLEAR = "undecided"
     UNKNOWN = "not measured"

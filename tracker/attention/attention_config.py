@@ -62,7 +62,7 @@ class AttentionConfig:
         for key, known in (("share", get_args(Share)), ("reward", get_args(Reward))):
             if getattr(self, key) not in known:
                 raise BadInput(
-                    f"AttentionConfig: {key} must be one of {', '.join(known)}, got {getattr(self, key)!r}"
+                    f"AttentionConfig: unknown {key} {getattr(self, key)!r}; choose from {', '.join(known)}"
                 )
         if not (self.colour or (self.maps and (self.plain or self.surround or self.patterns))):
             raise BadInput("AttentionConfig: maps or colour must be used, got neither")

@@ -100,7 +100,7 @@ class ColourDescriptorConfig:
 
 def _check_name(key: str, name: str, known: dict[str, int]) -> None:
     if name not in known:
-        raise BadInput(f"ColourConfig: {key} must be one of {', '.join(known)}, got {name!r}")
+        raise BadInput(f"ColourConfig: unknown {key} {name!r}; choose from {', '.join(known)}")
 
 
 def _check_affine(affine: Affine) -> None:

@@ -140,7 +140,7 @@ def settle_uncounted(
         BadInput: the rule is unknown, or `min_visible` is not in 0..1.
     """
     if rule not in get_args(Rule):
-        raise BadInput(f"uncounted must be one of {', '.join(get_args(Rule))}, got {rule!r}")
+        raise BadInput(f"unknown uncounted {rule!r}; choose from {', '.join(get_args(Rule))}")
     if not 0.0 <= min_visible <= 1.0:
         raise BadInput(f"min_visible must be 0 to 1, got {min_visible}")
     counted = counts(truth.counted, truth.visible, min_visible)

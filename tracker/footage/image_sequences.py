@@ -113,7 +113,7 @@ class PictureFolder:
         self.paths, others = split_sequence(pictures_in(folder))
         self.expected = len(self.paths)
         if not self.paths:
-            raise BadInput(f"{folder}: there are no pictures here, {_where_else(folder)}")
+            raise BadInput(f"{folder}: contains no images, {_where_else(folder)}")
         self.numbers = numbers_in_a_row(self.paths)
         if others:
             self.notes.append(describe_left_out(self.paths, others))

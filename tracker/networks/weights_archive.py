@@ -43,7 +43,7 @@ def open_archive(path: Path, command: str) -> Iterator[Mapping[str, Any]]:
         why = error.strerror or str(error)
         raise BadInput(f"cannot be read: {why}; `{command}` makes one", file=str(path)) from None
     except _UNREADABLE:
-        raise BadInput(f"is no file of weights; `{command}` makes one", file=str(path)) from None
+        raise BadInput(f"not a file of weights; `{command}` makes one", file=str(path)) from None
 
 
 class ArraySpec(NamedTuple):

@@ -39,7 +39,7 @@ class Geometry:
         """
         calibration = frame.calibrations.get(DEPTH)
         if not isinstance(calibration, PinholeCalibration):
-            raise BadInput(f"camera {DEPTH!r}: the scene model wants a calibrated one with a flat image")
+            raise BadInput(f"camera {DEPTH!r}: the scene model needs a calibrated planar camera")
         height, width = frame.depth(DEPTH).shape
         v, u = np.mgrid[:height, :width]
         pixels = np.stack([u.ravel(), v.ravel()], axis=1).astype(np.float64)

@@ -145,7 +145,9 @@ class SceneModel:
             self._begin(frame.depth(DEPTH).shape)
             return True
         if way is None:
-            raise BadInput(f"{frame.time_s:g} s: the scene model wants odometry, to tell if the robot stands")
+            raise BadInput(
+                f"{frame.time_s:g} s: the scene model needs odometry to detect whether the robot stands"
+            )
         is_moving = (
             math.hypot(way.advance_m, way.aside_m) > config.still_m or abs(way.turn_rad) > config.still_rad
         )

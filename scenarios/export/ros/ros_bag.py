@@ -59,7 +59,7 @@ def epoch_ns(epoch: str) -> int:
         given = datetime.fromisoformat(epoch)
     except ValueError as error:
         raise BadInput(
-            f"--epoch {epoch}: is no time; give 0, now, or such as 2026-05-01T12:00:00Z"
+            f"--epoch {epoch}: not a time; give 0, now, or a time such as 2026-05-01T12:00:00Z"
         ) from error
     seconds = (given if given.tzinfo else given.replace(tzinfo=UTC)).timestamp()
     if not 0 <= seconds < _LATEST_S:

@@ -74,7 +74,7 @@ def calibrate(columns: "Floats", known_m: "Floats", guess: "Floats", width: int)
     """
     for number, seen in enumerate(np.isfinite(columns).sum(axis=0)):
         if seen < len(guess[0]):
-            raise BadInput(f"webcam {number + 1}: sees the hat at {seen} known places; 4 are needed")
+            raise BadInput(f"webcam {number + 1}: the hat is visible at {seen} known positions; 4 are needed")
 
     def residuals(flat: Floats) -> Floats:
         webcams = flat.reshape(guess.shape)
@@ -193,7 +193,7 @@ def check_views(webcams: Floats, places_m: Floats) -> None:
         off = np.arctan2(places_m[:, 1] - y, places_m[:, 0] - x) - heading
         seen = np.count_nonzero(np.abs(np.angle(np.exp(1j * off))) < view / 2.0)
         if seen < webcams.shape[1]:
-            raise BadInput(f"webcam {number}: looks at {seen} of the known places; 4 are needed")
+            raise BadInput(f"webcam {number}: {seen} of the known positions are in view; 4 are needed")
 
 
 def _shoot(

@@ -145,7 +145,7 @@ def draw_features() -> Figure:
     background = learn_background(images[:EMPTY_IMAGES])
     figure = measure(background.silhouette(images[-1]), PanoramicConfig().least_px)
     if figure is None:
-        raise BadInput(f"{ROOM}: nobody is seen at {_FEATURES_S:g} s")
+        raise BadInput(f"{ROOM}: no person is visible at {_FEATURES_S:g} s")
     return _drawn(images[-1], background, figure)
 
 

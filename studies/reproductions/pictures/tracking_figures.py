@@ -224,7 +224,7 @@ def find_meeting() -> Meeting:
             left, right = (boxes[-1][name] for name in pair)
             apart_px = abs(left[0] + left[2] / 2.0 - right[0] - right[2] / 2.0)
             return Meeting(frames[start:], (boxes[start][pair[0]], boxes[start + 1][pair[1]]), apart_px)
-    raise RuntimeError(f"nobody hides anybody in {MEETING_SCENE}")
+    raise RuntimeError(f"no person occludes another in {MEETING_SCENE}")
 
 
 def contours_after(meeting: Meeting, penalty: float, number: int) -> list[Ellipse]:

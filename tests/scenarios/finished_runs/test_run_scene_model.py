@@ -131,7 +131,7 @@ def test_a_run_without_a_depth_camera_is_refused(run: Path, tmp_path: Path) -> N
     copy = shutil.copytree(run, tmp_path / "copy")
     text = (copy / "scenario.yaml").read_text()
     (copy / "scenario.yaml").write_text(text.replace("depth:", "deep:"))
-    with pytest.raises(BadInput, match="its robot has no camera 'depth'"):
+    with pytest.raises(BadInput, match="the robot has no camera 'depth'"):
         watch(str(copy))
 
 

@@ -23,7 +23,7 @@ from tests.helpers.runs.exported import make_run
 
 SCENE: dict[str, Any] = {
     "name": "before_depth",
-    "description": "Two people cross before a depth camera that stands.",
+    "description": "Two people cross in front of a stationary depth camera.",
     "duration_s": 2.4,
     "place": {"kind": "room", "length_m": 9.0, "width_m": 7.0},
     "people": [

@@ -89,7 +89,7 @@ def test_what_the_default_does_not_reach_is_listed_once_for_sure_or_not() -> Non
         (number, one.group, one.method, one.standing.value) for number, one in below_source([part, part])
     ]
     assert found == [
-        ("figure-5.5a", "1000", "default", "as the source"),
+        ("figure-5.5a", "1000", "default", "equal"),
         ("figure-5.5a", "1000", "default, strict", "worse"),
         ("figure-5.5a", "2000", "default, strict", "worse"),
     ]

@@ -60,7 +60,7 @@ def test_a_webcam_that_sees_nobody_is_refused():
     known = np.array([[4.0, 0.0], [5.0, 1.0], [6.0, -1.0], [5.0, 0.5], [4.5, -0.5]])
     columns = columns_of(known)
     columns[:, 2] = np.nan
-    with refused("webcam 3", "0 known places", "4 are needed"):
+    with refused("webcam 3", "0 known positions", "4 are needed"):
         calibrate(columns, known, WEBCAMS, WIDTH)
 
 
@@ -68,7 +68,7 @@ def test_webcams_that_look_past_the_known_places_are_refused_before_the_film():
     places = np.array([[4.0, 0.0], [5.0, 1.0], [6.0, -1.0], [5.0, 0.5]])
     check_views(WEBCAMS, places)
     turned = WEBCAMS + np.array([0.0, 0.0, math.pi, 0.0]) * (np.arange(4) == 1)[:, None]
-    with refused("webcam 2", "0 of the known places", "4 are needed"):
+    with refused("webcam 2", "0 of the known positions", "4 are needed"):
         check_views(turned, places)
 
 

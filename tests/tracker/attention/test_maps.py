@@ -146,7 +146,7 @@ def test_what_is_no_colour_image_is_refused(image):
 
 
 def test_settings_that_make_no_sense_are_refused():
-    with refused("share must be one of sums, means, got 'part'"):
+    with refused("unknown share 'part'; choose from sums, means"):
         AttentionConfig(share="part")
     with refused("maps or colour must be used"):
         AttentionConfig(maps=False, colour=False)

@@ -51,7 +51,7 @@ def test_a_missing_file_names_the_command(tmp_path: Path) -> None:
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04 broken", b"trees: [1, 2]"])
 def test_what_is_no_archive_is_refused(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "bad.npz").write_bytes(content)
-    with refused("bad.npz", "is no file of weights"):
+    with refused("bad.npz", "not a file of weights"):
         PeopleModel.load(tmp_path / "bad.npz")
 
 
@@ -60,7 +60,7 @@ def test_a_file_that_is_cut_off_is_refused(tmp_path: Path, share: float) -> None
     path = tmp_path / "cut.npz"
     drawn_model().save(path)
     path.write_bytes(path.read_bytes()[: int(share * path.stat().st_size)])
-    with refused("cut.npz", "is no file of weights"):
+    with refused("cut.npz", "not a file of weights"):
         PeopleModel.load(path)
 
 
@@ -71,7 +71,7 @@ def test_a_file_that_lacks_something_is_refused(tmp_path: Path, lack: str) -> No
     drawn_model().save(tmp_path / "whole.npz")
     with np.load(tmp_path / "whole.npz") as archive:
         np.savez(tmp_path / "less.npz", **{name: archive[name] for name in archive if name != lack})
-    with refused("less.npz", f"has no {lack}" if lack != "about" else "is no file of weights"):
+    with refused("less.npz", f"has no {lack}" if lack != "about" else "not a file of weights"):
         PeopleModel.load(tmp_path / "less.npz")
 
 

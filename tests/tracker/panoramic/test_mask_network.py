@@ -95,7 +95,7 @@ def test_a_damaged_file_is_refused_and_closed(network, tmp_path, kept):
     ForegroundModel(network=network, view=VIEW).save(path)
     whole = path.read_bytes()
     path.write_bytes(whole[: round(kept * len(whole)) if isinstance(kept, float) else kept])
-    with pytest.raises(BadInput, match=r"model\.npz: is no file of weights") as caught:
+    with pytest.raises(BadInput, match=r"model\.npz: not a file of weights") as caught:
         ForegroundModel.load(path)
     assert caught.value.__context__ is not None  # whose frames still have what they opened
     files = [one for one in gc.get_objects() if issubclass(type(one), BufferedReader)]

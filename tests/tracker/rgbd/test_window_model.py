@@ -48,7 +48,7 @@ def test_a_missing_file_names_the_command(tmp_path: Path) -> None:
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04 broken", b"far: [1, 2]"])
 def test_what_is_no_model_is_refused(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "bad.npz").write_bytes(content)
-    with pytest.raises(BadInput, match="is no file of weights"):
+    with pytest.raises(BadInput, match="not a file of weights"):
         WindowModel.load(tmp_path / "bad.npz", sees_depth=False)
 
 

@@ -159,13 +159,13 @@ def test_frames_that_cannot_be_understood_are_refused_in_a_line() -> None:
     first = room_frame(0, [])
     with pytest.raises(BadInput, match="no image of camera 'depth'"):
         SceneModel(SceneConfig()).update(broken(first, depth=None))
-    with pytest.raises(BadInput, match="wants a calibrated one"):
+    with pytest.raises(BadInput, match="needs a calibrated planar camera"):
         SceneModel(SceneConfig()).update(replace(first, calibrations={}))
     model = SceneModel(SceneConfig())
     model.update(first)
     with pytest.raises(BadInput, match="as the ones before"):
         model.update(broken(room_frame(1, []), depth=np.zeros((60, 80), np.uint16)))
-    with pytest.raises(BadInput, match="wants odometry"):
+    with pytest.raises(BadInput, match="needs odometry"):
         model.update(room_frame(1, [], odometry=None))
     with pytest.raises(BadInput, match="must have one size"):
         model.update(broken(room_frame(1, []), depth_colour=np.zeros((60, 80, 3), np.uint8)))
