@@ -62,7 +62,7 @@ def page(run: Path, port: int) -> Iterator[tuple[subprocess.Popen[str], str]]:
     )
     assert process.stdout is not None
     line = process.stdout.readline()
-    yield process, line.split()[0]
+    yield process, re.findall(r"http:\S+", line)[0]
     process.kill()
     process.communicate()
 

@@ -79,13 +79,13 @@ def test_a_file_that_is_no_network_is_refused(tmp_path):
     with refused("model.npz"):
         ForegroundModel.load(path)
     path.write_text("no arrays")
-    with refused("model.npz", "no file of weights"):
+    with refused("model.npz", "not a file of weights"):
         ForegroundModel.load(path)
     np.savez(path, first=np.zeros(3, np.float32))
-    with refused("model.npz", "no file of weights", "peopleboy train foreground"):
+    with refused("model.npz", "not a file of weights", "peopleboy train foreground"):
         ForegroundModel.load(path)
     np.savez(path, about=np.array(["x"], dtype=object))
-    with refused("model.npz", "no file of weights"):
+    with refused("model.npz", "not a file of weights"):
         ForegroundModel.load(path)
 
 
