@@ -77,10 +77,10 @@ def live_viewer(say: Callable[[str], None], *, is_left_open: bool = True) -> Ite
     """
     if not has_screen():
         with _page(None) as (viewer, address, source):
-            say(f"{address} shows it as it goes.")
+            say(f"Live view: {address}")
             yield source
             if is_left_open:
-                say(f"{address} still shows it; Ctrl-C ends that.")
+                say(f"The run is finished; the viewer stays open at {address} (stop with Ctrl-C)")
                 _wait(viewer)
         return
     port, _ = _ports(None)

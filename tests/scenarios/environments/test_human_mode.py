@@ -36,8 +36,8 @@ def test_without_a_screen_a_page_of_this_machine_shows_it_until_it_is_closed_or_
     lines = shown.stdout.splitlines()
     assert len(lines) == 2
     for line in lines:
-        address, _, words = line.partition(" ")
+        words, _, address = line.rpartition(" ")
         assert address.startswith("http://127.0.0.1:")
-        assert words == "shows it as it goes."
+        assert words == "Live view:"
         with pytest.raises(URLError):
             urlopen(address, timeout=5)

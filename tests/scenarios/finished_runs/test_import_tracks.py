@@ -98,7 +98,11 @@ def test_everything_takes_it(driven: Path, adopted: Path, capsys: pytest.Capture
         ("1,0,9,9,9,9,1,-1,-1,-1", (), ("ids", "at least 1")),
         ("1,1,900,9,9,9,1,-1,-1,-1", (), ("160 x 120", "'thermal'", "100%")),
         ("1,1,9,9", (), ("theirs.txt:1", "got 4")),
-        ("1,1,9,9,9,9,1,-1,-1,-1", ("--camera", "rear"), ("--camera: unknown camera 'rear'", "thermal, colour")),
+        (
+            "1,1,9,9,9,9,1,-1,-1,-1",
+            ("--camera", "rear"),
+            ("--camera: unknown camera 'rear'", "thermal, colour"),
+        ),
         ("1,1,9,9,9,9,1,-1,-1,-1", ("--name", "contour"), ("--name contour", "of PeopleBoy")),
         ("1,1,9,9,9,9,1,-1,-1,-1", ("--name", "a:b"), ("--name 'a:b'", "letters")),
     ],

@@ -98,5 +98,5 @@ def kept_by_trackeval(truth: TrueBoxes, tracks: TrackBoxes) -> list[int]:
 
 @pytest.mark.parametrize("bad", [{"rule": "drop"}, {"min_visible": -0.1}, {"min_visible": float("nan")}])
 def test_an_unknown_rule_or_an_impossible_fraction_is_refused(bad):
-    with pytest.raises(BadInput, match="unknown uncounted|must be"):
+    with pytest.raises(BadInput, match=r"unknown uncounted|must be"):
         settle_uncounted(truth_of([NEAR]), tracks_of([NEAR]), **bad)
