@@ -1,20 +1,23 @@
 """The closed loop: the tracker processes images, the behaviour chooses a command, the world advances."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from peopleboy.bad_input import BadInput
 from peopleboy.behaviours.behaviour import Behaviour, Command
 from peopleboy.behaviours.make_behaviour import make_behaviour
 from peopleboy.behaviours.percept import Percept, SeenPerson
 from peopleboy.geometry.camera_calibration import Calibration
-from peopleboy.own_code import at_frame
+from peopleboy.own_code import OwnCodeFailed, at_frame
+from peopleboy.scenarios.loop.camera_health import CameraHealth
 from peopleboy.sim.cameras.camera_config import CameraConfig, calibrations_of
-from peopleboy.sim.observation import Observation
+from peopleboy.sim.cameras.kinds import flat_geometry, image_names
+from peopleboy.sim.observation import Observation, OnDemand
 from peopleboy.sim.robot.robot_body import SONAR_ANGLE_RAD, WHEEL_DISTANCE_M
 from peopleboy.sim.truth.truth import Truth
 from peopleboy.tracker.boxes import image_shares
@@ -58,6 +61,7 @@ class Tick:
         command: the robot's next command.
         reason: reason for the mode.
         following: id of the track that the robot follows; None for none.
+        failed: what is wrong with each failed camera, by its name.
     """
 
     frame: int
@@ -69,6 +73,7 @@ class Tick:
     command: Command
     reason: str = ""
     following: int | None = None
+    failed: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def truth(self) -> Truth:
@@ -102,47 +107,75 @@ class TrackerDown(RuntimeError):  # noqa: N818
 
 
 class Perception:
-    """Run the tracker, and detect missing images and tracker failures.
+    """Run the tracker, and detect failed cameras and tracker failures.
 
     Attributes:
         tracks: tracks of the last image that was processed.
+        failed: what is wrong with each failed camera, by its name.
     """
 
-    def __init__(self, tracker: Tracker, calibrations: Mapping[str, Calibration]) -> None:
+    def __init__(self, tracker: Tracker, cameras: Mapping[str, CameraConfig]) -> None:
         self._tracker = tracker
-        self._calibrations = calibrations
+        self._cameras = cameras
+        self._calibrations = calibrations_of(cameras)
         self._watched = tuple(dict.fromkeys((THERMAL, *tracker.cameras)))
+        self._health = CameraHealth(cameras, tuple(name for name in self._watched if name in cameras))
         self._newest: Observation | None = None
         self._images: Images = {}
         self.tracks: tuple[Track, ...] = ()
+        self.failed: Mapping[str, str] = {}
 
     def perceive(self, observation: Observation) -> Percept:
         """Update the tracker if the images are new, and return the input of the behaviour.
 
         Images that are bit-identical to the last ones are not new, because camera noise never repeats. The
         exception is a view colder than the thermal camera's span, which has no noise: a uniform image may be
-        new.
+        new. Images of failed cameras are withheld from tracker and behaviour; the tracker goes on with those
+        of the other cameras if it can.
         """
         newest = self._newest
-        percept_of = partial(
-            make_percept,
-            observation,
-            self._calibrations[THERMAL],
-            knows_again=knows_again(self._tracker),
-        )
         images = {name: observation.images[name] for name in self._watched if name in observation.images}
+        self.failed = self._health.check(observation)
+        sound = self._without_failed(observation)
+        percept_of = partial(
+            make_percept, sound, self._cameras, self._calibrations, knows_again=knows_again(self._tracker)
+        )
         if newest is not None and _are_same(self._images, images):
             return percept_of(self.tracks, image_age_s=observation.time_s - newest.time_s)
         before = None if newest is None else newest.odometry
-        self._newest, self._images = observation, images
+        frame = Frame.from_observation(sound, before, self._calibrations)
         try:
-            self.tracks = self._tracker.update(
-                Frame.from_observation(observation, before, self._calibrations)
-            )
+            tracks = self._update(frame)
         except TrackerDown as error:  # the robot must keep driving safely without its tracker
-            self.tracks = ()
+            self._newest, self._images, self.tracks = observation, images, ()
             return percept_of((), fault=f"the tracker failed: {error}")
+        if tracks is None:
+            self.tracks = ()
+            return percept_of((), fault=self._describe_failure())
+        self._newest, self._images, self.tracks = observation, images, tracks
         return percept_of(self.tracks)
+
+    def _describe_failure(self) -> str:
+        return ", ".join(f"camera {name} failed: {why}" for name, why in self.failed.items())
+
+    def _update(self, frame: Frame) -> tuple[Track, ...] | None:
+        """Update the tracker; None if it cannot do without the failed cameras."""
+        if not self.failed:
+            return self._tracker.update(frame)
+        if all(name in self.failed for name in self._tracker.cameras):
+            return None
+        try:
+            return self._tracker.update(frame)
+        except (BadInput, OwnCodeFailed):  # such as that the frame has no image of a camera
+            return None
+
+    def _without_failed(self, observation: Observation) -> Observation:
+        if not self.failed:
+            return observation
+        lost = {image for name in self.failed for image in image_names(name, self._cameras[name])}
+        images = observation.images
+        kept = OnDemand([name for name in images if name not in lost], lambda name: images[name])
+        return replace(observation, images=kept)
 
 
 def closed_loop(
@@ -162,7 +195,7 @@ def closed_loop(
     """
     tracker = make_tracker(tracker) if isinstance(tracker, str) else tracker
     behaviour = make_behaviour(behaviour) if isinstance(behaviour, str) else behaviour
-    perception = Perception(tracker, calibrations_of(world.cameras))
+    perception = Perception(tracker, world.cameras)
     for frame in range(1, frames + 1):
         with at_frame(frame):
             observation = world.observe()
@@ -177,6 +210,7 @@ def closed_loop(
                 command=command,
                 reason=behaviour.reason,
                 following=behaviour.following,
+                failed=perception.failed,
             )
         yield tick
         if frame < frames:
@@ -185,7 +219,8 @@ def closed_loop(
 
 def make_percept(
     observation: Observation,
-    thermal: Calibration,
+    cameras: Mapping[str, CameraConfig],
+    calibrations: Mapping[str, Calibration],
     tracks: tuple[Track, ...],
     *,
     image_age_s: float = 0.0,
@@ -193,7 +228,8 @@ def make_percept(
     fault: str = "",
 ) -> Percept:
     """Return the input of the behaviour: confirmed tracks, sonar ranges and speeds from the wheels."""
-    height, width = observation.images[THERMAL].shape
+    camera = flat_geometry(cameras, THERMAL)
+    thermal, height, width = calibrations[THERMAL], camera.height, camera.width
     people = tuple(
         see_person(track, box, width, height)
         for track in tracks

@@ -149,11 +149,12 @@ class LogLine:
         frame: 1, 2, ...
         time_s: [s] since the start.
         kind: kind of event: one of `peopleboy.sim.truth.events.Event`, `ThingEvent` and `TrackEvent`, or
-            "mode", "fault starts", "fault ends".
-        who: a person, an object, "robot", "track 3", or a kind of fault.
+            "mode", "fault starts", "fault ends", "camera fails", "camera works".
+        who: a person, an object, "robot", "track 3", a kind of fault, or a camera.
         other: the other party: an occluder, a touched object, the person who moves it, the new mode, or the
             new id of a re-identified track.
-        why: reason of a change of mode or of a lost track; time of absence of a re-identified track.
+        why: reason of a change of mode, of a failed camera or of a lost track; time of absence of a
+            re-identified track.
         move: movement of a moved object.
     """
 
@@ -195,6 +196,7 @@ class RunEvents:
     def __init__(self, faults: Sequence[FaultSpec] = ()) -> None:
         self._faults = faults
         self._broken: tuple[str, ...] = ()
+        self._failed: Mapping[str, str] = {}
         self._world = EventLog()
         self._things = ThingLog()
         self._tracks = TrackEvents()
@@ -204,6 +206,7 @@ class RunEvents:
         """Return the new events at this tick."""
         time_s, width = tick.truth.time_s, tick.truth.camera.width
         found = [(kind, fault, "", "") for kind, fault in self._of_faults(time_s)]
+        found += [(kind, camera, "", why) for kind, camera, why in self._of_cameras(tick.failed)]
         found += [(event.kind, event.person, event.other, "") for event in self._world.update(tick.truth)]
         for event in self._tracks.update(tick.tracks, time_s, width):
             by = "" if event.by is None else f"track {event.by}"
@@ -232,6 +235,12 @@ class RunEvents:
         before, self._broken = self._broken, tuple(active(self._faults, time_s))
         yield from (("fault starts", fault) for fault in self._broken if fault not in before)
         yield from (("fault ends", fault) for fault in before if fault not in self._broken)
+
+    def _of_cameras(self, failed: Mapping[str, str]) -> Iterator[tuple[str, str, str]]:
+        """Yield the cameras that fail or work again."""
+        before, self._failed = self._failed, failed
+        yield from (("camera fails", name, why) for name, why in failed.items() if name not in before)
+        yield from (("camera works", name, "") for name in before if name not in failed)
 
 
 _WORTH_DEG = 10.0

@@ -33,7 +33,7 @@ def test_images_of_a_cold_wall_are_new_ones_though_all_of_them_are_black(tmp_pat
     scenario = parse_scenario(EMPTY, source="test", folder=tmp_path)
     tracker = Counter()
     with SimulatedWorld(scenario.world(0)) as world:
-        perception = Perception(tracker, calibrations_of(world.cameras))
+        perception = Perception(tracker, world.cameras)
         for _ in range(3):
             observation = world.observe()
             assert not observation.images["thermal"].any()

@@ -1,0 +1,123 @@
+"""Judge from its images whether a camera works or is black, saturated, constant, frozen or silent."""
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from peopleboy.sim.cameras.camera_config import CameraConfig, ThermalConfig
+from peopleboy.sim.observation import Observation
+
+Image = NDArray[Any]
+
+FLAT: Final = 2  # a failed sensor still flickers by a grey level or two
+_MIDDLE: Final = (
+    0.2  # share of the width on either side that a fast turn takes out of view between two images
+)
+# What fills less of the image, or is narrower, may leave it in one step: behind the edge of a wall or a door.
+_TALL: Final = 0.2  # [image heights]
+_WIDE: Final = 0.1  # share of the square of its height that a pattern fills; 0.17 for a person who stands
+_LATE_S: Final = 0.1  # a frame more than the shutter's time
+
+# Cameras with images that may be uniform: a view colder than the span, or beyond a camera's reach.
+_MAY_BE_FLAT: Final = frozenset({"thermal", "depth"})
+
+
+class CameraHealth:
+    """Watches the images of cameras, instant by instant.
+
+    A colour image without dynamic range is a failure. A thermal image without it is one only if another
+    camera fails at the same time, or if something was in the middle of the last image that cannot have left
+    it since: a view colder than the thermal camera's span has no noise, and is uniform. Camera noise never
+    repeats, so an image that equals the last one is a failure as well, but for the time of a shutter.
+
+    Args:
+        cameras: settings of the robot's cameras, by name.
+        watched: names of those to watch; the others are not rendered.
+    """
+
+    def __init__(self, cameras: Mapping[str, CameraConfig], watched: tuple[str, ...]) -> None:
+        self._cameras = cameras
+        self._watched = watched
+        self._last: dict[str, tuple[Image, float]] = {}  # the last image that was new, and its time
+        self._dead: dict[str, Image] = {}  # first image without dynamic range of each camera that has failed
+
+    def check(self, observation: Observation) -> dict[str, str]:
+        """Return what is wrong with each camera that has failed at this instant; empty if all work."""
+        images, time_s = observation.images, observation.time_s
+        faults: dict[str, str] = {}
+        flat: dict[str, Image] = {}
+        for name in self._watched:
+            image = images.get(name)
+            if image is None:
+                if self._is_overdue(name, time_s):
+                    faults[name] = "no image"
+            elif _is_flat(image):
+                flat[name] = image
+            elif name in self._last and np.array_equal(self._last[name][0], image):
+                if time_s - self._last[name][1] > self._shutter_s(name):
+                    faults[name] = "the image repeats"
+            else:
+                self._last[name] = image, time_s
+        dead = {name for name, image in flat.items() if self._is_dead(name, image)}
+        self._dead = {name: self._dead.get(name, flat[name]) for name in dead}
+        for name, image in flat.items():
+            if dead:
+                faults[name] = _describe(image)
+            if name not in dead:
+                self._last[name] = image, time_s
+        return faults
+
+    def _is_dead(self, name: str, image: Image) -> bool:
+        """Return whether an image without dynamic range is a failure by itself."""
+        if name not in self._dead:
+            return self._cannot_be_flat(name)
+        # A dead sensor flickers; a cold view after it does not.
+        is_steady = image.max() == image.min()
+        return not (self._may_be_flat(name) and is_steady and not np.array_equal(image, self._dead[name]))
+
+    def _cannot_be_flat(self, name: str) -> bool:
+        if not self._may_be_flat(name):
+            return True
+        return name in self._last and _has_pattern(self._last[name][0])
+
+    def _may_be_flat(self, name: str) -> bool:
+        return self._cameras[name].kind in _MAY_BE_FLAT
+
+    def _is_overdue(self, name: str, time_s: float) -> bool:
+        """Return whether an image should have come by now."""
+        rate_hz = self._cameras[name].rate_hz
+        return name in self._last and (rate_hz is None or time_s - self._last[name][1] > 1.5 / rate_hz)
+
+    def _shutter_s(self, name: str) -> float:
+        """Return for how long [s] a camera may repeat its image."""
+        camera = self._cameras[name]
+        if not isinstance(camera, ThermalConfig) or camera.shutter_every_s == 0.0:
+            return 0.0
+        return camera.shutter_lasts_s + _LATE_S
+
+
+def _is_flat(image: Image) -> bool:
+    return int(image.max()) - int(image.min()) <= FLAT
+
+
+def _has_pattern(image: Image) -> bool:
+    """Return whether there is so much in the middle of an image that it cannot leave within one step."""
+    height, width = image.shape[:2]
+    edge = int(_MIDDLE * width)
+    middle = image[:, edge : width - edge]
+    is_apart = np.abs(middle.astype(np.int32) - int(np.median(image))) > FLAT
+    rows = np.flatnonzero(is_apart.any(axis=1))
+    tall = int(rows[-1] - rows[0]) + 1 if len(rows) else 0
+    return tall >= _TALL * height and int(is_apart.sum()) >= _WIDE * tall**2
+
+
+def _describe(image: Image) -> str:
+    if image.max() <= FLAT:
+        return "the image is black"
+    return (
+        "the image is saturated"
+        if image.min() >= np.iinfo(image.dtype).max - FLAT
+        else "the image is constant"
+    )

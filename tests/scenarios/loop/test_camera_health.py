@@ -1,0 +1,96 @@
+import numpy as np
+import pytest
+
+from peopleboy.geometry.pose2 import Pose2
+from peopleboy.scenarios.loop.camera_health import CameraHealth
+from peopleboy.sim.cameras.camera_config import ColourConfig, ThermalConfig
+from peopleboy.sim.observation import Observation
+
+CAMERAS = {"thermal": ThermalConfig(), "colour": ColourConfig()}
+COLD = np.zeros((60, 80), np.uint8)
+SECONDS = iter(range(10000))
+
+
+def observed(**images):
+    return Observation(
+        time_s=next(SECONDS) / 15.0,
+        sonar_m=np.zeros(16),
+        odometry=Pose2(),
+        wheel_speeds_m_s=(0.0, 0.0),
+        images=images,
+    )
+
+
+def warm(left, width=10, height=36):
+    """A thermal image of a person, with noise."""
+    image = COLD.copy()
+    image[12 : 12 + height, left : left + width] = np.random.default_rng(left).integers(90, 110)
+    image[12, left] += np.uint8(next(SECONDS) % 99)
+    return image
+
+
+def lit():
+    return np.random.default_rng(next(SECONDS)).integers(0, 255, (60, 80, 3), np.uint8)
+
+
+def flicker(base=0):
+    return (base + np.random.default_rng(next(SECONDS)).integers(0, 2, (60, 80))).astype(np.uint8)
+
+
+@pytest.fixture
+def health():
+    return CameraHealth(CAMERAS, ("thermal", "colour"))
+
+
+def test_a_person_who_leaves_sideways_or_behind_an_edge_leaves_a_cold_view_and_no_failure(health):
+    for image in (warm(30), warm(70), COLD, warm(30), warm(30, width=3), COLD, COLD):
+        assert health.check(observed(thermal=image, colour=lit())) == {}
+
+
+@pytest.mark.parametrize(
+    ("image", "word"),
+    [(COLD, "black"), (flicker(), "black"), (flicker(254), "saturated"), (COLD + 99, "constant")],
+)
+def test_a_person_in_the_middle_cannot_vanish_and_the_camera_works_again_with_the_next_picture(
+    health, image, word
+):
+    health.check(observed(thermal=warm(30), colour=lit()))
+    for _ in range(3):
+        found = health.check(observed(thermal=image, colour=lit()))
+        assert list(found) == ["thermal"]
+        assert word in found["thermal"]
+    assert health.check(observed(thermal=warm(40), colour=lit())) == {}
+
+
+def test_a_camera_that_stops_flickering_has_a_cold_view(health):
+    health.check(observed(thermal=warm(30), colour=lit()))
+    assert health.check(observed(thermal=flicker(), colour=lit()))
+    assert health.check(observed(thermal=COLD, colour=lit())) == {}
+
+
+def test_a_cold_view_fails_with_a_black_colour_image_and_works_with_the_next_one(health):
+    health.check(observed(thermal=COLD, colour=lit()))
+    black = np.zeros((60, 80, 3), np.uint8)
+    assert set(health.check(observed(thermal=COLD, colour=black))) == {"thermal", "colour"}
+    assert health.check(observed(thermal=COLD, colour=lit())) == {}
+
+
+def test_a_frozen_or_missing_image_is_a_failure_of_that_camera_alone(health):
+    first = warm(30)
+    health.check(observed(thermal=first, colour=lit()))
+    assert health.check(observed(thermal=first.copy(), colour=lit())) == {"thermal": "the image repeats"}
+    assert health.check(observed(colour=lit())) == {"thermal": "no image"}
+    assert health.check(observed(thermal=warm(31), colour=lit())) == {}
+
+
+def test_a_shutter_may_repeat_the_image():
+    camera = ThermalConfig(shutter_every_s=30.0, shutter_lasts_s=0.4)
+    health, image = CameraHealth({"thermal": camera}, ("thermal",)), warm(30)
+    start = observed(thermal=image)
+    health.check(start)
+    for later_s, fails in ((0.4, False), (0.7, True)):
+        again = Observation(
+            time_s=start.time_s + later_s, sonar_m=start.sonar_m, odometry=Pose2(), wheel_speeds_m_s=(0.0, 0.0),
+            images={"thermal": image},
+        )  # fmt: skip
+        assert bool(health.check(again)) == fails
