@@ -18,6 +18,7 @@ _MIDDLE: Final = (
 # What fills less of the image, or is narrower, may leave it in one step: behind the edge of a wall or a door.
 _TALL: Final = 0.2  # [image heights]
 _WIDE: Final = 0.1  # share of the square of its height that a pattern fills; 0.17 for a person who stands
+_NOISY_PX: Final = 50  # so many noisy pixels do not repeat by chance
 _LATE_S: Final = 0.1  # a frame more than the shutter's time
 
 # Cameras with images that may be uniform: a view colder than the span, or beyond a camera's reach.
@@ -55,7 +56,7 @@ class CameraHealth:
                     faults[name] = "no image"
             elif _is_flat(image):
                 flat[name] = image
-            elif name in self._last and np.array_equal(self._last[name][0], image):
+            elif name in self._last and _is_repeated(self._last[name][0], image):
                 if time_s - self._last[name][1] > self._shutter_s(name):
                     faults[name] = "the image repeats"
             else:
@@ -100,6 +101,13 @@ class CameraHealth:
 
 def _is_flat(image: Image) -> bool:
     return int(image.max()) - int(image.min()) <= FLAT
+
+
+def _is_repeated(last: Image, image: Image) -> bool:
+    """Return whether an image equals the last one and has enough noisy pixels, which are not extremes."""
+    if not np.array_equal(last, image):
+        return False
+    return int(np.count_nonzero((image > image.min()) & (image < image.max()))) >= _NOISY_PX
 
 
 def _has_pattern(image: Image) -> bool:

@@ -29,6 +29,7 @@ from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versi
 from peopleboy.scenarios.run_folder.image_files import about_gains
 from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.scenarios.scores.comfort_metrics import score_comfort
+from peopleboy.scenarios.scores.contacts import ContactLog
 from peopleboy.scenarios.scores.corridor_metrics import legs_of, score_corridor
 from peopleboy.scenarios.scores.drive_record import DriveLog
 from peopleboy.scenarios.scores.following_metrics import following_task, score_following, tracks_on_target
@@ -67,6 +68,7 @@ class RunObservers:
         is_secret: bool = False,
     ) -> None:
         self.drive = DriveLog()
+        self.contacts = ContactLog()
         self._events = RunEvents(faults)
         self._sheet = ContactSheet(title, config.robot)
         self._recorder = recorder
@@ -80,6 +82,7 @@ class RunObservers:
         track, is_wrong = tracks_on_target(tick, self._boxes, self._track)
         self._track = track or self._track
         self.drive.add(tick.truth, track, None if self._is_secret else is_wrong)
+        self.contacts.add(tick.truth)
         self._sheet.add(tick, events)
         if self._recorder is not None:
             self._recorder.log(tick, events)
@@ -202,6 +205,7 @@ def run(
         if scenario.robot.behaviour != "stand" and config.people:
             comfort = score_comfort(drive)
         scores = score_run(options.out, frames, following, corridor, comfort, options.boxes, name)
+        scores = replace(scores, contacts=tuple(observers.contacts.contacts))
         observers.save(options.out)
         folder.complete(scores.to_json())
         _LOG.info("wrote %s", options.out)

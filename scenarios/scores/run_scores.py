@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from peopleboy.scenarios.scores.comfort_metrics import ComfortScore
+from peopleboy.scenarios.scores.contacts import Contact
 from peopleboy.scenarios.scores.corridor_metrics import CorridorScore
 from peopleboy.scenarios.scores.evaluate_runs import (
     BoxReference,
@@ -40,6 +41,7 @@ class RunScores:
         further: of people by the boxes that the tracker gave in further cameras' images, by camera.
         by: what the boxes of `people` were held against; None for squares on the floor.
         notes: what whoever reads the figures must know, a line each.
+        contacts: what the robot touched, how fast, and who caused it.
     """
 
     people: Scores
@@ -49,6 +51,7 @@ class RunScores:
     further: Mapping[str, Scores] = field(default_factory=dict)
     by: BoxReference | None = None
     notes: tuple[str, ...] = ()
+    contacts: tuple[Contact, ...] = ()
 
     def __repr__(self) -> str:
         """Summarise the run."""
@@ -62,6 +65,8 @@ class RunScores:
         for group, score in drives.items():
             if score is not None:
                 groups[group] = score.to_json()
+        if self.contacts:
+            groups["contacts"] = [contact.to_json() for contact in self.contacts]
         if self.further:
             groups["cameras"] = {camera: to_json(scores) for camera, scores in self.further.items()}
         return groups

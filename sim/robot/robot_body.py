@@ -30,6 +30,12 @@ def outline_gap(pose: Pose2, point_m: tuple[float, float]) -> float:
     return math.hypot(max(_REAR_M - ahead, ahead - _FRONT_M, 0.0), max(abs(aside) - _HALF_WIDTH_M, 0.0))
 
 
+def nearest_on_outline(point_m: tuple[float, float]) -> tuple[float, float]:
+    """Return the point of the robot's outline that is nearest to a point, both in the robot frame."""
+    ahead, aside = point_m
+    return min(max(ahead, _REAR_M), _FRONT_M), min(max(aside, -_HALF_WIDTH_M), _HALF_WIDTH_M)
+
+
 # x, y [m] and angle [deg] of each sonar of the lower rings: ARIA's parameter file peoplebot-sh.p, SonarUnit
 # 0..15 (its 16..31, up on the deck, are left out).
 _UNITS = np.array(
