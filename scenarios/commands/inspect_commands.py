@@ -49,11 +49,14 @@ def view(folder: Path, web: bool, port: int | None) -> None:
         recording_in,
     )
     from peopleboy.scenarios.recording.viewer import open_viewer, serve
+    from peopleboy.scenarios.run_folder.finished_run import note_on
 
     if port is not None and not web:
         raise BadInput(f"--port {port}: is the port of --web; add --web, or leave --port out")
     recording = recording_in(folder)
     check_installed("view")
+    if (folder / "run.json").is_file() and (note := note_on(folder)):
+        print_note(f"{folder}: {note}")
     if not is_whole(recording):
         print_note(f"{recording}: the recording was cut off; only the part that was written is shown")
     layers = [recording, *layers_in(folder)]

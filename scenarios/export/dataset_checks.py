@@ -16,6 +16,7 @@ from peopleboy.scenarios.export.splits import SPLITS, split_file
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.run_folder.finished_run import cameras_of
 from peopleboy.scenarios.run_folder.image_files import image_file
+from peopleboy.scenarios.run_folder.run_tables import LOCAL
 from peopleboy.scenarios.running.run import run
 from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.sim.cameras.kinds import image_folders
@@ -111,7 +112,9 @@ def _faults(look: _Look, frames: Sequence[int]) -> Iterator[str]:
 
 def _check_shares(run: Path) -> list[str]:
     table = pq.read_table(
-        run / "truth.parquet", columns=["frame", "visible_fraction", "hidden_by", "whole_px"]
+        run / "truth.parquet",
+        columns=["frame", "visible_fraction", "hidden_by", "whole_px"],
+        filesystem=LOCAL,
     )
     return [
         f"frame {row['frame']}: shares sum to {total:.6f}"
@@ -123,7 +126,7 @@ def _check_shares(run: Path) -> list[str]:
 
 
 def _check_boxes(run: Path) -> list[str]:
-    table = pq.read_table(run / "truth.parquet", filters=[("visible_px", ">", 0)])
+    table = pq.read_table(run / "truth.parquet", filters=[("visible_px", ">", 0)], filesystem=LOCAL)
     inner, outer = (
         np.array([table[f"{which}_{edge}_px"].to_numpy() for edge in ("left", "top", "width", "height")])
         for which in ("visible", "whole")

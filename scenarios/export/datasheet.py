@@ -22,7 +22,7 @@ from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.random_worlds.distribution import ODDS, RANGES, SHARES
 from peopleboy.scenarios.run_folder.finished_run import cameras_of
 from peopleboy.scenarios.run_folder.image_files import describe_images
-from peopleboy.scenarios.run_folder.run_tables import is_in_image
+from peopleboy.scenarios.run_folder.run_tables import LOCAL, is_in_image
 from peopleboy.scenarios.scores.suite_table import add_up, count
 from peopleboy.sim.cameras.camera_config import CameraConfig
 from peopleboy.sim.cameras.kinds import KINDS, image_folders, kind_of
@@ -76,7 +76,7 @@ class Statistics:
 
 def measure(runs: Sequence[Path]) -> Statistics:
     """Go through the truth, and the images if there are any, of these runs' folders."""
-    tables = [pq.read_table(run / "truth.parquet") for run in runs]
+    tables = [pq.read_table(run / "truth.parquet", filesystem=LOCAL) for run in runs]
     about = [json.loads((run / "run.json").read_text(encoding="utf-8")) for run in runs]
     frames = [(one["frames"], one["rate_hz"]) for one in about]
     people = pa.concat_tables(tables)

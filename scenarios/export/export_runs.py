@@ -103,7 +103,8 @@ def export(runs: Sequence[FinishedRun], options: ExportOptions, play: Play) -> N
 
 
 def notes_on(runs: Sequence[FinishedRun], options: ExportOptions) -> Iterator[str]:
-    """Say, once a tracker, whose boxes are of another kind than those of the truth beside which they lie."""
+    """Return notes on runs that were cut off, and on boxes of another kind than the truth's."""
+    yield from (f"{run.folder}: {run.incomplete}" for run in runs if run.incomplete)
     if not takes(options.form, "boxes"):
         return
     there, name = options.boxes or BoxKind.TORSO, options.camera or "thermal"

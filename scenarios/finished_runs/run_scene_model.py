@@ -19,6 +19,7 @@ from peopleboy.scenarios.recording.recording_file import is_recorded
 from peopleboy.scenarios.run_folder.atomic_output import atomic
 from peopleboy.scenarios.run_folder.finished_run import FinishedRun
 from peopleboy.scenarios.run_folder.image_files import write_png
+from peopleboy.scenarios.run_folder.run_tables import LOCAL
 from peopleboy.tracker.frame import DEPTH
 from peopleboy.tracker.scene_model.scene import Change, Happening, Metres, VistaScene
 from peopleboy.tracker.scene_model.scene_config import PeopleMaskConfig, SceneConfig
@@ -179,7 +180,7 @@ def true_events(run: FinishedRun) -> list[TrueEvent]:
     path = run.folder / "truth" / "things.parquet"
     if not lines or not path.is_file():
         return []
-    table = pq.read_table(path, columns=["frame", "name", "x_m", "y_m"]).to_pylist()
+    table = pq.read_table(path, columns=["frame", "name", "x_m", "y_m"], filesystem=LOCAL).to_pylist()
     places: dict[str, list[tuple[int, Spot]]] = defaultdict(list)
     for row in table:
         places[row["name"]].append((row["frame"], (row["x_m"], row["y_m"])))

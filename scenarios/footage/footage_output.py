@@ -25,7 +25,7 @@ from peopleboy.scenarios.drawing.overlay import (
 from peopleboy.scenarios.export.video import FilmWriter
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.views import Views
-from peopleboy.scenarios.run_folder.run_tables import TRACKS, Row, track_row, write_table
+from peopleboy.scenarios.run_folder.run_tables import TRACKS, TableFile, track_row
 from peopleboy.tracker.boxes import Box
 from peopleboy.tracker.evaluation.evaluate import Scores, evaluate
 from peopleboy.tracker.evaluation.mot_files import read_tracks, track_line, write_truth
@@ -136,7 +136,7 @@ class FootageLog:
         self._results = self._stack.enter_context(
             (folder / "tracks.txt").open("w", encoding="utf-8", newline="\n")
         )
-        self._rows: list[Row] = []
+        self._table = TableFile(folder / "tracks.parquet", TRACKS)
         self._ids: set[int] = set()
         self.frames = 0
         self.size = (0, 0)
@@ -157,7 +157,8 @@ class FootageLog:
         self.frames += 1
         camera = self._views.camera
         height, width = self.size = frame.images[camera].shape[:2]
-        self._rows += [track_row(self.frames, frame.time_s, track, explanation, camera) for track in tracks]
+        rows = (track_row(self.frames, frame.time_s, track, explanation, camera) for track in tracks)
+        self._table.add(rows)
         sure = [track for track in tracks if track.status is not Status.TENTATIVE]
         self._ids |= {track.id for track in sure}
         self._results.writelines(
@@ -184,7 +185,7 @@ class FootageLog:
 
     def finish(self) -> Scores | None:
         """Write tables, contact sheet and scores."""
-        write_table(self._folder / "tracks.parquet", self._rows, TRACKS)
+        self._table.close()
         length = f"{counted(self.frames, 'frame')} {self._means}"
         self._sheet.save(self._folder / "contact_sheet.png", length)
         if self._truth is None:

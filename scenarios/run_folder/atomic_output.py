@@ -1,5 +1,6 @@
 """Write files and folders atomically, and refuse to replace what must be kept."""
 
+import fcntl
 import json
 import os
 import re
@@ -10,35 +11,74 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
-from typing import Any, NoReturn
+from typing import IO, Any, Final, NoReturn
 
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import Terminated
 
+_SIGNALS: Final = (signal.SIGTERM, signal.SIGHUP)
+PART: Final = ".part"
+"""Suffix of a file that is being written; remains of a killed process may be removed."""
+
 
 @contextmanager
-def left_by_sigterm() -> Iterator[None]:
-    """Make SIGTERM, sent for example by `timeout` or at shutdown, leave the block with all clean-up.
+def left_by_signals() -> Iterator[None]:
+    """Make SIGTERM and SIGHUP leave the block with all clean-up.
 
-    The process then ends with the exit code that shells use for this signal. An existing handler stays, and
+    They are sent for example by `timeout`, at shutdown, and when a terminal is closed. The process then ends
+    with the exit code that shells use for the signal. An existing handler stays (`nohup` ignores SIGHUP), and
     outside the main thread, where no handler can be set, nothing changes.
     """
     is_main = threading.current_thread() is threading.main_thread()
-    before: Any = signal.getsignal(signal.SIGTERM)
-    if not is_main or before != signal.SIG_DFL:
-        yield
-        return
-    signal.signal(signal.SIGTERM, _leave)
+    ours = [one for one in _SIGNALS if is_main and signal.getsignal(one) == signal.SIG_DFL]
+    for number in ours:
+        signal.signal(number, _leave)
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number in ours:
+            signal.signal(number, signal.SIG_DFL)
 
 
 def _leave(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
-    # A second signal must not interrupt the clean-up.
-    signal.signal(number, signal.SIG_IGN)
+    # A second signal must not interrupt the clean-up; a closed terminal sends both.
+    for one in _SIGNALS:
+        signal.signal(one, signal.SIG_IGN)
     raise Terminated(128 + number)
+
+
+def write_aside(path: Path, content: bytes) -> None:
+    """Write a file beside `path` and rename it, so that `path` is never incomplete.
+
+    Raises:
+        OSError: it cannot be written; nothing is left of it.
+    """
+    part = path.with_name(path.name + PART)
+    try:
+        part.write_bytes(content)
+        part.replace(path)
+    except OSError:
+        with suppress(OSError):
+            part.unlink()
+        raise
+
+
+def hold(file: IO[Any]) -> None:
+    """Lock an open file until it is closed, or until the process ends, however it ends."""
+    with suppress(OSError):  # some network drives have no locks
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+def is_held(path: Path) -> bool:
+    """Return whether a running process holds this file."""
+    try:
+        with path.open("rb") as file:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError:
+        return False
+    return False
 
 
 @contextmanager
@@ -53,7 +93,7 @@ def atomic(path: Path, stays: Callable[[], bool] = lambda: False) -> Iterator[Pa
         stays: called at the end; returns whether to keep what is at `path` by then.
     """
     part, old = (path.parent / f".{path.name}.{os.getpid()}.{state}" for state in ("new", "old"))
-    with left_by_sigterm():
+    with left_by_signals():
         _sweep(path)
         try:
             yield part

@@ -15,6 +15,7 @@ from peopleboy.scenarios.files.read_yaml import read_yaml
 from peopleboy.scenarios.files.scenario import Scenario
 from peopleboy.scenarios.files.validation import validated
 from peopleboy.scenarios.loop.run_events import LogLine
+from peopleboy.scenarios.run_folder.folder import settle_run
 from peopleboy.scenarios.run_folder.run_files import RunFiles, read_files
 from peopleboy.scenarios.run_folder.run_tables import ROBOT, TRUTH
 from peopleboy.sim.cameras.camera_config import CameraConfig
@@ -50,13 +51,15 @@ class About(BaseModel):
     versions: dict[str, str]
     images: bool = False
     boxes: Literal["torso", "whole"] = "torso"
+    status: Literal["complete", "cut off"] = "complete"
+    planned_frames: Annotated[int, Field(ge=1)] | None = None
     behaviour: str | None = None
     adopted: ImportedTracks | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class FinishedRun:
-    """One complete run of a scenario.
+    """One run of a scenario, complete or cut off.
 
     All attributes except the first two are read when they are first accessed.
 
@@ -85,6 +88,11 @@ class FinishedRun:
     def frames(self) -> int:
         """Number of frames; the first frame is 1."""
         return self.about.frames
+
+    @property
+    def incomplete(self) -> str:
+        """Note on a run that was cut off; empty for a complete one."""
+        return incomplete(self.about.model_dump())
 
     @property
     def rate_hz(self) -> int:
@@ -117,7 +125,9 @@ class FinishedRun:
 
     @cached_property
     def metrics(self) -> Mapping[str, Any]:
-        """Contents of metrics.json, by group."""
+        """Contents of metrics.json, by group; a run that was cut off has none."""
+        if self.incomplete:
+            return {}
         path = self.folder / "metrics.json"
         try:
             data = json.loads(path.read_text(encoding="utf-8"))
@@ -144,11 +154,29 @@ class FinishedRun:
         return read_files(self.folder, self.frames, people, robot)
 
 
+def incomplete(about: Mapping[str, Any]) -> str:
+    """Return a note on a run that was cut off, from the contents of run.json; empty for a complete one."""
+    if about.get("status") == "complete":
+        return ""
+    planned = about.get("planned_frames")
+    return f"incomplete: {about['frames']} {f'of {planned} ' if planned else ''}frames"
+
+
+def note_on(folder: Path) -> str:
+    """Return why a folder is not that of a complete run; empty if it is."""
+    try:
+        return incomplete(read_run(folder))
+    except BadInput as error:
+        return str(error)
+
+
 def read_run(folder: Path) -> dict[str, Any]:
-    """Read run.json of a complete run, which may also be a run of footage.
+    """Read run.json of a run that is complete or was cut off; it may also be a run of footage.
+
+    The folder of a run that was killed is completed first, up to its last whole frame.
 
     Raises:
-        BadInput: there is no run, or it is not complete.
+        BadInput: there is no run, or it failed, goes on, or was cut off before its first frame.
     """
     path = folder / "run.json"
     check_there(folder)
@@ -160,17 +188,19 @@ def read_run(folder: Path) -> dict[str, Any]:
         failure = about.get("error")
         why = f": {failure['message']}" if isinstance(failure, dict) and "message" in failure else ""
         raise BadInput(f"{path}: this run failed{why}; fix the cause, and run it again")
-    if not isinstance(about, dict) or about.get("status") != "complete":
-        raise BadInput(
-            f"{path}: this run was cut off; run it again, or score its files with --truth and --tracks"
-        )
+    if isinstance(about, dict) and about.get("status") == "running":
+        about = settle_run(folder, about)
+    if not isinstance(about, dict) or about.get("status") not in ("complete", "cut off"):
+        raise BadInput(f"{path}: has no status of a run; run it again")
+    if about["status"] == "cut off" and about.get("frames") == 0:
+        raise BadInput(f"{path}: this run was cut off before its first frame; run it again")
     if not isinstance(about.get("frames"), int):
         raise BadInput(f"{path}: frames: must be a whole number, got {about.get('frames')!r}; run it again")
     return about
 
 
 def open_run(folder: Path) -> FinishedRun:
-    """Open a complete run of a scenario by its folder.
+    """Open a run of a scenario, complete or cut off, by its folder.
 
     Raises:
         BadInput: the folder does not contain one.
@@ -231,9 +261,7 @@ def _open_whole(folder: Path) -> FinishedRun:
     read_run(folder)
     for name in _FILES:
         if not (folder / name).is_file():
-            raise BadInput(
-                f"{folder / name}: file not found; only complete runs of scenarios can be exported"
-            )
+            raise BadInput(f"{folder / name}: file not found; only runs of scenarios can be exported")
     run = open_run(folder)
     _ = run.world
     run.files()

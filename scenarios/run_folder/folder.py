@@ -3,19 +3,27 @@
 import json
 import shutil
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from types import TracebackType
 from typing import Any, TextIO
 
+import pyarrow.parquet as pq
 import yaml
 
 from peopleboy.bad_input import BadInput
 from peopleboy.own_code import OwnCodeFailed, in_one_line, traceback_of
 from peopleboy.scenarios.loop.loop import Tick
-from peopleboy.scenarios.run_folder.atomic_output import check_out, writing_to
+from peopleboy.scenarios.run_folder.atomic_output import (
+    PART,
+    check_out,
+    hold,
+    is_held,
+    write_aside,
+    writing_to,
+)
 from peopleboy.scenarios.run_folder.image_files import (
     BackgroundQueue,
     images_to_write,
@@ -25,19 +33,22 @@ from peopleboy.scenarios.run_folder.image_files import (
 )
 from peopleboy.scenarios.run_folder.run_files import truth_files
 from peopleboy.scenarios.run_folder.run_tables import (
+    LOG,
     ROBOT,
     THINGS,
     TRACKS,
     TRUTH,
     Row,
+    TableLog,
+    recover_table,
     robot_row,
     thing_rows,
     track_rows,
     truth_rows,
-    write_table,
+    whole_lines,
 )
 from peopleboy.sim.cameras.camera_config import CameraConfig, DepthConfig
-from peopleboy.sim.cameras.kinds import with_boxes
+from peopleboy.sim.cameras.kinds import Stored, with_boxes
 from peopleboy.sim.truth.truth import Backgrounds
 from peopleboy.tracker.evaluation.mot_files import track_line, truth_line
 from peopleboy.tracker.frame import THERMAL
@@ -60,20 +71,22 @@ class CameraTruth:
     """
 
     def __init__(self, folder: Path, camera: str) -> None:
-        text, self._table = truth_files(folder, camera)
-        self.lines = open_text(text)
+        text, table = truth_files(folder, camera)
+        self._lines = open_text(text)
         self._camera = camera
-        self._rows: list[Row] = []
+        self._rows = TableLog(table, TRUTH)
 
     def write(self, tick: Tick) -> None:
         """Write the ground truth of one tick."""
         if self._camera in tick.truths:
-            self._rows += truth_rows(tick, self._camera)
-            self.lines.writelines(gt_lines(tick, self._camera))
+            self._rows.write(truth_rows(tick, self._camera))
+            self._lines.writelines(gt_lines(tick, self._camera))
+            self._lines.flush()
 
-    def write_table(self) -> None:
-        """Write the table to disk."""
-        write_table(self._table, self._rows, TRUTH)
+    def save(self) -> None:
+        """Complete text and table."""
+        self._lines.close()
+        self._rows.save()
 
 
 def things_camera(cameras: Mapping[str, CameraConfig]) -> str:
@@ -98,23 +111,22 @@ class ThingFiles:
     def __init__(self, folder: Path, cameras: Mapping[str, CameraConfig], *, frames: bool) -> None:
         self._folder = folder
         self._camera = things_camera(cameras)
-        self._rows: list[Row] = []
-        self._has_things = False
+        self._rows: TableLog | None = None
         self._backgrounds = {name: Backgrounds() for name in depth_cameras(cameras)} if frames else {}
 
     def write(self, tick: Tick) -> None:
         """Collect the ground truth of one tick."""
         if tick.truth.things and self._camera in tick.truths:
-            self._has_things = True
-            self._rows += thing_rows(tick, self._camera)
+            self._rows = self._rows or TableLog(self._folder / "things.parquet", THINGS)
+            self._rows.write(thing_rows(tick, self._camera))
         for name, backgrounds in self._backgrounds.items():
             if name in tick.truths:
                 backgrounds.update(tick.truths[name])
 
-    def flush(self) -> None:
-        """Write everything to disk."""
-        if self._has_things:
-            write_table(self._folder / "things.parquet", self._rows, THINGS)
+    def save(self) -> None:
+        """Complete the table, and write the backgrounds."""
+        if self._rows is not None:
+            self._rows.save()
         for name, backgrounds in self._backgrounds.items():
             for kind, depth in (("clean", backgrounds.clean), ("ever", backgrounds.ever)):
                 if depth is not None:
@@ -125,8 +137,9 @@ class RunFolder:
     """Write one run; use it as a context manager.
 
     The status in `run.json` is "running" from the start, "complete" after `complete`, "cut off" if the block
-    is left by an interrupt, and "failed" with the message if it is left by an error. Text files grow line by
-    line; tables are written at the end, including those of a run that was cut off or failed.
+    is left by an interrupt, and "failed" with the message if it is left by an error. Text files and the logs
+    of tables are flushed every frame, the robot's after all others and after the frame's images: a frame of
+    which it has a row is whole. What a killed process left is completed by `settle_run`.
     """
 
     def __init__(
@@ -142,10 +155,9 @@ class RunFolder:
         self._cameras = cameras
         self._about = dict(about) | {"versions": versions()}
         self._writes_frames = frames
-        self._tracks: list[Row] = []
-        self._robot: list[Row] = []
+        self._frames = 0
         self._is_complete = False
-        self._write_json("run.json", {"status": "running", **self._about})
+        _write_json(self.path / "run.json", {"status": "running", **self._about})
         (path / "scenario.yaml").write_text(
             yaml.safe_dump(dict(scenario), sort_keys=False, allow_unicode=True), encoding="utf-8"
         )
@@ -156,6 +168,9 @@ class RunFolder:
         self._things = ThingFiles(path / "truth", cameras, frames=frames)
         self._results = {THERMAL: open_text(path / "tracks.txt")}
         self._events = open_text(path / "events.jsonl")
+        hold(self._events)
+        self._tracks = TableLog(path / "tracks.parquet", TRACKS)
+        self._robot = TableLog(path / "robot.parquet", ROBOT)
         self._images = BackgroundQueue()
 
     def __enter__(self) -> "RunFolder":
@@ -165,35 +180,40 @@ class RunFolder:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._images.close()
-        for file in self._texts():
-            file.close()
-        if not self._is_complete:
-            self._write_tables()
         state: Mapping[str, Any] = {"status": "complete" if self._is_complete and kind is None else "cut off"}
         if isinstance(error, Exception):
             state = {"status": "failed", "error": _reported(error)}
-        self._write_json("run.json", {**state, "frames": len(self._robot), **self._about})
+        # On a full disk, or in a folder that was deleted, the error that ended the run is the one to report.
+        with suppress(OSError) if error is not None else nullcontext(), self._events:
+            try:
+                self._save()
+            finally:
+                _write_json(self.path / "run.json", {**state, "frames": self._frames, **self._about})
 
     def write(self, tick: Tick, events: Sequence[Mapping[str, Any]]) -> None:
-        """Write one tick and its events; images are written in the background, in order.
+        """Write one tick and its events; its images are written in the background, until the next tick.
 
         Raises:
-            BadInput: an image of this tick or of an earlier one cannot be written.
+            BadInput: an image of this tick or of the one before cannot be written.
         """
-        self._tracks += track_rows(tick)
-        self._robot.append(robot_row(tick))
+        self._images.flush()
+        self._tracks.write(track_rows(tick))
         for truth in self._truths:
             truth.write(tick)
         self._things.write(tick)
         self._write_boxes(tick)
         self._events.writelines(json.dumps(dict(event)) + "\n" for event in events)
+        self._events.flush()
+        row = robot_row(tick)
         if self._writes_frames:
-            for path, image in images_to_write(self.path, tick.frame, tick.observation, self._cameras):
-                self._images.add(partial(write_png, path, image))
+            images = images_to_write(self.path, tick.frame, tick.observation, self._cameras)
+            self._images.add(partial(self._commit, row, list(images)))
+        else:
+            self._commit(row)
 
     def complete(self, metrics: Mapping[str, Any]) -> None:
         """Write the metrics, and mark the run as complete."""
-        self._write_json("metrics.json", metrics)
+        _write_json(self.path / "metrics.json", metrics)
         self._is_complete = True
 
     def flush(self) -> None:
@@ -203,12 +223,24 @@ class RunFolder:
             BadInput: an image cannot be written.
         """
         self._images.flush()
-        self._write_tables()
-        for file in self._texts():
-            file.flush()
+        self._save()
 
-    def _texts(self) -> tuple[TextIO, ...]:
-        return self._events, *self._results.values(), *(truth.lines for truth in self._truths)
+    def _commit(self, row: Row, images: Sequence[tuple[Path, Stored]] = ()) -> None:
+        """Write the images of a frame, and mark it as whole by its row about the robot."""
+        for path, image in images:
+            write_png(path, image)
+        self._robot.write([row])
+        self._frames += 1
+
+    def _save(self) -> None:
+        """Complete texts and tables, the robot's last; a second call does nothing."""
+        for file in self._results.values():
+            file.close()
+        for truth in self._truths:
+            truth.save()
+        self._things.save()
+        self._tracks.save()
+        self._robot.save()
 
     def _write_boxes(self, tick: Tick) -> None:
         """Write the tracker's boxes by camera; a camera's file is created with its first box."""
@@ -217,16 +249,67 @@ class RunFolder:
             self._results[camera] = open_text(self.path / "tracks" / f"{camera}.txt")
         for camera, file in self._results.items():
             file.writelines(result_lines(tick, camera))
+            file.flush()
 
-    def _write_tables(self) -> None:
-        for truth in self._truths:
-            truth.write_table()
-        write_table(self.path / "tracks.parquet", self._tracks, TRACKS)
-        write_table(self.path / "robot.parquet", self._robot, ROBOT)
-        self._things.flush()
 
-    def _write_json(self, name: str, content: Mapping[str, Any]) -> None:
-        (self.path / name).write_text(json.dumps(dict(content), indent=2) + "\n", encoding="utf-8")
+def _write_json(path: Path, content: Mapping[str, Any]) -> None:
+    write_aside(path, (json.dumps(dict(content), indent=2) + "\n").encode())
+
+
+def settle_run(folder: Path, about: Mapping[str, Any]) -> dict[str, Any]:
+    """Complete the folder of a run whose process was killed, up to its last whole frame.
+
+    Args:
+        folder: folder of the run.
+        about: contents of run.json, of status "running".
+
+    Returns:
+        The new contents of run.json, of status "cut off".
+
+    Raises:
+        BadInput: the run goes on, or the folder cannot be written to.
+    """
+    if is_held(folder / "events.jsonl"):
+        raise BadInput(f"{folder}: this run is still going on; wait until it has ended")
+    log, table = (folder / f"robot.parquet{end}" for end in (LOG, ""))
+    try:
+        # The robot's log is removed after all others: without it, all else is complete.
+        frames = sum(1 for _ in whole_lines(log)) if log.is_file() else _rows_of(table)
+        _trim_texts(folder, frames)
+        for text in (folder / "truth").glob("*gt.txt"):
+            camera = text.name.removesuffix("gt.txt").removesuffix(".") or THERMAL
+            recover_table(truth_files(folder, camera)[1], TRUTH, frames)
+        recover_table(folder / "truth" / "things.parquet", THINGS, frames)
+        recover_table(folder / "tracks.parquet", TRACKS, frames)
+        for image in folder.glob("*/*.png"):
+            if image.stem.isdecimal() and int(image.stem) > frames:
+                image.unlink()
+        recover_table(table, ROBOT, frames)
+        for part in folder.glob(f"**/*{PART}"):
+            part.unlink()
+        settled = {**about, "status": "cut off", "frames": frames}
+        _write_json(folder / "run.json", settled)
+    except OSError as error:
+        reason = error.strerror or error
+        raise BadInput(f"{folder}: this run was killed, and cannot be completed here: {reason}") from error
+    return settled
+
+
+def _rows_of(table: Path) -> int:
+    with table.open("rb") if table.is_file() else nullcontext() as file:
+        return 0 if file is None else pq.read_metadata(file).num_rows
+
+
+def _trim_texts(folder: Path, frames: int) -> None:
+    """Remove incomplete lines, and those of later frames."""
+    texts = [folder / "tracks.txt", *(folder / "tracks").glob("*.txt"), *(folder / "truth").glob("*gt.txt")]
+    for text in (text for text in texts if text.is_file()):
+        kept = (line for line in whole_lines(text) if int(line.partition(",")[0]) <= frames)
+        write_aside(text, "".join(kept).encode())
+    events = folder / "events.jsonl"
+    if events.is_file():
+        kept = (line for line in whole_lines(events) if json.loads(line)["frame"] <= frames)
+        write_aside(events, "".join(kept).encode())
 
 
 def _reported(error: Exception) -> dict[str, str]:
@@ -257,7 +340,7 @@ def claim_folder(path: Path, *, overwrite: bool) -> None:
         if path.exists() and any(path.iterdir()):
             shutil.rmtree(path)
         path.mkdir(parents=True, exist_ok=True)
-        (path / "run.json").touch()
+        _write_json(path / "run.json", {"status": "running"})
 
 
 def result_lines(tick: Tick, camera: str = THERMAL) -> list[str]:

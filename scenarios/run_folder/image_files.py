@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
+from peopleboy.scenarios.run_folder.atomic_output import write_aside
 from peopleboy.sim.cameras.camera_config import CameraConfig, ThermalConfig
 from peopleboy.sim.cameras.kinds import Stored, image_folders
 from peopleboy.sim.observation import Observation
@@ -54,8 +55,12 @@ def write_png(path: Path, image: Stored) -> None:
         BadInput: the image cannot be written.
     """
     stored = image[..., ::-1] if image.ndim == 3 else image
-    if not cv2.imwrite(str(path), stored, [cv2.IMWRITE_PNG_COMPRESSION, 2]):
-        raise BadInput(f"{path}: cannot write this image; is the disk full?")
+    _, encoded = cv2.imencode(".png", stored, [cv2.IMWRITE_PNG_COMPRESSION, 2])
+    try:
+        write_aside(path, encoded.tobytes())
+    except OSError as error:
+        reason = error.strerror or error
+        raise BadInput(f"{path}: cannot write this image: {reason}; is the disk full?") from error
 
 
 def millimetres(depth_m: NDArray[np.floating]) -> NDArray[np.uint16]:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.run_folder.run_tables import (
+    LOCAL,
     MAY_BE_EMPTY,
     PLACE,
     ROBOT,
@@ -165,14 +166,14 @@ def read_table(path: Path, schema: pa.Schema, columns: Collection[str]) -> pa.Ta
         BadInput: the table is missing, damaged, or of a version with other columns.
     """
     try:
-        found = pq.read_schema(path)
+        found = pq.read_schema(path, filesystem=LOCAL)
         for name in columns:
             if name not in found.names:
                 raise BadInput(f"{path}: has no column {name!r}; {_AGAIN}")
             was, must = found.field(name).type, schema.field(name).type
             if was != must:
                 raise BadInput(f"{path}: column {name!r} must be {must}, got {was}; {_AGAIN}")
-        table = pq.read_table(path, columns=list(columns))
+        table = pq.read_table(path, columns=list(columns), filesystem=LOCAL)
     except (OSError, pa.ArrowException) as error:
         raise BadInput(f"{path}: cannot be read as a table of a run; {_AGAIN}") from error
     for name in columns:

@@ -1,6 +1,7 @@
 """Define the parquet tables of a run: truth, tracks, robot and objects, with one row per frame and entity."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
 from operator import attrgetter
@@ -11,8 +12,10 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
+from pyarrow.fs import LocalFileSystem
 
 from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.run_folder.atomic_output import PART
 from peopleboy.tracker.contour.explanation import ContourExplanation, Ellipse
 from peopleboy.tracker.contour.variants import VARIANTS
 from peopleboy.tracker.frame import THERMAL
@@ -269,9 +272,121 @@ def robot_row(tick: Tick) -> Row:
     return row_of(_ROBOT, tick.frame, tick.truth.time_s, tick)
 
 
+LOCAL: Final = LocalFileSystem()
+"""Without it, pyarrow takes a relative path with a colon for a URI."""
+
+_BLOCK_ROWS: Final = 512
+_GROUP_ROWS: Final = 32768
+LOG: Final = ".log"
+"""Suffix of the log of a table that is being written."""
+
+
+class TableFile:
+    """Write a parquet file in groups of 32768 rows, so that memory does not grow with its length.
+
+    It is written aside, and takes its name with `close`. Without rows, the table is empty and has the same
+    columns.
+
+    Args:
+        path: the table.
+        schema: its columns.
+    """
+
+    def __init__(self, path: Path, schema: pa.Schema) -> None:
+        self._path, self._part = path, path.with_name(path.name + PART)
+        self._schema = schema
+        self._rows: list[Row] = []
+        self._blocks: list[pa.Table] = []
+        self._writer: pq.ParquetWriter | None = None
+
+    def add(self, rows: Iterable[Row]) -> None:
+        """Append rows."""
+        self._rows += rows
+        if len(self._rows) >= _BLOCK_ROWS:
+            self._pack()
+            if sum(block.num_rows for block in self._blocks) >= _GROUP_ROWS:
+                self._write_group()
+
+    def close(self) -> None:
+        """Write the remaining rows, and complete the file."""
+        self._pack()
+        if self._writer is None or any(block.num_rows for block in self._blocks):
+            self._write_group()
+        if self._writer is not None:
+            self._writer.close()
+        self._part.replace(self._path)
+
+    def _pack(self) -> None:
+        """Convert rows to columns, which take a tenth of the memory."""
+        self._blocks.append(pa.Table.from_pylist(self._rows, schema=self._schema))
+        self._rows = []
+
+    def _write_group(self) -> None:
+        if self._writer is None:
+            self._writer = pq.ParquetWriter(str(self._part), self._schema, filesystem=LOCAL)
+        self._writer.write_table(pa.concat_tables(self._blocks).combine_chunks())
+        self._blocks = []
+
+
+class TableLog:
+    """Write a table of a run as it goes: a JSON line per row, flushed, in a log beside the table.
+
+    The log of a process that was killed is converted by `recover_table`.
+
+    Args:
+        path: the table.
+        schema: its columns.
+    """
+
+    def __init__(self, path: Path, schema: pa.Schema) -> None:
+        self._table = TableFile(path, schema)
+        self._path = path.with_name(path.name + LOG)
+        self._log = self._path.open("w", encoding="utf-8")
+
+    def write(self, rows: Sequence[Row]) -> None:
+        """Append rows, and flush them."""
+        self._log.writelines(f"{_TO_JSON.encode(row)}\n" for row in rows)
+        self._log.flush()
+        self._table.add(rows)
+
+    def save(self) -> None:
+        """Complete the table, and remove the log; a second call does nothing."""
+        if not self._log.closed:
+            self._table.close()
+            self._log.close()
+            self._path.unlink()
+
+
+def _plain(value: Any) -> Any:
+    return value.item()  # of a NumPy scalar
+
+
+_TO_JSON: Final = json.JSONEncoder(separators=(",", ":"), default=_plain)
+
+
+def whole_lines(path: Path) -> Iterator[str]:
+    """Read the lines of a text file, without a last one that is incomplete."""
+    with path.open(encoding="utf-8") as file:
+        yield from (line for line in file if line.endswith("\n"))
+
+
+def recover_table(path: Path, schema: pa.Schema, frames: int) -> None:
+    """Convert the log of a table, if there is one, up to this frame."""
+    log = path.with_name(path.name + LOG)
+    if log.is_file():
+        table = TableFile(path, schema)
+        for line in whole_lines(log):
+            if (row := json.loads(line))["frame"] <= frames:
+                table.add([row])
+        table.close()
+        log.unlink()
+
+
 def write_table(path: Path, rows: list[Row], schema: pa.Schema) -> None:
-    """Write rows as a parquet file; without rows, the table is empty and has the same columns."""
-    pq.write_table(pa.Table.from_pylist(rows, schema=schema), path)
+    """Write rows as a parquet file."""
+    table = TableFile(path, schema)
+    table.add(rows)
+    table.close()
 
 
 def track_of(row: Mapping[str, Any]) -> Track:

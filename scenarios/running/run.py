@@ -23,8 +23,8 @@ from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.scenarios.loop.run_events import LogLine, RunEvents
 from peopleboy.scenarios.loop.tracker_by_name import check_cameras, make_named_tracker, tracker_cameras
 from peopleboy.scenarios.recording.recording_file import is_recorded
-from peopleboy.scenarios.run_folder.atomic_output import left_by_sigterm
-from peopleboy.scenarios.run_folder.finished_run import open_run, read_run
+from peopleboy.scenarios.run_folder.atomic_output import left_by_signals
+from peopleboy.scenarios.run_folder.finished_run import note_on, open_run
 from peopleboy.scenarios.run_folder.folder import RunFolder, claim_folder, versions
 from peopleboy.scenarios.run_folder.image_files import about_gains
 from peopleboy.scenarios.running.run_options import RunOptions
@@ -134,6 +134,7 @@ def run(
     mounted = [camera for camera in scenario.robot.cameras if camera not in given]
     config = scenario.world(options.seed, options.renderer)
     check_cameras(tracker, config.robot.cameras)
+    frames = round(scenario.duration_s * config.control_hz)
     about = {
         "scenario": scenario.name,
         "seed": options.seed,
@@ -142,6 +143,7 @@ def run(
         "renderer": options.renderer,
         "rate_hz": config.control_hz,
         "images": options.frames,
+        "planned_frames": frames,
         "gains": about_gains(config.robot.cameras),
     } | ({"mounted_for_tracker": mounted} if mounted else {})
     if scenario.own_behaviour is not None:
@@ -151,7 +153,7 @@ def run(
         *(scenario.name, options.seed, name, ", ".join(config.robot.cameras), config.physics),
     )
     with ExitStack() as stack:
-        stack.enter_context(left_by_sigterm())
+        stack.enter_context(left_by_signals())
         world = stack.enter_context(SimulatedWorld(config))
         stack.enter_context(traceback_in(options.out / "run.json"))
         claim_folder(options.out, overwrite=options.overwrite)
@@ -183,7 +185,6 @@ def run(
             )
         faults, is_secret = scenario.spec.faults, scenario.drive is not None
         observers = RunObservers(config, title, recorder, options.boxes, faults=faults, is_secret=is_secret)
-        frames = round(scenario.duration_s * config.control_hz)
         _LOG.info("%s: the world is built; running %d frames", scenario.name, frames)
         began_s = time.monotonic()
         stage = FaultySensors(world, faults, config.robot.sonar.farthest_m)
@@ -245,7 +246,7 @@ def is_finished(scenario: Scenario, options: RunOptions) -> bool:
         BadInput: the folder holds a complete run of another scenario, seed, tracker, kind of boxes or
             version, or a damaged run.
     """
-    if options.overwrite or not _is_complete(options.out):
+    if options.overwrite or note_on(options.out):
         return False
     scenario = options.applied_to(scenario)
     run = open_run(options.out)
@@ -271,14 +272,6 @@ def is_finished(scenario: Scenario, options: RunOptions) -> bool:
         raise BadInput(
             f"{options.out}: is a run of another scenario or version; give --overwrite, or another --out"
         )
-    return True
-
-
-def _is_complete(folder: Path) -> bool:
-    try:
-        read_run(folder)
-    except BadInput:
-        return False
     return True
 
 

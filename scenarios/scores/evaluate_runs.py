@@ -12,7 +12,7 @@ from typing import Annotated, Any, Final
 from pydantic import Field
 
 from peopleboy.bad_input import BadInput
-from peopleboy.scenarios.run_folder.finished_run import cameras_of, read_run
+from peopleboy.scenarios.run_folder.finished_run import cameras_of, incomplete, read_run
 from peopleboy.scenarios.run_folder.run_files import (
     BELIEFS,
     PEOPLE,
@@ -278,14 +278,20 @@ def evaluate_runs(folders: Sequence[Path], options: ScoreOptions | None = None) 
     """Score the runs in these folders, one by one.
 
     Raises:
-        BadInput: a folder holds no run, or one that was cut off, or whose files do not belong together, or
-            one of footage without truth.
+        BadInput: a folder holds no run, or one whose files do not belong together, or one of footage without
+            truth.
     """
     return [_evaluate_run(folder, options or ScoreOptions()) for folder in folders]
 
 
 def _evaluate_run(folder: Path, options: ScoreOptions) -> ScoredPeople:
     about = read_run(folder)
+    people = _evaluate_opened(folder, about, options)
+    note = incomplete(about)
+    return replace(people, notes=(*people.notes, note)) if note else people
+
+
+def _evaluate_opened(folder: Path, about: Mapping[str, Any], options: ScoreOptions) -> ScoredPeople:
     if "footage" in about or not (folder / "truth.parquet").is_file():
         return _evaluate_texts(folder, about["frames"], options)
     image = options.camera or own_camera(folder)

@@ -21,7 +21,7 @@ from joblib.externals.loky.process_executor import BrokenProcessPool
 
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.progress_bar import Show, progress_bar
-from peopleboy.scenarios.run_folder.atomic_output import left_by_sigterm
+from peopleboy.scenarios.run_folder.atomic_output import left_by_signals
 from peopleboy.scenarios.running.engine.task import (
     Failure,
     ReportProgress,
@@ -129,7 +129,7 @@ def _attempt_as_worker(number: int, task: Task[Any], parent: int) -> tuple[int, 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _end_with(parent)
     try:
-        with left_by_sigterm():
+        with left_by_signals():
             return number, attempt(task, lambda _part: None)
     except SystemExit as leaving:
         # Otherwise joblib would continue with the next task.
@@ -207,7 +207,7 @@ def work_through(
     """
     failures: list[Failure] = []
     with (
-        left_by_sigterm(),
+        left_by_signals(),
         tally(title, tasks, unit) as shown,
         closing(_outcomes(tasks, workers, shown.report_progress)) as outcomes,
     ):

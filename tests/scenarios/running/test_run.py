@@ -1,17 +1,21 @@
+import errno
 import hashlib
 import json
+import signal
 import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
 
-import cv2
 import pyarrow.parquet as pq
 import pytest
 import yaml
 
+from peopleboy.scenarios.cli import main
 from peopleboy.scenarios.files.library import LIBRARY
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
+from peopleboy.scenarios.loop.loop import Tick
+from peopleboy.scenarios.run_folder.finished_run import open_run
 from peopleboy.scenarios.running.run import run
 from peopleboy.scenarios.running.run_options import RunOptions
 from peopleboy.scenarios.scores.evaluate_runs import evaluate_files, evaluate_runs
@@ -150,7 +154,14 @@ def test_nobody_is_a_sensible_run(tmp_path: Path) -> None:
 def test_a_run_whose_images_cannot_be_written_fails_in_one_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(cv2, "imwrite", lambda path, *_: not path.endswith("thermal16/000003.png"))
+    write = Path.write_bytes
+
+    def write_until_full(path: Path, content: bytes) -> int:
+        if path.name.startswith("000003.png") and path.parent.name == "thermal16":
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return write(path, content)
+
+    monkeypatch.setattr(Path, "write_bytes", write_until_full)
     ticks: list[int] = []
     with refused("thermal16/000003.png", "is the disk full?"):
         run(
@@ -175,16 +186,75 @@ def test_an_interrupted_run_says_so_and_stays_readable(tmp_path: Path) -> None:
         run(scenario, RunOptions(seed=0, out=tmp_path / "run", record=False), interrupt)
     assert json.loads((tmp_path / "run" / "run.json").read_text())["status"] == "cut off"
     assert pq.read_table(tmp_path / "run" / "robot.parquet").num_rows == 7
-    with refused(tmp_path / "run", "cut off"):
-        evaluate_runs([tmp_path / "run"])
+    (people,) = evaluate_runs([tmp_path / "run"])
+    assert people.notes == ("incomplete: 7 of 30 frames",)
+
+
+KILLED = """
+import os, signal, sys
+from peopleboy.scenarios.cli import main
+from peopleboy.scenarios.loop.tracker_by_name import OracleTracker
+update = OracleTracker.update
+def update_or_die(self, frame):
+    if frame.time_s > 0.5:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return update(self, frame)
+OracleTracker.update = update_or_die
+main(sys.argv[1:])
+"""
 
 
 @pytest.mark.slow
-def test_a_run_told_to_end_says_so_and_is_no_failure_of_its_tracker(tmp_path: Path) -> None:
+def test_a_killed_run_loses_at_most_the_frame_in_flight_and_can_be_scored(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    killed, whole = tmp_path / "killed:1", tmp_path / "whole"
+    call = ["run", "single_stationary", "--tracker", "truth", "--no-recording", "--frames", "--out"]
+    done = subprocess.run([sys.executable, "-c", KILLED, *call, killed.name], check=False, cwd=tmp_path)
+    assert done.returncode == -signal.SIGKILL
+    assert json.loads((killed / "run.json").read_text())["status"] == "running"
+    with pytest.raises(SystemExit, match="0"):
+        main(["evaluate", str(killed)])
+    frames = json.loads((killed / "run.json").read_text())["frames"]
+    assert frames in (7, 8)  # of the 8 up to 0.5 s, as the last one's images were being written
+    assert f"incomplete: {frames} of 600 frames" in capsys.readouterr().err
+    options = RunOptions(seed=0, out=whole, tracker="truth", frames=True, record=False)
+    run(load_scenario("single_stationary").lasting(1.0), options)
+    for name in ("truth", "tracks", "robot"):
+        rows = pq.read_table(whole / f"{name}.parquet").to_pylist()
+        expected = repr([row for row in rows if row["frame"] <= frames])
+        assert repr(pq.read_table(killed / f"{name}.parquet").to_pylist()) == expected
+    for text in ("truth/gt.txt", "truth/colour.gt.txt", "tracks.txt"):
+        lines = (whole / text).read_text().splitlines()
+        expected = [line for line in lines if int(line.partition(",")[0]) <= frames]
+        assert (killed / text).read_text().splitlines() == expected
+    images = sorted((killed / "colour").iterdir())
+    assert [path.read_bytes() for path in images] == [
+        (whole / "colour" / path.name).read_bytes() for path in images
+    ]
+    assert len(images) == frames
+    assert not [path for path in killed.rglob("*") if path.suffix in (".log", ".part")]
+    assert open_run(killed).events
+
+
+def test_a_run_that_goes_on_is_not_taken_for_one_that_was_killed(tmp_path: Path) -> None:
+    scenario = parse_scenario(scene(), source="tiny", folder=tmp_path)
+
+    def read_at_once(tick: Tick, _frames: int) -> None:
+        if tick.frame == 3:
+            with refused("still going on"):
+                evaluate_runs([tmp_path / "run"])
+
+    run(scenario, RunOptions(seed=0, out=tmp_path / "run", record=False), read_at_once)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+def test_a_run_ended_by_a_signal_says_so_and_is_no_failure_of_its_tracker(tmp_path: Path, name: str) -> None:
     script = (
         "import os, signal, sys; from peopleboy.scenarios.cli import main\n"
         "import peopleboy.scenarios.loop.tracker_by_name as oracle\n"
-        "oracle.OracleTracker.update = lambda *_: os.kill(os.getpid(), signal.SIGTERM)\n"
+        f"oracle.OracleTracker.update = lambda *_: os.kill(os.getpid(), signal.{name})\n"
         "main(sys.argv[1:])"
     )
     call = [
@@ -196,7 +266,8 @@ def test_a_run_told_to_end_says_so_and_is_no_failure_of_its_tracker(tmp_path: Pa
         "--out",
         str(tmp_path / "run"),
     ]
-    assert subprocess.run([sys.executable, "-c", script, *call], check=False).returncode == 143
+    done = subprocess.run([sys.executable, "-c", script, *call], check=False)
+    assert done.returncode == 128 + signal.Signals[name]
     assert json.loads((tmp_path / "run" / "run.json").read_text())["status"] == "cut off"
 
 
