@@ -43,6 +43,8 @@ from peopleboy.scenarios.environments.scene_picture import ScenePicture
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.files.robot import ORACLE
 from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.loop.faults import FaultyTracker, SensorFaults
+from peopleboy.scenarios.loop.loop import TrackerDown
 from peopleboy.scenarios.loop.tracker_by_name import make_checked_tracker, tracker_cameras
 from peopleboy.scenarios.random_worlds.distribution import Distribution
 from peopleboy.scenarios.random_worlds.random_world import random_scenario
@@ -50,7 +52,7 @@ from peopleboy.scenarios.scores.drive_record import TARGET
 from peopleboy.scenarios.scores.following_metrics import following_task
 from peopleboy.sim.batch.sensing import Snapshot, take_snapshot
 from peopleboy.sim.cameras.camera_config import calibrations_of
-from peopleboy.sim.observation import Observation
+from peopleboy.sim.observation import Observation, Senses
 from peopleboy.sim.rendering.view import BLIND
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import SimulatedWorld
@@ -155,6 +157,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self.builder = ObservationBuilder(observation, self._robot, shown, normaliser)
         space = observation_space(observation, self._robot, shown)
         self.observation_space = space if normaliser is None else normaliser.space(space)
+        self._faults: SensorFaults | None = None
         self.join(LiveEpisodes(1, task), 0)
 
     def reset(
@@ -178,10 +181,13 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self._dt_s = 1.0 / config.control_hz
         self._commands: list[Command] = []
         self._is_varied = bool(chosen)
+        faults = self._scenario.spec.faults
+        self._faults = SensorFaults(faults, config.robot.sonar.farthest_m) if faults else None
         self._tracker: Tracker | None = None
         if self._kind == "tracks":
             name, cameras = self._tracker_name, config.robot.cameras
-            self._tracker = make_checked_tracker(name, self._seed, self._world.truth, cameras)
+            tracker = make_checked_tracker(name, self._seed, self._world.truth, cameras)
+            self._tracker = FaultyTracker(tracker, faults) if faults else tracker
         self._tracks: tuple[Track, ...] = ()
         self._before: Pose2 | None = None
         self._track = 0  # id of the last track on the person to follow
@@ -228,7 +234,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         shares, world = check_actions(action, (2,)), self._running()
         linear_m_s, angular_rad_s = (shares[0] * self._own["limits"]).tolist()
         self._commands.append(Command(linear_m_s=linear_m_s, angular_rad_s=angular_rad_s))
-        world.step(linear_m_s, angular_rad_s)
+        share = self.grip
+        world.step(share * linear_m_s, share * angular_rad_s)
         tracks = self._perceive(world)
         outcomes = self._episodes.evaluate(self._snapshot, shares, tracks)
         self._truth = outcomes.truths[0]
@@ -251,12 +258,30 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         assert self._tracker is not None
         world, senses = self._running(even_over=True), snapshot.senses(row)
         assert isinstance(senses, Observation)
-        self._tracks = self._tracker.update(Frame.from_observation(senses, self._before, self._calibrations))
+        try:
+            frame = Frame.from_observation(senses, self._before, self._calibrations)
+            self._tracks = self._tracker.update(frame)
+        except TrackerDown:
+            self._tracks = ()
         self._before = senses.odometry
         box = world.box(TARGET) if world.config.people else None
         track = track_in(snapshot.scenes, row, self._tracks, box, self._track)
         self._track = track or self._track
         return track
+
+    @property
+    def has_faults(self) -> bool:
+        """Whether sensors fail in the scenario."""
+        return self._faults is not None
+
+    @property
+    def grip(self) -> float:
+        """Share of the commanded motion that the robot makes now: less than 1 while its wheels slip."""
+        return 1.0 if self._faults is None else self._faults.slip(self._running(even_over=True).time_s)
+
+    def spoil(self, senses: Senses) -> Senses:
+        """Apply the active faults of the scenario to readings."""
+        return senses if self._faults is None else self._faults.apply(senses)
 
     @property
     def tracks(self) -> NDArray[np.float32]:
@@ -384,6 +409,8 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
     def _perceive(self, world: SimulatedWorld) -> list[int] | None:
         """Take a snapshot, and return the ids of tracks that `LiveEpisodes.evaluate` needs."""
         self._snapshot = take_snapshot(world)._replace(numbers=np.array([self._number]))
+        if self.has_faults:
+            self._snapshot = self._snapshot.with_senses([self.spoil(self._snapshot.senses(0))])
         return None if self._tracker is None else [self.track(self._snapshot, 0)]
 
     def _observation(self) -> Arrays:

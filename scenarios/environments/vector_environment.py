@@ -247,7 +247,16 @@ class PeopleBoyVectorEnv(VectorEnv[Arrays, NDArray[np.float32], NDArray[Any]]):
         """Step the worlds whose episodes are under way."""
         if self._together is None:
             self._together = WorldBatch([env.world for env in self._envs], self._crew)
-        return self._together.step(active, (shares * self._episodes.records["limits"])[active])
+        commands = (shares * self._episodes.records["limits"])[active]
+        if not any(env.has_faults for env in self._envs):
+            return self._together.step(active, commands)
+        commands *= np.array([[self._envs[number].grip] for number in active.tolist()])
+        return [
+            each.with_senses(
+                [self._envs[k].spoil(each.senses(row)) for row, k in enumerate(each.numbers.tolist())]
+            )
+            for each in self._together.step(active, commands)
+        ]
 
     def _track(self, snapshot: Snapshot) -> list[int] | None:
         """Update the trackers, if there are any; return the ids of tracks for `LiveEpisodes.evaluate`."""

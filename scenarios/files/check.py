@@ -4,6 +4,7 @@ import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,13 @@ from peopleboy.bad_input import BadInput, Key, dotted, found_in
 from peopleboy.scenarios.files.check_moves import MovedThings
 from peopleboy.scenarios.files.people import PersonSpec
 from peopleboy.scenarios.files.robot import ORACLE, RobotSpec, check_cameras
-from peopleboy.scenarios.files.scenario_file import ScenarioSpec
+from peopleboy.scenarios.files.scenario_file import (
+    STRENGTHS,
+    CameraFault,
+    FaultSpec,
+    ScenarioSpec,
+    SonarFault,
+)
 from peopleboy.sim.people.person_config import Waypoint
 from peopleboy.sim.places.floor_plan import FloorPlan, Rectangle
 from peopleboy.sim.places.place import Place
@@ -290,6 +297,28 @@ def _check_faults(spec: ScenarioSpec) -> None:
                 f"{fault.from_s:g} must be before the end, duration_s {spec.duration_s:g}",
                 key=("faults", index, "from_s"),
             )
+        cameras = ("thermal", "colour", *(spec.robot.cameras or ()))
+        if fault.camera is not None and fault.kind not in get_args(CameraFault):
+            raise BadInput(f"{fault.kind} has no camera; leave it out", key=("faults", index, "camera"))
+        if fault.camera is not None and fault.camera not in cameras:
+            known = ", ".join(dict.fromkeys(cameras))
+            raise BadInput(
+                f"unknown camera {fault.camera!r}; choose from {known}", key=("faults", index, "camera")
+            )
+        if fault.sonar is not None and fault.kind not in get_args(SonarFault):
+            raise BadInput(f"{fault.kind} has no sonar; leave it out", key=("faults", index, "sonar"))
+        if fault.strength is not None:
+            _check_strength(fault, index)
+
+
+def _check_strength(fault: FaultSpec, index: int) -> None:
+    allowed = STRENGTHS.get(fault.kind)
+    if allowed is None:
+        raise BadInput(f"{fault.kind} has no strength; leave it out", key=("faults", index, "strength"))
+    if not fault.chosen_strength <= allowed.greatest:
+        raise BadInput(
+            f"{fault.strength:g} must be at most {allowed.greatest:g}", key=("faults", index, "strength")
+        )
 
 
 def _check_order(unit_key: str, times: Sequence[float], key: Key) -> None:

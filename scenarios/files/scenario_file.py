@@ -4,8 +4,10 @@ Lengths are in metres, angles in degrees, times in seconds, temperatures in degC
 x points forward from the start of the place, y to the left; headings are counted from x to the left.
 """
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal, NamedTuple
 
 from pydantic import Field, TypeAdapter, with_config
 
@@ -18,7 +20,37 @@ from peopleboy.sim.places.furniture.thing_config import ThingConfig
 from peopleboy.sim.places.place_config import PlaceConfig
 from peopleboy.sim.shapes.materials import Detail
 
-Failure = Literal["camera_frozen", "camera_black", "tracker_raises", "sonar_maximum", "odometry_jumps"]
+CameraFault = Literal[
+    "camera_lost", "camera_frozen", "camera_black", "camera_saturated", "camera_shutter", "frames_dropped",
+    "frames_late", "frames_duplicated", "dead_rows", "noise_bursts", "calibration_off",
+]  # fmt: skip
+SonarFault = Literal["sonar_maximum", "sonar_stuck"]
+Failure = Literal[
+    CameraFault, SonarFault, "wheel_slip", "odometry_jumps", "odometry_drift",
+    "tracker_overload", "tracker_raises",
+]  # fmt: skip
+
+
+class Strength(NamedTuple):
+    """What the strength of a kind of fault means, its default and its greatest value."""
+
+    meaning: str
+    default: float
+    greatest: float
+
+
+STRENGTHS: Final[Mapping[str, Strength]] = {
+    "frames_dropped": Strength("share of the frames", 0.5, 1.0),
+    "frames_late": Strength("delay [s]", 0.2, 2.0),
+    "frames_duplicated": Strength("copies after each frame", 1.0, 15.0),
+    "dead_rows": Strength("share of the rows", 0.2, 1.0),
+    "noise_bursts": Strength("standard deviation [grey levels]", 60.0, 255.0),
+    "calibration_off": Strength("shift to the right [share of the image width]", 0.1, 0.5),
+    "wheel_slip": Strength("share of the motion that is lost", 0.3, 0.9),
+    "odometry_drift": Strength("excess distance, as a share", 0.2, 1.0),
+    "tracker_overload": Strength("frames skipped after each processed one", 2.0, 30.0),
+}
+"""Kinds of faults that have a strength."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,16 +68,47 @@ class FaultSpec:
     kind: Annotated[
         Failure,
         Field(
-            description="`camera_frozen`: the cameras repeat their last images; `camera_black`: the cameras "
-            "give black images; `tracker_raises`: the tracker raises an error at every image; "
-            "`sonar_maximum`: all sonars report their maximum range; `odometry_jumps`: the odometry pose "
-            "jumps at once, and again every second"
+            description="`camera_lost`: a camera gives no signal, its images are zero; `camera_frozen`: it "
+            "repeats its last image; `camera_black`: its images are black; `camera_saturated`: white; "
+            "`camera_shutter`: it repeats its last image for 0.4 s of every 2 s; `frames_dropped`: single "
+            "frames are replaced by the previous one; `frames_late`: images are delayed; "
+            "`frames_duplicated`: every image is repeated; `dead_rows`: rows of the image are black; "
+            "`noise_bursts`: every other image is noisy; `calibration_off`: the image is shifted sideways; "
+            "`sonar_maximum`: sonars report their maximum range; `sonar_stuck`: they repeat their readings; "
+            "`wheel_slip`: the robot moves less than its wheels; `odometry_jumps`: the odometry pose "
+            "jumps at once, and again every second; `odometry_drift`: the odometry overestimates distances; "
+            "`tracker_overload`: the tracker skips frames and repeats its tracks; `tracker_raises`: it "
+            "raises an error at every image"
         ),
     ]
     from_s: Annotated[Seconds, Field(description="start of the failure")]
     lasts_s: Annotated[
         Seconds | None, Field(description="duration of the failure; if omitted, until the end of the run")
     ] = None
+    camera: Annotated[
+        Word | None, Field(description="name of the camera that fails; if omitted, all cameras")
+    ] = None
+    sonar: Annotated[
+        int | None, Field(ge=0, le=15, description="number of the sonar that fails; if omitted, all sonars")
+    ] = None
+    strength: Annotated[
+        float | None,
+        Field(
+            gt=0.0,
+            description="strength; "
+            + "; ".join(
+                f"of `{kind}` {one.meaning}, default {one.default:g}, at most {one.greatest:g}"
+                for kind, one in STRENGTHS.items()
+            ),
+        ),
+    ] = None
+
+    @property
+    def chosen_strength(self) -> float:
+        """The strength, or its default; NaN for a kind that has none."""
+        if self.strength is not None:
+            return self.strength
+        return STRENGTHS[self.kind].default if self.kind in STRENGTHS else math.nan
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -233,8 +233,7 @@ def save_episode(
     latest_s = max((person.enter_s for person in scenario.people(options.seed)), default=0.0)
     if latest_s >= lasted_s:
         lasted_s = min(latest_s + 1.0 / rate_hz, scenario.duration_s)
-    sound = replace(scenario, spec=replace(scenario.spec, faults=()))
-    return run(sound.driven([*commands, STOP]).lasting(lasted_s), options, lambda _tick, _frames: None)
+    return run(scenario.driven([*commands, STOP]).lasting(lasted_s), options, lambda _tick, _frames: None)
 
 
 def is_finished(scenario: Scenario, options: RunOptions) -> bool:

@@ -163,6 +163,16 @@ class Snapshot(NamedTuple):
             images=self.images.of_world(row),
         )  # fmt: skip
 
+    def with_senses(self, senses: Sequence[Senses]) -> "Snapshot":
+        """Return the snapshot with other readings of its G robots, for example those of failing sensors."""
+        images = [one.images for one in senses if isinstance(one, Observation)]
+        return self._replace(
+            sonar_m=np.stack([one.sonar_m for one in senses]),
+            odometry=np.array([(one.odometry.x, one.odometry.y, one.odometry.heading) for one in senses]),
+            wheel_speeds_m_s=np.array([one.wheel_speeds_m_s for one in senses]),
+            images=SeparateImages(images) if images else None,
+        )
+
 
 def take_snapshot(world: SimulatedWorld) -> Snapshot:
     """Read the sensors of one world once, including images if there are any."""

@@ -4,11 +4,16 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from peopleboy.geometry.pose2 import Pose2
+from peopleboy.scenarios.environments.environment import PeopleBoyEnv
+from peopleboy.scenarios.environments.vector_environment import PeopleBoyVectorEnv
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario
 from peopleboy.scenarios.files.scenario_file import FaultSpec
-from peopleboy.scenarios.loop.faults import active
+from peopleboy.scenarios.loop.faults import FaultyTracker, SensorFaults, active
 from peopleboy.scenarios.running.run import run
 from peopleboy.scenarios.running.run_options import RunOptions
+from peopleboy.sim.observation import Observation
+from peopleboy.tracker.frame import Frame, Odometry
 from tests.helpers.calls.refused import refused
 
 FROM_S = 5.0
@@ -114,3 +119,117 @@ def test_an_unknown_fault_is_refused_with_those_there_are(tmp_path):
     with refused("'fire'", "camera_frozen"):
         parse_scenario(broken({"kind": "fire", "from_s": 1.0}), source="test", folder=tmp_path)
     assert load_scenario("single_follow").spec.faults == ()
+
+
+def observed(time_s, **images):
+    return Observation(
+        time_s=time_s,
+        sonar_m=np.linspace(1.0, 2.5, 16) + time_s,
+        odometry=Pose2(time_s, 0.0, 0.0),
+        wheel_speeds_m_s=(1.0, 1.0),
+        images=images or {"thermal": np.full((40, 60), 10 + round(15 * time_s), np.uint8), "colour": LIT},
+    )
+
+
+LIT = np.random.default_rng(0).integers(1, 255, (40, 60, 3), np.uint8)
+
+
+def through(kind, frames=6, from_s=2 / 15, **settings):
+    """Readings of some frames; the fault starts with the third one."""
+    faults = SensorFaults([FaultSpec(kind=kind, from_s=from_s, **settings)], 5.0)
+    return [faults.apply(observed(k / 15)) for k in range(frames)]
+
+
+def greys(readings):
+    return [int(one.images["thermal"][0, 0]) for one in readings]
+
+
+def test_a_fault_concerns_the_named_camera_alone():
+    for kind in ("camera_lost", "camera_black", "camera_saturated", "calibration_off", "dead_rows"):
+        *_, last = through(kind, camera="colour", strength=None)
+        assert greys([last]) == [15], kind
+        assert not np.array_equal(last.images["colour"], LIT), kind
+    assert np.ptp(through("camera_saturated")[-1].images["thermal"]) <= 1
+    assert through("camera_saturated")[-1].images["thermal"].min() >= 254
+
+
+def test_repeated_late_and_duplicated_images():
+    assert greys(through("camera_frozen")) == [10, 11, 11, 11, 11, 11]
+    assert greys(through("camera_shutter", frames=10)) == [10, 11, *[11] * 6, 18, 19]
+    assert greys(through("frames_late", strength=0.13)) == [10, 11, 10, 11, 12, 13]
+    assert greys(through("frames_duplicated")) == [10, 11, 12, 12, 14, 14]
+    dropped = greys(through("frames_dropped", frames=60))
+    assert 10 < sum(np.diff(dropped) == 0) < 50
+
+
+def test_noise_comes_in_bursts():
+    images = [one.images["colour"] for one in through("noise_bursts", frames=40)]
+    spoilt = [not np.array_equal(image, LIT) for image in images]
+    assert 5 < sum(spoilt) < 35
+
+
+def test_one_or_all_sonars_are_dead_or_stuck():
+    one, every = through("sonar_maximum", sonar=3)[-1], through("sonar_maximum")[-1]
+    assert (one.sonar_m == 5.0).nonzero()[0].tolist() == [3]
+    assert (every.sonar_m == 5.0).all()
+    readings = through("sonar_stuck", sonar=3)
+    assert readings[-1].sonar_m[3] == readings[1].sonar_m[3]
+    assert readings[-1].sonar_m[4] > readings[1].sonar_m[4]
+
+
+def test_slipping_wheels_and_drifting_odometry_overestimate_the_way():
+    slip = SensorFaults([FaultSpec(kind="wheel_slip", from_s=0.0, strength=0.5)], 5.0)
+    assert slip.slip(1.0) == pytest.approx(0.5)
+    x = [slip.apply(observed(k / 15)).odometry.x for k in range(4)]
+    assert x == pytest.approx([0.0, 2 / 15, 4 / 15, 6 / 15])
+    assert slip.apply(observed(1.0)).wheel_speeds_m_s == pytest.approx((2.0, 2.0))
+    drift = through("odometry_drift", strength=0.2)
+    assert drift[-1].odometry.x == pytest.approx(1 / 15 + 4 / 15 * 1.2)
+
+
+def test_an_overloaded_tracker_skips_frames_and_joins_their_motions():
+    class Counting:
+        cameras = ("thermal",)
+        ways: tuple = ()
+
+        def update(self, frame):
+            self.ways += (frame.odometry.advance_m,)
+            return ()
+
+    tracker = Counting()
+    busy = FaultyTracker(
+        tracker, [FaultSpec(kind="tracker_overload", from_s=0.0, lasts_s=0.59, strength=2.0)]
+    )
+    for k in range(9):
+        busy.update(Frame(images={}, time_s=k / 10, odometry=Odometry(advance_m=0.1)))
+    assert tracker.ways == pytest.approx((0.3, 0.3, 0.1, 0.1, 0.1))
+
+
+@pytest.mark.parametrize(
+    ("fault", "words"),
+    [
+        ({"kind": "camera_black", "camera": "sonar"}, ("'sonar'", "thermal, colour")),
+        ({"kind": "wheel_slip", "camera": "thermal"}, ("camera", "leave it out")),
+        ({"kind": "wheel_slip", "sonar": 3}, ("sonar", "leave it out")),
+        ({"kind": "camera_black", "strength": 1.0}, ("strength", "leave it out")),
+        ({"kind": "wheel_slip", "strength": 2.0}, ("at most 0.9",)),
+    ],
+)
+def test_settings_that_a_fault_does_not_have_are_refused(tmp_path, fault, words):
+    with refused("faults", *words):
+        parse_scenario(broken(fault | {"from_s": 1.0}), source="test", folder=tmp_path)
+
+
+def test_faults_work_in_environments(tmp_path):
+    file = tmp_path / "broken.yaml"
+    file.write_text(json.dumps(broken({"kind": "sonar_maximum", "from_s": 0.1}, physics="kinematic")))
+    for env in (
+        PeopleBoyEnv(str(file), observation="truth"),
+        PeopleBoyVectorEnv(2, scenario=str(file), observation="truth"),
+    ):
+        shape = env.action_space.shape
+        env.reset(seed=1)
+        for _ in range(4):
+            observation = env.step(np.zeros(shape, np.float32))[0]
+        assert (observation["sonar"] == 5.0).all()
+        env.close()

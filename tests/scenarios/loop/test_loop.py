@@ -1,5 +1,9 @@
+import pytest
+
 from peopleboy.scenarios.files.load import parse_scenario
-from peopleboy.scenarios.loop.loop import Perception, thermal_box
+from peopleboy.scenarios.files.scenario_file import FaultSpec
+from peopleboy.scenarios.loop.faults import FaultySensors
+from peopleboy.scenarios.loop.loop import Perception, closed_loop, thermal_box
 from peopleboy.sim.cameras.camera_config import calibrations_of
 from peopleboy.sim.robot.robot_config import RobotConfig
 from peopleboy.sim.world import SimulatedWorld
@@ -58,3 +62,34 @@ def test_who_is_known_on_the_floor_alone_has_the_box_of_somebody_who_stands_ther
 
 def test_who_has_neither_has_none() -> None:
     assert thermal_box(track(1, None), CAMERA) is None
+
+
+class Cautious:
+    """A tracker that needs the thermal image and uses the colour image if there is one."""
+
+    cameras = ("thermal", "colour")
+
+    def __init__(self):
+        self.seen = []
+
+    def update(self, frame):
+        frame.grey("thermal")
+        self.seen.append("colour" in frame.images)
+        return ()
+
+
+@pytest.mark.parametrize(("camera", "stops"), [("colour", False), ("thermal", True), (None, True)])
+def test_a_tracker_goes_on_without_a_failed_camera_if_it_can(tmp_path, camera, stops):
+    data = EMPTY | {"people": [{"name": "anna", "path": [{"at_m": [5.0, 0.0]}]}], "physics": "kinematic"}
+    scenario = parse_scenario(data, source="test", folder=tmp_path)
+    faults = [FaultSpec(kind="camera_saturated", from_s=0.1, lasts_s=0.2, camera=camera)]
+    tracker = Cautious()
+    with SimulatedWorld(scenario.world(0)) as world:
+        stage = FaultySensors(world, faults, 5.0)
+        ticks = list(closed_loop(stage, tracker, "stand", 8))
+    failed = {name for tick in ticks for name in tick.failed}
+    assert failed == ({camera} if camera else {"thermal", "colour"})
+    assert {tick.mode == "stop" for tick in ticks if tick.failed} == {stops}
+    assert not ticks[-1].failed
+    assert ticks[-1].mode != "stop"
+    assert tracker.seen == [True] * (5 if stops else 2) + ([] if stops else [False] * 3 + [True] * 3)
