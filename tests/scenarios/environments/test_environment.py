@@ -308,13 +308,15 @@ def test_the_picture_shows_both_images_and_the_plan(scene: Path) -> None:
 
 @pytest.mark.pages
 def test_the_code_in_the_readme_is_short_and_works_as_pasted(tmp_path: Path) -> None:
-    (code,) = re.findall(r"```python\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
-    assert len(code.splitlines()) <= 12
+    readme = README.read_text(encoding="utf-8")
+    ((code, printed),) = re.findall(r"```python\n(.*?)```.*?prints `(.*?)`", readme, re.DOTALL)
+    assert len(code.splitlines()) <= 10
     done = subprocess.run(
         [sys.executable, "-W", "error", "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=900
     )
     assert done.returncode == 0, done.stderr
-    assert float(re.search(r"'followed': ([\d.]+)", done.stdout)[1]) > 0.9
+    assert int(re.search(r"Tracked (\d+)% of the time", done.stdout)[1]) > 90
+    assert done.stdout.strip() == printed
 
 
 def test_stable_baselines_own_check_finds_nothing(scene: Path) -> None:
