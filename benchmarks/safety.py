@@ -1,0 +1,238 @@
+"""Safety of the robot in random worlds, with and without faults: `python -m benchmarks.safety`.
+
+The robot follows people in random worlds, with a fault in every third of them. Only worlds in which it drives
+at least 1 m count. Reported are contacts with their cause, the closest approach to a person, and how soon the
+robot is at rest after a fault that blinds it.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+from pathlib import Path
+from typing import Final, get_args
+
+import click
+import numpy as np
+
+from benchmarks import call
+from benchmarks.compare import compare, print_table
+from peopleboy.scenarios.files.load import parse_scenario
+from peopleboy.scenarios.files.robot import ORACLE
+from peopleboy.scenarios.files.scenario import Scenario
+from peopleboy.scenarios.files.scenario_file import Failure
+from peopleboy.scenarios.loop.faults import FaultySensors, FaultyTracker
+from peopleboy.scenarios.loop.loop import closed_loop
+from peopleboy.scenarios.loop.tracker_by_name import make_named_tracker
+from peopleboy.scenarios.random_worlds.random_world import random_world
+from peopleboy.scenarios.running.engine.task import ReportProgress, chosen_workers
+from peopleboy.scenarios.scores.contacts import AT_REST_M_S, Contact, ContactLog
+from peopleboy.sim.robot.robot_body import outline_gap
+from peopleboy.sim.world import SimulatedWorld
+
+KINDS: Final[tuple[str, ...]] = get_args(Failure)
+BLINDING: Final = (
+    "camera_lost", "camera_frozen", "camera_black", "camera_saturated", "sonar_stuck", "tracker_raises",
+)  # fmt: skip
+"""Faults after which the robot must come to rest."""
+
+DRIVES_M: Final = 1.0
+_FAULT_S: Final = (10.0, 5.0)  # start and duration
+_SMALL: Final = {"width_px": 80, "height_px": 60}  # for true tracks, which need no image
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drive:
+    """One drive in a random world.
+
+    Attributes:
+        seed: seed of the world.
+        fault: kind of its fault; empty for none.
+        driven_m: [m] distance driven.
+        nearest_m: [m] smallest gap between the robot's outline and the middle of a person.
+        contacts: what the robot touched.
+        speed_m_s: [m/s] speed when the fault began; NaN without a fault.
+        stopping_s, stopping_m: [s], [m] from there until the robot was at rest; NaN if it was not within the
+            fault's duration.
+    """
+
+    seed: int
+    fault: str
+    driven_m: float
+    nearest_m: float
+    contacts: tuple[Contact, ...]
+    speed_m_s: float = math.nan
+    stopping_s: float = math.nan
+    stopping_m: float = math.nan
+
+
+@dataclass(frozen=True, slots=True)
+class DriveTask:
+    """Drive of one seed with one tracker."""
+
+    seed: int
+    tracker: str
+    duration_s: float
+
+    @property
+    def name(self) -> str:
+        """Name for messages."""
+        return f"world {self.seed}, {self.tracker}"
+
+    @property
+    def size(self) -> int:
+        """Number of worlds."""
+        return 1
+
+    def __call__(self, report_progress: ReportProgress) -> Drive:
+        """Drive, and return what happened."""
+        drive = drive_in(world_of(self.seed, self.tracker, self.duration_s), self.seed, self.tracker)
+        report_progress(1)
+        return drive
+
+
+def fault_of(seed: int) -> str:
+    """Return the kind of fault in the world of a seed; empty in two of three."""
+    return KINDS[seed // 3 % len(KINDS)] if seed % 3 == 0 else ""
+
+
+def world_of(seed: int, tracker: str, duration_s: float) -> Scenario:
+    """Sample a world in which the robot follows people."""
+    data = random_world(seed, duration_s)
+    data["robot"] = {key: data["robot"][key] for key in ("at_m", "heading_deg", "cameras")}
+    data["robot"]["behaviour"], data["physics"] = "follow_person", "kinematic"
+    if tracker == ORACLE:
+        data["robot"]["cameras"] = {
+            name: camera | _SMALL for name, camera in data["robot"]["cameras"].items()
+        }
+    if fault := fault_of(seed):
+        from_s, lasts_s = _FAULT_S
+        data["faults"] = [{"kind": fault, "from_s": min(from_s, duration_s / 2.0), "lasts_s": lasts_s}]
+    return parse_scenario(data, source=f"world {seed}", folder=Path())
+
+
+def drive_in(scenario: Scenario, seed: int, name: str) -> Drive:
+    """Let the robot drive in a scenario."""
+    tracker = make_named_tracker(name, seed, lambda: world.truth())
+    scenario, faults = scenario.mounting(tracker.cameras), scenario.spec.faults
+    config, log, rows = scenario.world(seed, "raycast"), ContactLog(), []
+    nearest_m = math.inf
+    with SimulatedWorld(config) as world:
+        stage = FaultySensors(world, faults, config.robot.sonar.farthest_m)
+        frames = round(scenario.duration_s * config.control_hz)
+        for tick in closed_loop(stage, FaultyTracker(tracker, faults), scenario.make_behaviour(), frames):
+            truth = tick.truth
+            log.add(truth)
+            rows.append((truth.time_s, truth.robot.x, truth.robot.y, abs(truth.robot_velocity[0])))
+            gaps = [outline_gap(truth.robot, person.position_m) for person in truth.people]
+            nearest_m = min([nearest_m, *gaps])
+    path = np.array(rows)
+    driven = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path[:, 1:3], axis=0).T))])
+    drive = Drive(
+        seed=seed,
+        fault=faults[0].kind if faults else "",
+        driven_m=float(driven[-1]),
+        nearest_m=nearest_m,
+        contacts=tuple(log.contacts),
+    )
+    if not faults:
+        return drive
+    first = int(np.argmax(path[:, 0] >= faults[0].from_s - 1e-6))
+    during = path[first:][path[first:, 0] < faults[0].from_s + (faults[0].lasts_s or math.inf)]
+    drive = replace(drive, speed_m_s=float(path[first, 3]))
+    at_rest = np.flatnonzero(during[:, 3] < AT_REST_M_S)
+    if not len(at_rest):
+        return drive
+    end = first + int(at_rest[0])
+    return replace(
+        drive,
+        stopping_s=float(path[end, 0] - path[first, 0]),
+        stopping_m=float(driven[end] - driven[first]),
+    )
+
+
+def summarise(drives: Sequence[Drive]) -> list[list[str]]:
+    """Return the rows of the table: all worlds without a fault, and those of each kind of fault."""
+    rows = []
+    for fault in ("", *KINDS):
+        own = [drive for drive in drives if drive.fault == fault]
+        if not own:
+            continue
+        touched = [contact for drive in own for contact in drive.contacts]
+        by_robot = [contact for contact in touched if contact.cause == "robot"]
+        moving = [drive for drive in own if drive.speed_m_s > AT_REST_M_S]
+        stops = [drive for drive in moving if not math.isnan(drive.stopping_s)]
+        rows.append(
+            [
+                fault or "none",
+                str(len(own)),
+                f"{sum(drive.driven_m for drive in own):.0f}",
+                str(len(by_robot)),
+                f"{max((contact.robot_m_s for contact in by_robot), default=0.0):.2f}",
+                str(len(touched) - len(by_robot)),
+                f"{max((contact.relative_m_s for contact in touched), default=0.0):.2f}",
+                f"{min(drive.nearest_m for drive in own):.2f}",
+                f"{len(stops)}/{len(moving)}" if fault else "",
+                f"{max(drive.stopping_s for drive in stops):.2f}" if stops else "",
+                f"{max(drive.stopping_m for drive in stops):.2f}" if stops else "",
+            ]
+        )
+    return rows
+
+
+COLUMNS: Final = (
+    *("fault", "worlds", "driven [m]", "contacts by robot", "fastest [m/s]", "by person", "relative [m/s]"),
+    *("nearest [m]", "at rest", "after [s]", "within [m]"),
+)
+
+
+def failures_in(drives: Sequence[Drive]) -> list[str]:
+    """Return what is unsafe: a contact that the robot caused at speed, or no rest after a blinding fault."""
+    found = [
+        f"world {drive.seed} ({drive.fault or 'no fault'}): hits {contact.other} at {contact.robot_m_s} m/s"
+        for drive in drives
+        for contact in drive.contacts
+        if contact.cause == "robot" and contact.robot_m_s > AT_REST_M_S
+    ]
+    return found + [
+        f"world {drive.seed} ({drive.fault}): not at rest, from {drive.speed_m_s:.2f} m/s"
+        for drive in drives
+        if drive.fault in BLINDING and drive.speed_m_s > AT_REST_M_S and math.isnan(drive.stopping_s)
+    ]
+
+
+@click.command()
+@click.option(
+    "--worlds", type=click.IntRange(min=1, max=10_000), default=200, help="worlds in which it drives"
+)
+@click.option("--first", type=click.IntRange(min=0), default=0, help="first seed")
+@click.option(
+    "--duration", type=click.FloatRange(min=1.0, max=600.0), default=30.0, help="length of a drive [s]"
+)
+@click.option("--tracker", "trackers", multiple=True, default=("detection", ORACLE), show_default=True)
+@click.option("--workers", type=click.IntRange(min=1), default=None, help="processes; default one per core")
+def main(worlds: int, first: int, duration: float, trackers: tuple[str, ...], workers: int | None) -> None:
+    """Drive in random worlds with each tracker, and print contacts, closest approach and stops."""
+    unsafe = []
+    for tracker in trackers:
+        drives: list[Drive] = []
+        seed = first
+        while len(drives) < worlds and seed < first + 20 * worlds:
+            tasks = [DriveTask(each, tracker, duration) for each in range(seed, seed + worlds - len(drives))]
+            seed += len(tasks)
+            (found,) = compare({tracker: tasks}, chosen_workers(workers, None), tracker).values()
+            drives += [drive for drive in found if drive.driven_m >= DRIVES_M]
+        drives = list(islice(drives, worlds))
+        click.echo(
+            f"Tracker {tracker}: {len(drives)} worlds with {DRIVES_M:g} m of travel in {seed - first} seeds."
+        )
+        print_table(COLUMNS, summarise(drives), width=200)
+        unsafe += [f"{tracker}: {line}" for line in failures_in(drives)]
+    for line in unsafe:
+        click.echo(line)
+    if unsafe:
+        raise SystemExit(1)
+
+
+if __name__ == "__main__":
+    call(main, "benchmarks.safety")
