@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from peopleboy.sim.cameras.camera_config import CameraConfig, ThermalConfig
 from peopleboy.sim.observation import Observation
+from peopleboy.sim.world_config import CONTROL_HZ
 
 Image = NDArray[Any]
 
@@ -52,7 +53,7 @@ class CameraHealth:
         for name in self._watched:
             image = images.get(name)
             if image is None:
-                if self._is_overdue(name, time_s):
+                if name in self._last and self._periods(name, time_s) > 0.9:
                     faults[name] = "no image"
             elif _is_flat(image):
                 flat[name] = image
@@ -61,7 +62,7 @@ class CameraHealth:
                     faults[name] = "the image repeats"
             else:
                 self._last[name] = image, time_s
-        dead = {name for name, image in flat.items() if self._is_dead(name, image)}
+        dead = {name for name, image in flat.items() if self._is_dead(name, image, time_s)}
         self._dead = {name: self._dead.get(name, flat[name]) for name in dead}
         for name, image in flat.items():
             if dead:
@@ -70,26 +71,26 @@ class CameraHealth:
                 self._last[name] = image, time_s
         return faults
 
-    def _is_dead(self, name: str, image: Image) -> bool:
+    def _is_dead(self, name: str, image: Image, time_s: float) -> bool:
         """Return whether an image without dynamic range is a failure by itself."""
         if name not in self._dead:
-            return self._cannot_be_flat(name)
+            return self._cannot_be_flat(name, time_s)
         # A dead sensor flickers; a cold view after it does not.
         is_steady = image.max() == image.min()
         return not (self._may_be_flat(name) and is_steady and not np.array_equal(image, self._dead[name]))
 
-    def _cannot_be_flat(self, name: str) -> bool:
+    def _cannot_be_flat(self, name: str, time_s: float) -> bool:
         if not self._may_be_flat(name):
             return True
-        return name in self._last and _has_pattern(self._last[name][0])
+        # After a gap, whatever was in the last image may have left.
+        return name in self._last and self._periods(name, time_s) < 1.5 and _has_pattern(self._last[name][0])
 
     def _may_be_flat(self, name: str) -> bool:
         return self._cameras[name].kind in _MAY_BE_FLAT
 
-    def _is_overdue(self, name: str, time_s: float) -> bool:
-        """Return whether an image should have come by now."""
-        rate_hz = self._cameras[name].rate_hz
-        return name in self._last and (rate_hz is None or time_s - self._last[name][1] > 1.5 / rate_hz)
+    def _periods(self, name: str, time_s: float) -> float:
+        """Return the time since a camera's last new image, in periods of its frame rate."""
+        return (time_s - self._last[name][1]) * (self._cameras[name].rate_hz or CONTROL_HZ)
 
     def _shutter_s(self, name: str) -> float:
         """Return for how long [s] a camera may repeat its image."""

@@ -10,12 +10,13 @@ from peopleboy.sim.observation import Observation
 
 CAMERAS = {"thermal": ThermalConfig(), "colour": ColourConfig()}
 COLD = np.zeros((60, 80), np.uint8)
-SECONDS = iter(range(10000))
+SEEDS = iter(range(10000))
+TIMES = iter(range(10000))
 
 
 def observed(**images):
     return Observation(
-        time_s=next(SECONDS) / 15.0,
+        time_s=next(TIMES) / 15.0,
         sonar_m=np.zeros(16),
         odometry=Pose2(),
         wheel_speeds_m_s=(0.0, 0.0),
@@ -26,7 +27,7 @@ def observed(**images):
 def warm(left, width=10, height=36):
     """A thermal image of a person, with noise."""
     image = COLD.copy()
-    noise = np.random.default_rng(next(SECONDS))
+    noise = np.random.default_rng(next(SEEDS))
     image[12 : 12 + height, left : left + width] = noise.integers(
         90, 110, image[12 : 12 + height, left : left + width].shape
     )
@@ -34,11 +35,11 @@ def warm(left, width=10, height=36):
 
 
 def lit():
-    return np.random.default_rng(next(SECONDS)).integers(0, 255, (60, 80, 3), np.uint8)
+    return np.random.default_rng(next(SEEDS)).integers(0, 255, (60, 80, 3), np.uint8)
 
 
 def flicker(base=0):
-    return (base + np.random.default_rng(next(SECONDS)).integers(0, 2, (60, 80))).astype(np.uint8)
+    return (base + np.random.default_rng(next(SEEDS)).integers(0, 2, (60, 80))).astype(np.uint8)
 
 
 @pytest.fixture
@@ -83,8 +84,17 @@ def test_a_frozen_or_missing_image_is_a_failure_of_that_camera_alone(health):
     first = warm(30)
     health.check(observed(thermal=first, colour=lit()))
     assert health.check(observed(thermal=first.copy(), colour=lit())) == {"thermal": "the image repeats"}
+    assert health.check(observed(thermal=warm(31), colour=lit())) == {}
     assert health.check(observed(colour=lit())) == {"thermal": "no image"}
     assert health.check(observed(thermal=warm(31), colour=lit())) == {}
+
+
+def test_a_frozen_camera_may_have_a_cold_view_when_it_works_again(health):
+    person = warm(30)
+    health.check(observed(thermal=person, colour=lit()))
+    for _ in range(5):
+        assert health.check(observed(thermal=person, colour=lit()))
+    assert health.check(observed(thermal=COLD, colour=lit())) == {}
 
 
 def test_a_shutter_may_repeat_the_image():
