@@ -16,9 +16,8 @@ import cv2
 import numpy as np
 
 from benchmarks import call
-from benchmarks.compare import compare, percents, print_table
+from benchmarks.compare import compare, percents, print_table, spent_ms, timed_ms
 from benchmarks.peers.detectors import Hog
-from benchmarks.timing import spent_ms, timed_ms
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.loop.loop import Tick, closed_loop
 from peopleboy.scenarios.running.blind_drive import blind_drive

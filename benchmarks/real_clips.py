@@ -9,8 +9,8 @@ from typing import Final
 
 import numpy as np
 
+from benchmarks.compare import timed_ms
 from benchmarks.peers.ours import Contestant, Ours
-from benchmarks.timing import timed_ms
 from peopleboy.bad_input import BadInput
 from peopleboy.scenarios.footage.options import TrackOptions
 from peopleboy.scenarios.footage.views import ThermalViews, open_views

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 import benchmarks.peers
+from benchmarks.compare import timed_ms
 from benchmarks.peers.contestants import JOINT, PEERS, RATE_HZ, make_contestant
-from benchmarks.timing import timed_ms
 from peopleboy import tracker
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.engine.task import ReportProgress

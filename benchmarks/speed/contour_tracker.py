@@ -8,8 +8,8 @@ from statistics import mean, median
 import cv2
 import numpy as np
 
+from benchmarks.compare import Turns, median_ms, spent_ms, timed_ms
 from benchmarks.peers.detectors import Hog
-from benchmarks.timing import Turns, median_ms, spent_ms, timed_ms
 from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.sim.world import SimulatedWorld

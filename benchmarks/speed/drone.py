@@ -17,8 +17,8 @@ from typing import Any, Final, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.compare import Turns
 from benchmarks.speed.environments import ACTION, MANY, QUICK_HZ, RUN_HZ, SCENARIO, WARM_UP, steps_per_s
-from benchmarks.timing import Turns
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.vector_environment import PeopleBoyVectorEnv
 from peopleboy.sim.physics.bullet import Bullet

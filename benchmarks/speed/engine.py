@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 import click
 
 from benchmarks import call
-from benchmarks.timing import Turns, spent_ms
+from benchmarks.compare import Turns, spent_ms
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.running.engine.task import Workers
 from peopleboy.scenarios.running.many_runs import RunTask, play, unfinished

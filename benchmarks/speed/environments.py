@@ -20,8 +20,8 @@ import yaml
 from numpy.typing import NDArray
 
 from benchmarks import call
+from benchmarks.compare import Turns
 from benchmarks.speed.memory import reset_growth
-from benchmarks.timing import Turns
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.environments.vector_environment import PeopleBoyVectorEnv
 from peopleboy.scenarios.files.load import load_scenario

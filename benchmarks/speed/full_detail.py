@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks import call
-from benchmarks.timing import Turns, spent_ms
+from benchmarks.compare import Turns, spent_ms
 from peopleboy.behaviours.behaviour import Command
 from peopleboy.scenarios.files.library import LIBRARY, library
 from peopleboy.scenarios.files.load import load_scenario, parse_scenario

@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 
 from benchmarks import call
-from benchmarks.timing import Turns, spent_ms, timed_ms
+from benchmarks.compare import Turns, spent_ms, timed_ms
 from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.scenarios.random_worlds.random_world import random_scenario

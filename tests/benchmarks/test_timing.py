@@ -5,9 +5,9 @@ from functools import partial
 import numpy as np
 import pytest
 
+from benchmarks.compare import Turns
 from benchmarks.speed.contour_tracker import ContourTimes, CrowdTime
 from benchmarks.speed.memory import MemoryCurve, memory_curve
-from benchmarks.timing import Turns
 from peopleboy.tracker.frame import THERMAL, Frame
 
 
