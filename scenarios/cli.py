@@ -27,7 +27,19 @@ from peopleboy.scenarios.running.engine.task import TasksFailed
 
 FAILED = 1
 BAD_INPUT = 2
-_FULL = (errno.ENOSPC, errno.EDQUOT)
+_FULL: Final = "the disk is full; free some space and run the command again"
+_MANY: Final = "too few file descriptors; raise the limit, for example with `ulimit -n 1024`"
+_ADVICE: Final = {
+    errno.ENOSPC: _FULL,
+    errno.EDQUOT: _FULL,
+    errno.EMFILE: _MANY,
+    errno.ENFILE: _MANY,
+    errno.ENOENT: "a file or folder was removed in the meantime; run the command again",
+    errno.ENAMETOOLONG: "give a shorter name",
+}
+"""What to do about errors of the system that are no faults of the program."""
+
+_LONGEST: Final = 500
 SECTIONS: Final[Mapping[str, tuple[click.Command, ...]]] = {
     "Core": (list_command, show, run, sweep, view, report),
     "Score": (evaluate, compare, import_tracks),
@@ -95,15 +107,18 @@ def main(arguments: Sequence[str] | None = None) -> Any:
         click.echo(f"peopleboy: {error}", err=True)
         code = FAILED
     except OSError as error:
-        if error.errno not in _FULL:
+        if error.errno not in _ADVICE:
             raise
-        click.echo(
-            f"peopleboy: the disk is full: {error}; free some space and run the command again", err=True
-        )
-        code = FAILED
+        click.echo(f"peopleboy: {_shorten(str(error))}; {_ADVICE[error.errno]}", err=True)
+        code = BAD_INPUT if error.errno == errno.ENAMETOOLONG else FAILED
     sys.exit(code if isinstance(code, int) else 0)
 
 
 def _complain(message: str) -> int:
-    click.echo(f"peopleboy: {' '.join(message.split())}", err=True)
+    click.echo(f"peopleboy: {_shorten(' '.join(message.split()))}", err=True)
     return BAD_INPUT
+
+
+def _shorten(message: str) -> str:
+    """Cut the middle out of a long message: its start says where, its end what would be right."""
+    return message if len(message) < _LONGEST else f"{message[:300]} ... {message[-150:]}"

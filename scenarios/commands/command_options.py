@@ -8,6 +8,7 @@ options to a command and passes their values to it as one `GivenOptions`, which 
 import json
 import logging
 import math
+import reprlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, dataclass
 from enum import Enum
@@ -34,7 +35,29 @@ TRACKER = f"Tracker: {TRACKERS}.  [default: the scenario's, or detection]"
 BEHAVIOURS = f"{', '.join(BEHAVIOUR_NAMES)}; or module:Class for your own"
 BEHAVIOUR = f"Behaviour that drives the robot: {BEHAVIOURS}.  [default: the scenario's]"
 
-PATH: Final = click.Path(path_type=Path)
+MOST_SEEDS: Final = 100_000
+
+
+class PlainPath(click.Path):
+    """A path that may not exist; pipes and devices are refused, as reading them may never end."""
+
+    def __init__(self) -> None:
+        super().__init__(path_type=Path)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """Convert a value to a path."""
+        path = Path(str(super().convert(value, param, ctx)))
+        try:
+            is_other = path.exists() and not (path.is_file() or path.is_dir())
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or error
+            self.fail(f"{reprlib.repr(str(path))}: cannot be a path: {reason}", param, ctx)
+        if is_other:
+            self.fail(f"{path} is a pipe or a device; give a file or a folder", param, ctx)
+        return path
+
+
+PATH: Final = PlainPath()
 
 C = TypeVar("C")
 Command = TypeVar("Command", bound=Callable[..., None])
@@ -288,7 +311,7 @@ def seeds_options(count: int, first: int = 0) -> Callable[[Command], Command]:
         number = click.option(
             "--seeds",
             metavar="N",
-            type=WholeNumber(min=1),
+            type=WholeNumber(1, MOST_SEEDS),
             default=count,
             show_default=str(count),
             help="Number of seeds.",

@@ -33,8 +33,8 @@ def check_word(name: str, word: str | None, known: Sequence[str | None]) -> None
     Raises:
         BadInput: the word is not in `known`.
     """
-    if word not in known:
-        raise BadInput(f"unknown {name} {word!r}; choose from {', '.join(map(str, known))}")
+    if not (word is None or isinstance(word, str)) or word not in known:
+        raise BadInput(f"unknown {name} {reprlib.repr(word)}; choose from {', '.join(map(str, known))}")
 
 
 def check_size(size: tuple[int, int]) -> None:
@@ -58,6 +58,18 @@ def check_size(size: tuple[int, int]) -> None:
         )
 
 
+def whole_number(name: str, value: Any, low: int, high: int) -> int:
+    """Return a whole number, NumPy's included, within limits.
+
+    Raises:
+        BadInput: it is no such number.
+    """
+    is_whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    if not is_whole or not low <= value <= high:
+        raise BadInput(f"{name} {reprlib.repr(value)} must be a whole number from {low} to {high}")
+    return int(value)
+
+
 def shown_cameras(cameras: Sequence[str] | None, observation: str, robot: RobotConfig) -> tuple[str, ...]:
     """Return the names of the cameras in the observation; all cameras if `cameras` is None.
 
@@ -68,7 +80,8 @@ def shown_cameras(cameras: Sequence[str] | None, observation: str, robot: RobotC
         return tuple(robot.cameras)
     if observation != "pixels":
         raise BadInput(f"cameras {cameras!r}: observation {observation!r} has no images; leave them out")
-    if isinstance(cameras, str) or not cameras or len(set(cameras)) < len(cameras):
+    is_list = isinstance(cameras, tuple | list) and all(isinstance(name, str) for name in cameras)
+    if not is_list or not cameras or len(set(cameras)) < len(cameras):
         raise BadInput(f"cameras {cameras!r} must be one or more different names, such as ('thermal',)")
     for name in cameras:
         check_word("cameras", name, tuple(robot.cameras))
@@ -83,7 +96,7 @@ def check_actions(actions: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.floa
     """
     try:
         shares = np.asarray(actions, np.float64)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise BadInput(
             f"actions must be {shape}, two finite numbers each, got {reprlib.repr(actions)}"
         ) from error

@@ -1,9 +1,11 @@
 """Gymnasium environment of any scenario, in which your controller drives the robot."""
 
+import copy
+import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, SupportsFloat
+from typing import TYPE_CHECKING, Any, Final, Self, SupportsFloat
 
 import gymnasium
 import numpy as np
@@ -21,6 +23,7 @@ from peopleboy.scenarios.environments.arguments import (
     check_word,
     shown_cameras,
     vary,
+    whole_number,
     world_of,
 )
 from peopleboy.scenarios.environments.episodes import (
@@ -67,6 +70,8 @@ if TYPE_CHECKING:
 DEFAULT_PX: Final = (320, 240)
 _SEEDS: Final = 2**31
 _ENDLESS: Final = 2**31
+_LARGEST_SEED: Final = 2**63 - 1
+_MOST_PHYSICS_HZ: Final = 24000  # a hundred times that of a run
 _RANDOM_S: Final = 30.0  # episodes in random worlds
 
 
@@ -133,6 +138,10 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         check_word("observation", observation, KINDS)
         check_word("render_mode", render_mode, (None, *self.metadata["render_modes"]))
         check_size(image_size)
+        if not isinstance(scenario, str | Path | Scenario | None):
+            raise BadInput(f"scenario {reprlib.repr(scenario)} must be a name, or the path of a file")
+        if not isinstance(tracker, str | None):
+            raise BadInput(f"tracker {reprlib.repr(tracker)} must be a name")
         if observation == "truth" and tracker is not None:
             raise BadInput(f"tracker {tracker!r}: observation 'truth' has none; leave it out")
         if not isinstance(normalise, bool):
@@ -145,12 +154,14 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         self.task, self._kind, self._size = task, observation, image_size
         self.render_mode = render_mode
         usual = first.world(0)
-        self._physics_hz = usual.physics_hz if physics_hz is None else physics_hz
+        self._physics_hz = usual.physics_hz
+        if physics_hz is not None:
+            self._physics_hz = whole_number("physics_hz", physics_hz, usual.control_hz, _MOST_PHYSICS_HZ)
         replace(usual, physics_hz=self._physics_hz)  # raises for an invalid rate
         self._take(first)
-        if max_episode_steps is not None and max_episode_steps < 1:
-            raise BadInput(f"max_episode_steps {max_episode_steps!r} must be 1 or more, or None")
-        self._max_steps = _ENDLESS if max_episode_steps is None else int(max_episode_steps)
+        self._max_steps = _ENDLESS
+        if max_episode_steps is not None:
+            self._max_steps = whole_number("max_episode_steps", max_episode_steps, 1, _ENDLESS)
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
         shown = shown_cameras(cameras, observation, self._robot)
         normaliser = Normaliser(self._robot) if normalise else None
@@ -168,6 +179,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         Raises:
             BadInput: an option is invalid.
         """
+        seed = None if seed is None else whole_number("seed", seed, 0, _LARGEST_SEED)
         super().reset(seed=seed)
         chosen = self._randomise if options is None else options
         check_options(chosen, draws_worlds=self._draws_worlds)
@@ -176,17 +188,26 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         if self._draws_worlds:
             self._take(self._moved(_random_episode(self._seed, world_of(chosen))))
         config = self._config(chosen)
-        self._world = SimulatedWorld(config)
+        world = self._world = SimulatedWorld(config)
+        try:
+            return self._begin(world, is_varied=bool(chosen))
+        except BaseException:
+            self._free()
+            raise
+
+    def _begin(self, world: SimulatedWorld, *, is_varied: bool) -> tuple[Arrays, dict[str, Any]]:
+        """Begin an episode in a new world."""
+        config = world.config
         self._calibrations = calibrations_of(config.robot.cameras)
         self._dt_s = 1.0 / config.control_hz
         self._commands: list[Command] = []
-        self._is_varied = bool(chosen)
+        self._is_varied = is_varied
         faults = self._scenario.spec.faults
         self._faults = SensorFaults(faults, config.robot.sonar.farthest_m) if faults else None
         self._tracker: Tracker | None = None
         if self._kind == "tracks":
             name, cameras = self._tracker_name, config.robot.cameras
-            tracker = make_checked_tracker(name, self._seed, self._world.truth, cameras)
+            tracker = make_checked_tracker(name, self._seed, world.truth, cameras)
             self._tracker = FaultyTracker(tracker, faults) if faults else tracker
         self._tracks: tuple[Track, ...] = ()
         self._before: Pose2 | None = None
@@ -199,7 +220,7 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
             dt_s=self._dt_s,
             limits=config.robot.drive.limits,
         )
-        tracks = self._perceive(self._world)
+        tracks = self._perceive(world)
         outcomes = self._episodes.begin(self._number, settings, self._snapshot, tracks)
         self._truth = outcomes.truths[0]
         observation = self._observation()
@@ -365,6 +386,30 @@ class PeopleBoyEnv(gymnasium.Env[Arrays, NDArray[np.float32]]):
         if self._viewer is not None:
             self._viewer.close()
             self._viewer = None
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        """Copy the environment; in an episode, the copy goes on from the same instant.
+
+        Raises:
+            BadInput: an episode with Bullet is under way.
+        """
+        twin = type(self).__new__(type(self))
+        memo[id(self)] = twin
+        twin.__dict__.update(copy.deepcopy(self.__dict__, memo))
+        return twin
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what is pickled.
+
+        Raises:
+            BadInput: an episode with images or with Bullet is under way.
+        """
+        if self._world is not None and self._world.has_images:
+            raise BadInput(
+                "an environment with images cannot be pickled in an episode; pickle it before reset(), or "
+                "use observation 'truth' with physics 'kinematic'"
+            )
+        return self.__dict__
 
     def _draw(self) -> NDArray[np.uint8]:
         self._running(even_over=True)

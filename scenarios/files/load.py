@@ -1,6 +1,7 @@
 """Find scenarios by library name or path, and read them."""
 
 import logging
+import reprlib
 from pathlib import Path
 from typing import Any
 
@@ -68,11 +69,11 @@ def _find(name_or_path: str | Path) -> Path:
 
 def _find_in_library(name: str, otherwise: str) -> Path:
     known = [path.stem for path in LIBRARY.glob("*.yaml")]
-    if (SUITES / f"{name}.yaml").is_file():
+    if name in {path.stem for path in SUITES.glob("*.yaml")}:
         raise BadInput(f"{name} is a suite of scenarios; only `peopleboy run` accepts suites")
     if name not in known:
         which = hint(name, known, "`peopleboy list` shows all")
-        raise BadInput(f"unknown scenario {name!r}; {which}; {otherwise}")
+        raise BadInput(f"unknown scenario {reprlib.repr(name)}; {which}; {otherwise}")
     return LIBRARY / f"{name}.yaml"
 
 

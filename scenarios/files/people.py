@@ -196,7 +196,8 @@ def _in_order(clothes: dict[str, Any]) -> dict[str, Any]:
 
 
 def _vary_path(person: PersonSpec, rng: np.random.Generator, can_walk: Callable[[PersonSpec], bool]) -> Path:
-    faster = 1.0 + float(rng.uniform(-person.speed_jitter, person.speed_jitter))
+    jitter = abs(person.speed_jitter)  # of -0.0, NumPy refuses the range
+    faster = 1.0 + float(rng.uniform(-jitter, jitter))
     path = person.path
     if person.speed_jitter > 0.0:
         speeds = [min(max(w.speed_m_s * faster, SPEEDS_M_S[0]), SPEEDS_M_S[1]) for w in path]

@@ -101,16 +101,19 @@ def _parse(text: str) -> dict[Any, Any]:
 
 
 def _read_text(path: Path) -> str:
-    if path.is_dir():
-        raise BadInput("is a folder; give a scenario file that ends in .yaml")
     try:
-        data = path.read_bytes()
+        if path.is_dir():
+            raise BadInput("is a folder; give a scenario file that ends in .yaml")
+        if path.exists() and not path.is_file():
+            raise BadInput("is a pipe or a device; give a scenario file that ends in .yaml")
+        with path.open("rb") as file:
+            data = file.read(_LARGEST_BYTES + 1)
     except FileNotFoundError as error:
         raise BadInput("file not found") from error
     except OSError as error:
         raise BadInput(f"cannot be read: {error.strerror}") from error
     if len(data) > _LARGEST_BYTES:
-        raise BadInput(f"has {len(data)} bytes; a scenario file has at most {_LARGEST_BYTES}")
+        raise BadInput(f"has {path.stat().st_size} bytes; a scenario file has at most {_LARGEST_BYTES}")
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

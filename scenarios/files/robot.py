@@ -21,6 +21,8 @@ ORACLE: Final = "truth"
 # Camera names that would clash with other folders, entities and arrays.
 _TAKEN: Final = ("truth", "tracks", "scene", "body", "sonar", "odometry")
 _MOST_PIXELS: Final = 1 << 23  # limit of the trackers' integral images
+_MOST_PIXELS_IN_ALL = 2 * _MOST_PIXELS
+_MOST_CAMERAS = 32
 
 CameraName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")]
 
@@ -153,3 +155,9 @@ def check_cameras(robot: RobotSpec) -> None:
             raise BadInput(
                 f"{width} x {height} pixels are too many; at most {_MOST_PIXELS} in total", key=(name,)
             )
+    total = sum(camera.camera.width * camera.camera.height for camera in cameras.values())
+    if len(cameras) > _MOST_CAMERAS or total > _MOST_PIXELS_IN_ALL:
+        raise BadInput(
+            f"{len(cameras)} cameras with {total} pixels are too many; "
+            f"at most {_MOST_CAMERAS} with {_MOST_PIXELS_IN_ALL} in total"
+        )

@@ -184,6 +184,7 @@ class ScenarioSpec:
         tuple[LightSpec, ...],
         Field(
             strict=False,
+            max_length=1000,
             description="changes of the room's light, in order of time; if omitted, full light",
         ),
     ] = ()

@@ -27,6 +27,7 @@ from peopleboy.wording import hint
 M = TypeVar("M")
 
 _MOST_FAULTS = 3
+_MOST_EXPLAINED = 100  # of which equal ones are listed once
 _UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
 _TAGS = ("word", "list")  # tags of the unions that the settings declare
 
@@ -200,20 +201,18 @@ def _takes_mappings(schema: Any) -> Any:
 
 
 def _explain(error: ValidationError, model: Any) -> BadInput:
-    faults = [fault for fault in error.errors() if not _is_echo(fault, error.errors())]
+    every = error.errors(include_url=False)
+    # A list that has an invalid entry also seems too short.
+    above = {fault["loc"][:end] for fault in every for end in range(len(fault["loc"]))}
+    faults = [fault for fault in every if fault["loc"] not in above]
     faults.sort(key=lambda fault: fault["type"] not in _UNKNOWN_KEY)
-    found = [_explain_one(fault, model) for fault in faults]
+    found = [_explain_one(fault, model) for fault in faults[:_MOST_EXPLAINED]]
     lines = list(dict.fromkeys(map(str, found)))
     if len(lines) == 1:
         return found[0]
-    more = f"; and {len(lines) - _MOST_FAULTS} more" if len(lines) > _MOST_FAULTS else ""
+    rest = len(lines) - _MOST_FAULTS + len(faults[_MOST_EXPLAINED:])
+    more = f"; and {rest} more" if rest > 0 else ""
     return BadInput("; ".join(lines[:_MOST_FAULTS]) + more)
-
-
-def _is_echo(fault: Any, faults: Sequence[Any]) -> bool:
-    """Return whether a list only seems too short because one of its entries is invalid."""
-    place = fault["loc"]
-    return any(len(other["loc"]) > len(place) and other["loc"][: len(place)] == place for other in faults)
 
 
 def _explain_one(fault: Any, model: Any) -> BadInput:
@@ -225,7 +224,7 @@ def _explain_one(fault: Any, model: Any) -> BadInput:
         choice = f"; choose from {', '.join(words)}" if words else ""
         return BadInput(f"missing key {steps[-1]!r}{choice}", key=steps[:-1])
     if kind in _UNKNOWN_KEY:
-        return BadInput(f"unknown key {steps[-1]!r}; {hint(str(steps[-1]), owner)}", key=steps[:-1])
+        return BadInput(f"unknown key {_shown(steps[-1])}; {hint(str(steps[-1]), owner)}", key=steps[:-1])
     if kind == "value_error" and isinstance(context["error"], BadInput):
         return context["error"].within(*steps)
     if steps and steps[-1] == "[key]":  # pydantic appends it if a key itself is invalid
@@ -244,9 +243,9 @@ def _what(kind: str, context: Any, fault: Any, label: str) -> str:
         known = re.findall(r"'([^']*)'", context.get("expected") or context["expected_tags"])
         word = context.get("tag", fault["input"])
         what = context.get("discriminator", label).strip("'")
-        return f"unknown {what} {word!r}; {hint(str(word), known)}"
+        return f"unknown {what} {_shown(word)}; {hint(str(word), known)}"
     if kind == "string_pattern_mismatch" and label in ("tracker", "behaviour") and ":" in fault["input"]:
-        return f"{value} is your own class, which a file cannot name; give --{label} {fault['input']} instead"
+        return f"{value} is your own class, which a file cannot name; give --{label} {value[1:-1]} instead"
     if kind == "string_pattern_mismatch":
         return f"{value} is not a name: use letters, digits, _ and start with a letter"
     if kind == "missing":

@@ -1,10 +1,11 @@
 """The only caller of PyBullet: bodies by name, physics steps, rays, contacts and TinyRenderer's images."""
 
+import weakref
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -73,6 +74,8 @@ class _Client:
     def __init__(self) -> None:
         with quiet():
             self._number: int | None = pybullet.connect(pybullet.DIRECT)
+        # A world that is dropped without `close` must not keep its server.
+        self._end = weakref.finalize(self, pybullet.disconnect, physicsClientId=self._number)
 
     def __getattr__(self, name: str) -> Callable[..., Any]:
         function = partial(getattr(pybullet, name), physicsClientId=self._number)
@@ -80,9 +83,14 @@ class _Client:
         return function
 
     def close(self) -> None:
-        if self._number is not None:
-            pybullet.disconnect(physicsClientId=self._number)
-            self._number = None
+        self._end()
+        self._number = None
+
+    def __getstate__(self) -> NoReturn:
+        """Refuse copies, which would drive the same server."""
+        raise BadInput(
+            "a world with Bullet cannot be copied or pickled; use physics 'kinematic', or copy before reset()"
+        )
 
 
 class Bullet(Physics):

@@ -202,13 +202,22 @@ def _read_geometry(visual: ElementTree.Element, path: Path) -> tuple[ShapeKind, 
     if tag == "mesh":
         return ShapeKind.MESH, _scale(geometry), _find_mesh(path, geometry.get("filename", ""))
     if tag == "box":
-        return ShapeKind.BOX, _vector(read_numbers(geometry.attrib["size"])), None
+        return ShapeKind.BOX, _vector(_lengths(geometry, "size")), None
     if tag == "sphere":
-        return ShapeKind.SPHERE, (float(geometry.attrib["radius"]), 0.0, 0.0), None
+        return ShapeKind.SPHERE, (float(_lengths(geometry, "radius")[0]), 0.0, 0.0), None
     if tag == "plane":
         return ShapeKind.PLANE, (0.0, 0.0, 0.0), None
     kind = {"cylinder": ShapeKind.CYLINDER, "capsule": ShapeKind.CAPSULE}[tag]
-    return kind, (float(geometry.attrib["length"]), float(geometry.attrib["radius"]), 0.0), None
+    length, radius = (float(_lengths(geometry, key)[0]) for key in ("length", "radius"))
+    return kind, (length, radius, 0.0), None
+
+
+def _lengths(geometry: ElementTree.Element, key: str) -> Numbers:
+    """Read lengths, which must be positive."""
+    lengths = read_numbers(geometry.attrib[key])
+    if not len(lengths) or not (lengths > 0.0).all():
+        raise ValueError(f"{geometry.tag}: {key} must be positive, got {geometry.attrib[key][:40]!r}")
+    return lengths
 
 
 def _scale(mesh: ElementTree.Element) -> Vector:
@@ -244,8 +253,11 @@ def _rgb(material: ElementTree.Element) -> tuple[float, float, float]:
 
 
 def read_numbers(text: str) -> Numbers:
-    """Read numbers like PyBullet, which accepts commas for spaces."""
-    return np.array([float(word) for word in text.replace(",", " ").split()])
+    """Read finite numbers like PyBullet, which accepts commas for spaces."""
+    numbers = np.array([float(word) for word in text.replace(",", " ").split()])
+    if not np.isfinite(numbers).all():
+        raise ValueError(f"numbers must be finite, got {text[:40]!r}")
+    return numbers
 
 
 def _vector(numbers: Numbers) -> Vector:

@@ -44,7 +44,10 @@ class Temperatures:
     walls_c: Annotated[Celsius, Field(description="all walls that are not in `single_walls_c`")] = 21.5
     single_walls_c: Annotated[
         dict[Word, Celsius],
-        Field(description="temperatures of single walls by name, such as an outer wall in winter"),
+        Field(
+            max_length=200,
+            description="temperatures of single walls by name, such as an outer wall in winter",
+        ),
     ] = field(default_factory=dict)
     surroundings_c: Annotated[Celsius, Field(description="reflected by surfaces of low emissivity")] = 21.0
 
@@ -65,7 +68,9 @@ class AnyPlaceConfig:
 
     width_m: Annotated[float, Field(ge=1.2, le=60.0, description="width; in L and T corridors, of both legs")]
     height_m: Annotated[float, Field(ge=2.2, le=8.0, description="height of the ceiling")] = 2.7
-    doors: Annotated[tuple[Door, ...], Field(strict=False, description="openings in the walls")] = ()
+    doors: Annotated[
+        tuple[Door, ...], Field(strict=False, max_length=100, description="openings in the walls")
+    ] = ()
     temperatures: Annotated[
         Temperatures, BeforeValidator(_follow_air), Field(description="surface temperatures")
     ] = field(default_factory=Temperatures)

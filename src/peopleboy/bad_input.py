@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+_LONGEST = 40  # letters shown of a key
+
 Key = tuple[str | int, ...]
 """Steps from the top of a file to a value in it, such as ("people", 0, "path", 1, "at_m")."""
 
@@ -39,7 +41,8 @@ class BadInput(ValueError):  # noqa: N818
 
 def dotted(key: Key) -> str:
     """Write a key as people[0].path[1].at_m."""
-    text = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in key)
+    names = (step if len(str(step)) <= _LONGEST else f"{str(step)[:_LONGEST]}..." for step in key)
+    text = "".join(f"[{name}]" if isinstance(name, int) else f".{name}" for name in names)
     return text.removeprefix(".")
 
 

@@ -271,10 +271,11 @@ class DistanceTraining(Specification[list[DistanceSamples]]):
     HINT: ClassVar[str] = "`peopleboy reproduce --paper panoramic` evaluates it in the paper's experiments"
 
     sequences: Annotated[
-        int, Field(ge=1, alias="seeds", description="Number of seeds, each a run of the scenario.")
+        int,
+        Field(ge=1, le=100_000, alias="seeds", description="Number of seeds, each a run of the scenario."),
     ] = 10
     scenario: Annotated[str, POSITIONAL, Field(description="Scenario, by name or path.")] = "room_long"
-    epochs: Annotated[int, Field(ge=1, description="Training epochs.")] = 2000
+    epochs: Annotated[int, Field(ge=1, le=1_000_000, description="Training epochs.")] = 2000
 
     def default_folder(self, model: str) -> Path:
         """Return a separate folder for each scenario."""

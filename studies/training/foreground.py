@@ -60,7 +60,7 @@ class ForegroundTraining(Specification[Tasks]):
     """
 
     sequences: Annotated[
-        int, Field(ge=1, alias="seeds", description="Number of random scenes to train on.")
+        int, Field(ge=1, le=100_000, alias="seeds", description="Number of random scenes to train on.")
     ] = 400
     validation: Annotated[int, Field(ge=0, description="Number of other scenes for validation.")] = 20
     rounds: Annotated[int, Field(ge=1, description="Training rounds, each on a hundred of the scenes.")] = 12

@@ -241,7 +241,8 @@ class OcclusionTraining(Specification[PairSamples]):
     HINT: ClassVar[str] = "`peopleboy reproduce 7.1 7.2 7.3 7.4` evaluates it in the thesis's experiments"
 
     sequences: Annotated[
-        int, Field(ge=1, alias="seeds", description="Number of seeds, each a run of every scenario.")
+        int,
+        Field(ge=1, le=100_000, alias="seeds", description="Number of seeds, each a run of every scenario."),
     ] = 5
     tracker: Annotated[Literal["contour", "thesis"], Field(description="Tracker to train.")] = "contour"
 

@@ -200,7 +200,7 @@ class PlacesTraining(Specification[Split[PlaceSamples]]):
     """Train on random scenes; run `peopleboy train foreground --ship` first, whose network it uses."""
 
     sequences: Annotated[
-        int, Field(ge=2, alias="seeds", description="Number of random scenes to train on.")
+        int, Field(ge=2, le=100_000, alias="seeds", description="Number of random scenes to train on.")
     ] = 400
     rendered: Annotated[
         Path, Field(description="Folder of rendered scenes, shared with `train foreground`.")

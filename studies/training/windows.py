@@ -204,7 +204,7 @@ class WindowsTraining(Specification[Split[WindowSamples]]):
     """Train classifiers of near and far windows on random scenes, with and without depth."""
 
     sequences: Annotated[
-        int, Field(ge=1, alias="seeds", description="Number of random scenes to train on.")
+        int, Field(ge=1, le=100_000, alias="seeds", description="Number of random scenes to train on.")
     ] = 300
 
     def tasks(self, out: Path) -> Tasks:
