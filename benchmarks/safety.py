@@ -181,8 +181,8 @@ def summarise(drives: Sequence[Drive]) -> list[list[str]]:
 
 
 COLUMNS: Final = (
-    *("fault", "worlds", "driven [m]", "contacts by robot", "fastest [m/s]", "by person", "relative [m/s]"),
-    *("nearest [m]", "at rest", "after [s]", "within [m]"),
+    *("fault", "worlds", "driven, m", "contacts by robot", "fastest, m/s", "by person", "relative, m/s"),
+    *("nearest, m", "at rest", "after, s", "within, m"),
 )
 
 
