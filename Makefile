@@ -9,7 +9,7 @@ PIP := $(BIN)/uv pip install --quiet --python $(BIN)/python --constraint constra
 # Bytecode that is kept saves each of the processes that tests start some of its start.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-pages test-heavy test-install lint format bench peers rl pages docs dist lock audit docker forget-kernels clean
+.PHONY: demo test test-pages test-heavy test-install fuzz kill-tests soak lint format bench peers rl pages docs dist lock audit docker forget-kernels clean
 
 demo: $(INSTALLED)
 	$(BIN)/peopleboy run single_follow --out runs/demo --overwrite
@@ -24,6 +24,18 @@ test: $(READY)
 # Run every command and code block of the README, the tutorials and the how-to guides.
 test-pages: $(READY)
 	$(BIN)/python -m pytest -n 2 -m pages
+
+# Random inputs for everything that reads what users write: about 20 000.
+fuzz: $(READY)
+	FUZZ_EXAMPLES=4000 $(BIN)/python -m pytest -n 2 tests/test_fuzz.py tests/test_refused_inputs.py
+
+# Kill commands at random moments, check what they leave, and resume them.
+kill-tests: $(READY)
+	$(BIN)/python -m benchmarks.reliability.kills
+
+# Hours of simulated time and thousands of environments in one process.
+soak: $(READY)
+	$(BIN)/python -m benchmarks.reliability.soak
 
 test-heavy: $(READY)
 	$(BIN)/python -m pytest -m heavy

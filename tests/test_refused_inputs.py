@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow.parquet as pq
 import pybullet
 import pytest
 import yaml
@@ -22,6 +23,7 @@ from peopleboy.scenarios import cli
 from peopleboy.scenarios.environments.environment import PeopleBoyEnv
 from peopleboy.scenarios.files.load import load_scenario
 from tests.helpers.calls.command_line import refusal, run_cli
+from tests.helpers.runs import toy_runs as toy
 
 SCENE: dict[str, Any] = {
     "name": "x",
@@ -205,3 +207,20 @@ def test_environments_that_are_dropped_or_fail_to_reset_free_their_worlds(
     del env
     gc.collect()
     assert clients() == before
+
+
+TAMPERED = {
+    "robot.parquet": lambda path: pq.write_table(pq.read_table(path).slice(0, 3), path),
+    "metrics.json": lambda path: path.write_bytes(b"\xff\xfe{}"),
+    "events.jsonl": lambda path: path.write_text('{"frame": 1, "time_s": 0.0, "kind": 3, "who": "x"}\n'),
+}
+
+
+@pytest.mark.parametrize("name", TAMPERED)
+def test_a_run_whose_files_were_changed_is_refused(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = toy.write_run(tmp_path / "run")
+    TAMPERED[name](run / name)
+    command = "report" if name == "events.jsonl" else "evaluate"
+    assert name in refusal(capsys, command, run)

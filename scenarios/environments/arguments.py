@@ -4,9 +4,9 @@ Worlds vary between episodes so that a learned controller does not overfit to on
 """
 
 import math
-import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from reprlib import repr as shown
 from typing import Any, Final
 
 import numpy as np
@@ -34,7 +34,7 @@ def check_word(name: str, word: str | None, known: Sequence[str | None]) -> None
         BadInput: the word is not in `known`.
     """
     if not (word is None or isinstance(word, str)) or word not in known:
-        raise BadInput(f"unknown {name} {reprlib.repr(word)}; choose from {', '.join(map(str, known))}")
+        raise BadInput(f"unknown {name} {shown(word)}; choose from {', '.join(map(str, known))}")
 
 
 def check_size(size: tuple[int, int]) -> None:
@@ -54,7 +54,7 @@ def check_size(size: tuple[int, int]) -> None:
     if not is_fine:
         (narrow, flat), (wide, tall) = SMALLEST_PX, LARGEST_PX
         raise BadInput(
-            f"image_size {size!r} must be width and height [px], {narrow} x {flat} to {wide} x {tall}"
+            f"image_size {shown(size)} must be width and height [px], {narrow} x {flat} to {wide} x {tall}"
         )
 
 
@@ -66,7 +66,7 @@ def whole_number(name: str, value: Any, low: int, high: int) -> int:
     """
     is_whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
     if not is_whole or not low <= value <= high:
-        raise BadInput(f"{name} {reprlib.repr(value)} must be a whole number from {low} to {high}")
+        raise BadInput(f"{name} {shown(value)} must be a whole number from {low} to {high}")
     return int(value)
 
 
@@ -79,10 +79,10 @@ def shown_cameras(cameras: Sequence[str] | None, observation: str, robot: RobotC
     if cameras is None:
         return tuple(robot.cameras)
     if observation != "pixels":
-        raise BadInput(f"cameras {cameras!r}: observation {observation!r} has no images; leave them out")
+        raise BadInput(f"cameras {shown(cameras)}: observation {observation!r} has no images; leave them out")
     is_list = isinstance(cameras, tuple | list) and all(isinstance(name, str) for name in cameras)
     if not is_list or not cameras or len(set(cameras)) < len(cameras):
-        raise BadInput(f"cameras {cameras!r} must be one or more different names, such as ('thermal',)")
+        raise BadInput(f"cameras {shown(cameras)} must be one or more different names, such as ('thermal',)")
     for name in cameras:
         check_word("cameras", name, tuple(robot.cameras))
     return tuple(cameras)
@@ -97,9 +97,7 @@ def check_actions(actions: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.floa
     try:
         shares = np.asarray(actions, np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        raise BadInput(
-            f"actions must be {shape}, two finite numbers each, got {reprlib.repr(actions)}"
-        ) from error
+        raise BadInput(f"actions must be {shape}, two finite numbers each, got {shown(actions)}") from error
     if shares.shape != shape:
         raise BadInput(f"actions of shape {shares.shape}: must be {shape}, two finite numbers each")
     if not np.isfinite(shares).all():
@@ -146,7 +144,7 @@ def check_options(options: Mapping[str, Any], *, draws_worlds: bool = False) -> 
         BadInput: an option is invalid; the error states key, value and limits.
     """
     if not isinstance(options, Mapping):
-        raise BadInput(f"options: must be a mapping of names to values, got {options!r}")
+        raise BadInput(f"options: must be a mapping of names to values, got {shown(options)}")
     for key, value in options.items():
         if key == WORLD and draws_worlds:
             world_of(options)
@@ -154,7 +152,7 @@ def check_options(options: Mapping[str, Any], *, draws_worlds: bool = False) -> 
         if key == WORLD:
             raise BadInput("options: world needs random worlds; make the environment with scenario=None")
         if key not in LIMITS:
-            raise BadInput(f"options: unknown key {key!r}; {hint(str(key), [*LIMITS, WORLD])}")
+            raise BadInput(f"options: unknown key {shown(key)}; {hint(str(key), [*LIMITS, WORLD])}")
         low, high = LIMITS[key]
         bounds = value if isinstance(value, tuple | list) else (value, value)
         is_fine = len(bounds) == 2 and all(
@@ -163,7 +161,7 @@ def check_options(options: Mapping[str, Any], *, draws_worlds: bool = False) -> 
         if not is_fine or bounds[0] > bounds[1]:
             what = "a whole number" if key in _WHOLE else "a number"
             raise BadInput(
-                f"options: {key} {value!r} must be {what} or a rising pair, within {low:g} .. {high:g}"
+                f"options: {key} {shown(value)} must be {what} or a rising pair, within {low:g} .. {high:g}"
             )
 
 

@@ -3,11 +3,13 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, fields, replace
+from itertools import pairwise
 from typing import Annotated, Any, Final
 
 import numpy as np
 from pydantic import Field, with_config
 
+from peopleboy.bad_input import BadInput
 from peopleboy.random_streams import stream
 from peopleboy.scenarios.files.validation import STRICT, Given
 from peopleboy.settings import Name, meaning_of
@@ -88,6 +90,9 @@ class GroupSpec(_Variations):
     def members(self) -> tuple[PersonSpec, ...]:
         """Return the members of the group, each with its own path, starting from the right."""
         points = [waypoint.at_m for waypoint in self.path]
+        for index, (before, after) in enumerate(pairwise(points)):
+            if before == after:
+                raise BadInput("must differ from the point before", key=("path", index + 1, "at_m"))
         middle = (len(self.names) - 1) / 2.0
         shared = {one.name: getattr(self, one.name) for one in fields(_Variations)}
         return tuple(

@@ -183,7 +183,11 @@ class LogLine:
             TypeError: the object does not have this form.
         """
         move = line.get("move")
-        return cls(**{**line, "move": None if move is None else Move(**move)})
+        found = cls(**{**line, "move": None if move is None else Move(**move)})
+        words = (found.kind, found.who, found.other, found.why)
+        if not isinstance(found.frame, int) or not all(isinstance(word, str) for word in words):
+            raise TypeError("frame must be a whole number, and kind, who, other and why text")
+        return found
 
 
 class RunEvents:

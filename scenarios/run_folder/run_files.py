@@ -116,11 +116,7 @@ def read_files(
         beliefs=read_table(folder / "tracks.parquet", TRACKS, TRACKS.names),
         robot=read_table(folder / "robot.parquet", ROBOT, robot),
     )
-    if files.robot["frame"].to_pylist() != list(range(1, frames + 1)):
-        raise BadInput(
-            f"{folder / 'robot.parquet'}: must have a row for each of the {frames} frames, "
-            f"got {files.robot.num_rows}; {_AGAIN}"
-        )
+    check_robot(folder, files.robot, frames)
     for name in set(pc.unique(files.beliefs["status"]).to_pylist()) - set(Status):
         raise BadInput(f"{folder / 'tracks.parquet'}: unknown status {name!r}; {_AGAIN}")
     check_end(files.truth, folder / _TRUTH_TEXT, frames)
@@ -128,6 +124,19 @@ def read_files(
     _check_rows(files.truth, folder / _TRUTH_TEXT, written_truth(files.people))
     _check_rows(files.tracks, folder / _TRACKS_TEXT, _written_tracks(files.beliefs))
     return files
+
+
+def check_robot(folder: Path, robot: pa.Table, frames: int) -> None:
+    """Refuse a robot.parquet that has not one row for each frame.
+
+    Raises:
+        BadInput: a frame is missing or superfluous.
+    """
+    if robot["frame"].to_pylist() != list(range(1, frames + 1)):
+        raise BadInput(
+            f"{folder / 'robot.parquet'}: must have a row for each of the {frames} frames, "
+            f"got {robot.num_rows}; {_AGAIN}"
+        )
 
 
 def check_whole(folder: Path, truth: TrueBoxes, tracks: TrackBoxes) -> None:

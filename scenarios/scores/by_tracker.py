@@ -245,7 +245,10 @@ def _figures(folder: Path) -> list[float] | None:
     path = folder / "metrics.json"
     if not path.is_file():
         return None
-    group = json.loads(path.read_text(encoding="utf-8")).get("comfort")
+    try:
+        group = json.loads(path.read_text(encoding="utf-8")).get("comfort")
+    except (OSError, ValueError, AttributeError) as error:
+        raise BadInput(f"{path}: cannot be read as metrics; run the scenario again") from error
     if group is None:
         return None
     if not isinstance(group, dict) or set(group) != set(_NAMES):

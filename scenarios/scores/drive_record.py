@@ -1,6 +1,7 @@
 """Record a drive among people, which its scores are made of, and declare the figures of these scores once."""
 
 import math
+from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any, Final
@@ -72,8 +73,8 @@ class DriveLog:
     """Collects what a `DriveRecord` holds, instant by instant."""
 
     def __init__(self) -> None:
-        self._rows: list[tuple[float, ...]] = []
-        self._people: list[tuple[float, ...]] = []
+        self._rows = array("d")  # 8 bytes a number, in runs of hours
+        self._people = array("d")
 
     def add(self, truth: Truth | ImageFreeTruth, track: int, is_wrong: bool | None = None) -> None:
         """Take in one instant.
@@ -88,8 +89,9 @@ class DriveLog:
         wrong = math.nan if is_wrong is None else float(is_wrong)
         pose = (robot.x, robot.y, robot.heading)
         events = (bool(truth.contacts), track, wrong, len(people))
-        self._rows.append((truth.time_s, *pose, speed_m_s, *target, *events))
-        self._people += [(*person.position_m, *person.velocity_m_s) for person in people]
+        self._rows.extend((truth.time_s, *pose, speed_m_s, *target, *events))
+        for person in people:
+            self._people.extend((*person.position_m, *person.velocity_m_s))
 
     def record(self) -> DriveRecord:
         """Return what happened so far."""

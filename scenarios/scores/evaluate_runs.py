@@ -19,6 +19,7 @@ from peopleboy.scenarios.run_folder.run_files import (
     POSE,
     as_squares,
     check_end,
+    check_robot,
     check_whole,
     is_on_floor_alone,
     places_of_people,
@@ -209,6 +210,7 @@ def score_people(
         images = replace(scores.counts, frames=len(range(0, frames, every)))
         return ScoredPeople(replace(scores, counts=images), by, notes_on(folder, by, truth, tracks))
     robot = read_table(folder / "robot.parquet", ROBOT, POSE)
+    check_robot(folder, robot, frames)
     people = read_table(folder / "truth.parquet", TRUTH, PEOPLE)
     beliefs = read_table(folder / "tracks.parquet", TRACKS, BELIEFS)
     is_on_floor = is_on_floor_alone(beliefs)

@@ -190,7 +190,8 @@ def _is_whole(values: Floats, least: int) -> Bools:
 def _is_first(frame: Floats, identity: Floats) -> Bools:
     """Return which rows (N,) are the first of their frame and id."""
     order = np.lexsort((np.arange(len(frame)), identity, frame))
-    repeats = (np.diff(frame[order]) == 0.0) & (np.diff(identity[order]) == 0.0)
+    frames, identities = frame[order], identity[order]
+    repeats = (frames[1:] == frames[:-1]) & (identities[1:] == identities[:-1])
     first = np.ones(len(frame), dtype=np.bool_)
     first[order[1:][repeats]] = False
     return first

@@ -1,0 +1,1 @@
+"""Benchmarks of what survives kills, long runs and thousands of environments."""
