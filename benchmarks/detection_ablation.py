@@ -29,11 +29,11 @@ from peopleboy.tracker.detector.people_trees import shipped_people_trees
 from peopleboy.tracker.detector.rescoring import RescoringNetwork, rescore
 from peopleboy.tracker.evaluation.evaluate import combine
 from peopleboy.tracker.frame import Frame
+from peopleboy.tracker.sensors.thermal import Finder, ThermalFinder, ThermalSensor
 from peopleboy.tracker.track import Track
 from peopleboy.tracker.trackers import DEFAULT_TRACKER
-from peopleboy.tracker.tracking.config import DetectionTrackerConfig, ExistenceConfig, ReidentificationConfig
-from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
-from peopleboy.tracker.tracking.people_finder import Finder, ThermalFinder
+from peopleboy.tracker.tracking.config import ExistenceConfig, PeopleTrackerConfig, ReidentificationConfig
+from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
 SCENES: Final = (
     "crossing_4",
@@ -56,7 +56,7 @@ COLUMNS: Final = (
 COLUMNS_OF_CLIPS: Final = ("clips: HOTA", "false per 1000 frames")
 _SEEN: Final = 0.3
 CLIPS_HZ: Final = 30.0
-LEAST: Final = DetectionTrackerConfig().existence.weakest
+LEAST: Final = PeopleTrackerConfig().existence.weakest
 _SURE: Final = 3.0  # log odds of a warm blob
 
 
@@ -106,7 +106,7 @@ def thermal_finder(stage: DetectorStage) -> Finder:
     return WarmFinder() if stage is DetectorStage.THRESHOLD else ThermalFinder(DetectorOfStage(stage))
 
 
-_ALL: Final = DetectionTrackerConfig()
+_ALL: Final = PeopleTrackerConfig()
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,14 +119,14 @@ class Variant:
         is_calibrated: whether the tracker gets the cameras' calibration.
     """
 
-    config: DetectionTrackerConfig = _ALL
+    config: PeopleTrackerConfig = _ALL
     stage: DetectorStage | None = None
     is_calibrated: bool = True
 
     def tracked(self, recording: Recording) -> list[tuple[Track, ...]]:
         """Return the tracks of all frames."""
         find = None if self.stage is None else thermal_finder(self.stage)
-        tracker = DetectionTracker(self.config, find)
+        tracker = PeopleTracker((ThermalSensor(self.config, find),), self.config)
         seen = recording if self.is_calibrated else recording.uncalibrated()
         return [tracker.update(frame) for frame in seen.frames]
 

@@ -79,7 +79,7 @@ class ReadOnlyImages(Mapping[str, NDArray[Any]]):
 
     def __getitem__(self, camera: str) -> Any:
         if camera not in self._images:  # the message names the frame's other cameras
-            raise KeyError(_lacking(camera, self._images))
+            raise KeyError(lacking(camera, self._images))
         image: object = self._images[camera]
         if not isinstance(image, np.ndarray):  # reported by the method that reads it
             return image
@@ -214,7 +214,7 @@ class Frame:
 
     def _image(self, camera: str) -> NDArray[Any]:
         if camera not in self.images:
-            raise BadInput(_lacking(camera, self.images))
+            raise BadInput(lacking(camera, self.images))
         return self.images[camera]
 
 
@@ -247,7 +247,8 @@ def _check_image(
         raise BadInput(f"{rule}, got {image.shape} {image.dtype}")
 
 
-def _lacking(camera: str, images: Mapping[str, Any]) -> str:
+def lacking(camera: str, images: Mapping[str, Any]) -> str:
+    """Word that a frame has no image of a camera."""
     return f"frame has no image of camera {camera!r}; it has {', '.join(images) or 'none'}"
 
 

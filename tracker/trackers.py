@@ -110,12 +110,12 @@ def _rgbd_tracker(config: "RgbdConfig", rng: "np.random.Generator") -> "RgbdTrac
 
 
 def _fused_tracker(rng: "np.random.Generator") -> "FusedTracker":
-    from peopleboy.tracker.fusion.depth_visibility import is_warm
     from peopleboy.tracker.fusion.fused_tracker import FusedTracker, ThermalDepthTracker
     from peopleboy.tracker.fusion.fusion_config import FusionConfig
     from peopleboy.tracker.rgbd.rgbd_config import RgbdConfig
     from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
     from peopleboy.tracker.rgbd.window_model import shipped_windows
+    from peopleboy.tracker.sensors.depth_visibility import is_warm
 
     thermal_rng, depth_rng = rng.spawn(2)
     thermal = _contour_tracker(CONTOUR_TRACKER, thermal_rng)
@@ -130,9 +130,10 @@ def _fused_tracker(rng: "np.random.Generator") -> "FusedTracker":
     "person. Needs contrast, not temperatures; re-identifies people by the colours of their clothes.",
 )
 def _detection(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
-    from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
+    from peopleboy.tracker.sensors.thermal import ThermalSensor
+    from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
-    return DetectionTracker()
+    return PeopleTracker((ThermalSensor(),))
 
 
 @TRACKERS.register(
@@ -257,6 +258,21 @@ def _rgbd_printed(rng: "np.random.Generator") -> Tracker:
 )
 def _fused(rng: "np.random.Generator") -> Tracker:
     return _fused_tracker(rng)
+
+
+@TRACKERS.register(
+    "thermal-depth",
+    scope="the default and both theses, and beyond",
+    summary="The default detector in the thermal image and detections in the depth image, in one Kalman "
+    "filter for each person. Depth shows what hides a person; colours, motion and stature re-identify.",
+)
+def _thermal_depth(rng: "np.random.Generator") -> Tracker:  # noqa: ARG001
+    from peopleboy.tracker.sensors.depth import DepthSensor
+    from peopleboy.tracker.sensors.thermal import ThermalSensor
+    from peopleboy.tracker.tracking.config import THERMAL_DEPTH
+    from peopleboy.tracker.tracking.people_tracker import PeopleTracker
+
+    return PeopleTracker((ThermalSensor(THERMAL_DEPTH), DepthSensor(tracker=THERMAL_DEPTH)), THERMAL_DEPTH)
 
 
 @TRACKERS.register(

@@ -38,8 +38,8 @@ from peopleboy.tracker.panoramic.paper.depth_cues import MeasuredFigure
 from peopleboy.tracker.panoramic.paper.paper_tracker import PanoramicExplanation
 from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation
+from peopleboy.tracker.sensors.thermal import DetectionExplanation
 from peopleboy.tracker.track import Box, FloorPlace, Track
-from peopleboy.tracker.tracking.association import DetectionExplanation
 
 # ColorBrewer's RdYlBu without its dark ends: against a person, undecided, for one; in thresholds.
 _STEPS = (0.0, 1.0, 2.0)

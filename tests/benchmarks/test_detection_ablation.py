@@ -14,7 +14,8 @@ from peopleboy.scenarios.files.load import load_scenario
 from peopleboy.tracker.detector.detections import NO_DETECTIONS
 from peopleboy.tracker.detector.detector import PeopleDetector
 from peopleboy.tracker.frame import THERMAL
-from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
+from peopleboy.tracker.sensors.thermal import ThermalSensor
+from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +34,7 @@ def test_all_looks_together_are_those_of_the_detector(recording: Recording) -> N
 
 
 def test_as_it_is_it_is_the_tracker(recording: Recording) -> None:
-    tracker = DetectionTracker()
+    tracker = PeopleTracker((ThermalSensor(),))
     expected = [tracker.update(frame) for frame in recording.frames]
     assert VARIANTS["as it is"].tracked(recording) == expected
     assert expected[-1]

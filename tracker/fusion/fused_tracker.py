@@ -13,7 +13,6 @@ from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
 from peopleboy.tracker.contour.explanation import ContourExplanation
 from peopleboy.tracker.frame import DEPTH, PANORAMA, THERMAL, Frame, check_frame
-from peopleboy.tracker.fusion.depth_visibility import depth_visibility
 from peopleboy.tracker.fusion.fused_explanations import BothExplanations, FusedExplanation
 from peopleboy.tracker.fusion.fused_person import (
     FusedPerson,
@@ -25,7 +24,6 @@ from peopleboy.tracker.fusion.fused_person import (
     with_width,
 )
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
-from peopleboy.tracker.fusion.guided_search import search_near
 from peopleboy.tracker.fusion.handover_tracker import HandoverTracker
 from peopleboy.tracker.fusion.identity_resolution import IdentityResolution
 from peopleboy.tracker.fusion.sensor_tracks import Depth, Heat
@@ -33,6 +31,8 @@ from peopleboy.tracker.fusion.track_to_track import distance2, is_contradicted, 
 from peopleboy.tracker.panoramic.people.panoramic_tracker import PanoramicTracker
 from peopleboy.tracker.rgbd.depth_view import DepthView
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdExplanation, RgbdTracker
+from peopleboy.tracker.sensors.depth_visibility import depth_visibility
+from peopleboy.tracker.sensors.guided_search import search_near
 from peopleboy.tracker.track import Box, Status, Track
 
 # One track per person ahead of the robot, from the thermal image and from depth with colour.

@@ -9,12 +9,12 @@ import numpy as np
 from peopleboy.geometry.pose2 import Pose2
 from peopleboy.tracker.contour.contour_tracker import ContourTracker
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, THERMAL, Floats, Frame, FreshImages
-from peopleboy.tracker.fusion.depth_visibility import REACH_M, colours, depth_visibility
 from peopleboy.tracker.fusion.fused_person import TALL_M, WIDE_M, SensorTrack, to_room_frame
 from peopleboy.tracker.fusion.fusion_config import FusionConfig
 from peopleboy.tracker.rgbd.hypothesis import Detection, Hypothesis
 from peopleboy.tracker.rgbd.observation_model import Body
 from peopleboy.tracker.rgbd.rgbd_tracker import RgbdTracker
+from peopleboy.tracker.sensors.depth_visibility import REACH_M, colours, depth_visibility
 from peopleboy.tracker.track import Status, Track
 
 LIT: Final = 40.0

@@ -29,12 +29,12 @@ def transfer_boxes(
     Returns:
         (M, 4) [px], 0 for people outside the other camera's view.
     """
-    feet = view.feet(boxes)
+    ahead = view.feet(boxes)[:, 2:] - view.at_m[2]
     left, top, width, height = boxes.T
     ends = [np.stack([left + width / 2.0, row], axis=1) for row in (top, top + height)]
     # All points of a person are assumed to have the depth of the feet.
     points = [here.rays(end) for end in ends]
-    level = [ray / np.maximum(ray[:, :1], 1e-3) * feet[:, 2:] + np.array(here.position_m) for ray in points]
+    level = [ray / np.maximum(ray[:, :1], 1e-3) * ahead + np.array(here.position_m) for ray in points]
     above, below = (there.project(end) for end in level)
     tall = below[:, 1] - above[:, 1]
     wide = tall * width / height
@@ -74,6 +74,23 @@ def describe_colours(frame: Frame, boxes: Floats, view: Viewpoint) -> Colours:
     there = _seen_there(frame, boxes, view, (image.shape[0], image.shape[1]))
     least = -np.inf if view.floor_m is None else _LEAST_INSIDE
     _describe(image, there, np.array(_PARTS), least, *_BIN_OF, result)
+    return result
+
+
+def describe_samples(samples: NDArray[np.uint8], down: Floats) -> Colours:
+    """Return the colours (FEATURES,) of single pixels of a person.
+
+    Args:
+        samples: (N, 3) RGB.
+        down: (N,) how far below the top of the head each is, in heights.
+    """
+    result = np.zeros(FEATURES, np.float32)
+    size = FEATURES // PARTS
+    for part, (first, last) in enumerate(_PARTS):
+        pixels = samples[(down >= first) & (down < last)]
+        is_seen = _histogram(pixels[None], *_BIN_OF, result[part * size : (part + 1) * size])
+        if part == 0 and not is_seen:
+            break
     return result
 
 

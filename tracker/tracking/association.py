@@ -1,7 +1,6 @@
 """Association of detections with tracks by position and appearance; recently seen tracks come first."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -9,20 +8,14 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from peopleboy.tracker.boxes import area, cover, intersection, iou, shared_of_smaller
-from peopleboy.tracker.detector.detections import Detections
-from peopleboy.tracker.frame import THERMAL, Floats, Frame
+from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.tracking.appearance import (
-    FEATURES,
-    SAMPLES,
     Colours,
     Pattern,
     colour_similarities,
-    describe_colours,
-    describe_patterns,
 )
 from peopleboy.tracker.tracking.config import AssociationConfig
 from peopleboy.tracker.tracking.track_state import TrackState
-from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 _NEVER: Final = 1e6
 _SEEN, _TENTATIVE, _LOST = range(3)
@@ -34,6 +27,7 @@ def associate(
     overlap: Floats,
     likeness: Floats,
     is_coloured: NDArray[np.bool_],
+    same_person: Floats | None,
     score: Floats,
     known: Mapping[int, int],
     time_s: float,
@@ -46,7 +40,9 @@ def associate(
         distance: (K, M) Mahalanobis distances.
         overlap: (K, M) overlaps of the boxes.
         likeness: (K, M) similarity of appearance, -1 to 1.
-        is_coloured: (K, M) whether the similarity is that of colours, which reidentify a lost track anywhere.
+        is_coloured: (K, M) whether the similarity is that of colours.
+        same_person: (K, M) log-odds by which a detection continues a lost track, less those needed; None if
+            lost tracks are recognised by their appearance alone.
         score: (M,) scores of the detections.
         known: tracks whose detections are already known.
         time_s: current time.
@@ -55,7 +51,8 @@ def associate(
     ranks = np.array([_rank(target, time_s, config) for target in targets], int)
     is_lost = ranks[:, None] == _LOST
     is_same = is_coloured & (likeness > config.colours_of_same)
-    distance = np.where(is_lost & is_same, np.minimum(distance, config.gate), distance)
+    if same_person is None:  # colours reidentify a lost track anywhere
+        distance = np.where(is_lost & is_same, np.minimum(distance, config.gate), distance)
     cost = (
         config.motion * distance
         + config.overlap * (1.0 - overlap)
@@ -63,7 +60,10 @@ def associate(
         - config.score * np.minimum(score, 4.0)[None]
     )
     cost[(distance > config.gate) | (cost > config.highest)] = _NEVER
-    cost[is_lost & ~np.where(is_coloured, is_same, likeness > config.pattern_of_lost)] = _NEVER
+    if same_person is None:
+        cost[is_lost & ~np.where(is_coloured, is_same, likeness > config.pattern_of_lost)] = _NEVER
+    else:
+        cost = np.where(is_lost, np.where(same_person > 0.0, -same_person, _NEVER), cost)
     found = dict(known)
     for rank in (_SEEN, _TENTATIVE, _LOST):
         rows = np.array([i for i in np.flatnonzero(ranks == rank) if i not in known], int)
@@ -120,74 +120,22 @@ def shared_area(boxes: Floats, theirs: Sequence[int]) -> Floats:
     return np.asarray(share.max(axis=1, initial=0.0))
 
 
-# Detections of one image with their appearance.
+def likeness(
+    targets: Sequence[TrackState], pattern: Pattern, colours: Colours
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return the similarity of appearance of K tracks and M detections.
 
+    Args:
+        targets: K tracks.
+        pattern: (M, 72) thermal patterns.
+        colours: (M, 512) of clothes.
 
-@dataclass(frozen=True, slots=True, eq=False)
-class DescribedDetections:
-    """M detections.
-
-    Attributes:
-        boxes: (M, 4) [px].
-        scores: (M,) log-odds.
-        trees: (M,) log-odds by the detector's trees alone.
-        pattern: (M, 72) thermal pattern; 0 for boxes located by their templates.
-        colours: (M, 512) of clothes; 0 for boxes located by their templates and where colours are unknown.
+    Returns:
+        (K, M) similarity from -1 to 1, by colours where they are known and else by the thermal pattern, and
+        whether it is that of colours. Similarities of the same clothes are mostly above 0.6 and those of
+        different clothes below -0.2; thermal patterns discriminate little.
     """
-
-    boxes: Floats
-    scores: Floats
-    trees: Floats
-    pattern: Pattern
-    colours: Colours
-
-    @classmethod
-    def of(cls, frame: Frame, found: Detections, view: Viewpoint, followed: int = 0) -> "DescribedDetections":
-        """Describe the detections of a frame, except the last few, which were located by their templates."""
-        count = len(found.box)
-        pattern, colours = np.zeros((count, SAMPLES), np.float32), np.zeros((count, FEATURES), np.float32)
-        new = slice(count - followed)
-        if followed < count:
-            pattern[new] = describe_patterns(frame.grey(THERMAL).astype(np.float32), found.box[new])
-            colours[new] = describe_colours(frame, found.box[new], view)
-        return cls(*found, pattern, colours)
-
-    def __len__(self) -> int:
-        return len(self.boxes)
-
-    def without_colours(self, rows: NDArray[np.bool_]) -> "DescribedDetections":
-        """Return them without the colours of some (M,), which may be another person's."""
-        return replace(self, colours=np.where(rows[:, None], np.float32(0.0), self.colours))
-
-    def likeness(self, targets: list[TrackState]) -> tuple[Floats, NDArray[np.bool_]]:
-        """Return the similarity of appearance of K tracks and these detections.
-
-        Returns:
-            (K, M) similarity from -1 to 1, by colours where they are known and else by the thermal pattern,
-            and whether it is that of colours (K, M). Similarities of the same clothes are mostly above 0.6
-            and those of different clothes below -0.2; thermal patterns discriminate little.
-        """
-        warm = np.stack([target.pattern for target in targets]) @ self.pattern.T
-        worn = np.stack([target.colours for target in targets])
-        same, is_known = colour_similarities(worn, self.colours)
-        return np.where(is_known, 2.0 * same - 1.0, warm).astype(np.float64), is_known
-
-    def ratio(self, row: int) -> float:
-        """Return the width of a box divided by its height."""
-        return float(self.boxes[row, 2] / self.boxes[row, 3])
-
-
-# The tracker's explanation: its detections.
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class DetectionExplanation:
-    """The detections of the last frame.
-
-    Attributes:
-        boxes: (M, 4) [px] in the thermal image.
-        scores: (M,) log-odds that they are people.
-    """
-
-    boxes: Floats
-    scores: Floats
+    warm = np.stack([target.pattern for target in targets]) @ pattern.T
+    worn = np.stack([target.colours for target in targets])
+    same, is_known = colour_similarities(worn, colours)
+    return np.where(is_known, 2.0 * same - 1.0, warm).astype(np.float64), is_known

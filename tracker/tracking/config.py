@@ -1,4 +1,4 @@
-"""Settings of the detection tracker. Lengths are metres, times seconds, scores log-odds."""
+"""Settings of the people tracker. Lengths are metres, times seconds, scores log-odds."""
 
 import math
 from dataclasses import dataclass, field
@@ -21,6 +21,7 @@ class KalmanConfig:
         build: standard deviation of the log stature.
         posture: change of the log stature in a second, as people sit down or bend.
         floor_m: standard deviation of the feet from the floor, where the floor is known.
+        toe_m: how much nearer than the middle of a person the lower end of the box is: the front foot.
         shown: weight of the detected box in the output box; the rest is the prediction.
     """
 
@@ -33,6 +34,7 @@ class KalmanConfig:
     posture: float = 0.02
     floor_m: float = 0.08
     shown: float = 0.5
+    toe_m: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,7 +99,21 @@ class ReidentificationConfig:
         revised_s: how long after its confirmation a new track may still be reidentified.
         parted_s: how long people who met must be seen apart before swapped identities are resolved.
         margin: gain in summed Bhattacharyya coefficients that a swap needs.
-        same: Bhattacharyya coefficient from which a new track is a lost one.
+        same: Bhattacharyya coefficient from which a track resembles another one's earlier self.
+        colour_gain: log-odds for a unit of the coefficient.
+        colour_neutral: coefficient at log-odds 0.
+        colour_most: greatest log-odds of colours.
+        colour_unknown: log-odds where colours are unknown.
+        uses_place: whether motion and stature count; else colours alone do, by `same`.
+        walk_m, walk_m_s: standard deviation of how far a lost person is from where they were last seen, and
+            its growth.
+        near: log-odds of a person who is found where another was lost.
+        least_near: least log-odds of motion.
+        statures: standard deviation of the log statures of people.
+        stature_error: error of an estimate beyond its own.
+        least: log-odds from which a new track is a lost one.
+        unclear: how much less than these leave the identity of a new track open,
+        undecided_s: for at most so long.
     """
 
     lost_s: float = 0.2
@@ -105,6 +121,20 @@ class ReidentificationConfig:
     parted_s: float = 0.5
     margin: float = 0.2
     same: float = 0.8
+    colour_gain: float = 10.0
+    colour_neutral: float = 0.75
+    colour_most: float = 2.0
+    colour_unknown: float = 0.0
+    uses_place: bool = False
+    walk_m: float = 0.4
+    walk_m_s: float = 0.5
+    near: float = 2.0
+    least_near: float = -4.0
+    statures: float = 0.05
+    stature_error: float = 0.03
+    least: float = 1.0
+    unclear: float = 0.0
+    undecided_s: float = 0.5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -132,6 +162,7 @@ class ExistenceConfig:
         deletion_log_odds: log-odds below which a track is deleted.
         missed: loss for an image without a detection of a visible track.
         missed_hidden: the same for an occluded track.
+        absent: the same for a track where the background is visible.
         max_coast_s: how long an unoccluded track is output without a detection.
         max_coast_occluded_s: the same for an occluded track.
         coast_occluded_share: the same, as a share of its observed time: a false track next to a person seems
@@ -158,6 +189,7 @@ class ExistenceConfig:
     deletion_log_odds: float = -0.5
     missed: float = 1.0
     missed_hidden: float = 0.3
+    absent: float = 4.0
     max_coast_s: float = 0.25
     max_coast_occluded_s: float = 1.0
     coast_occluded_share: float = 0.5
@@ -190,8 +222,8 @@ class ColourDetectionConfig:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DetectionTrackerConfig:
-    """All settings of the detection tracker.
+class PeopleTrackerConfig:
+    """All settings of the people tracker.
 
     Attributes:
         motion: motion and measurement noise.
@@ -205,7 +237,11 @@ class DetectionTrackerConfig:
         association_uncalibrated: association without calibration, where colours do not tell people apart.
         reidentification_uncalibrated: reidentification without calibration, where boxes fit the colour
             image less well.
+        existence_depth: evidence of the depth image.
+        association_depth: association in the depth image.
         colour: use of the colour image.
+        stops_hidden: whether a hidden person who would be visible where the track is predicted stopped.
+        hidden_share: share of a track that something nearer covers, from which it is hidden.
     """
 
     motion: KalmanConfig = field(default_factory=KalmanConfig)
@@ -233,4 +269,24 @@ class DetectionTrackerConfig:
     reidentification_uncalibrated: ReidentificationConfig = field(
         default_factory=lambda: ReidentificationConfig(same=0.65)
     )
+    existence_depth: ExistenceConfig = field(default_factory=ExistenceConfig)
+    association_depth: AssociationConfig = field(
+        default_factory=lambda: AssociationConfig(overlap=0.0, highest=2.4)
+    )
     colour: ColourDetectionConfig = field(default_factory=ColourDetectionConfig)
+    stops_hidden: bool = False
+    hidden_share: float = 0.4
+
+
+_LONG_MEMORY: Final = ExistenceConfig(max_coast_occluded_s=0.4, forget_s=30.0, brief_forget_s=10.0)
+
+THERMAL_DEPTH: Final = PeopleTrackerConfig(
+    motion=KalmanConfig(toe_m=0.12, shown=0.8),
+    existence=_LONG_MEMORY,
+    existence_depth=_LONG_MEMORY,
+    association=AssociationConfig(lost_s=0.5),
+    association_depth=AssociationConfig(overlap=0.0, highest=2.4, lost_s=0.5),
+    reidentification=ReidentificationConfig(uses_place=True, colour_unknown=-2.0, unclear=3.0),
+    stops_hidden=True,
+)
+"""Settings for thermal and depth images together, chosen on seeds 100 and 101 of the suite `occlusion`."""

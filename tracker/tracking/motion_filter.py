@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -12,7 +12,7 @@ from peopleboy.geometry.small_matrices import inverse
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.track import FloorPlace
 from peopleboy.tracker.tracking.config import KalmanConfig
-from peopleboy.tracker.tracking.viewpoint import NEAREST_M, Viewpoint
+from peopleboy.tracker.tracking.viewpoint import NEAREST_M, Position, Viewpoint
 
 Floats = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ class StateEstimates:
     """State estimates of K people's feet.
 
     Attributes:
-        mean: (K, 7) position [m] and velocity [m/s] in the camera's level frame, and build, the logarithm of
+        mean: (K, 7) position [m] and velocity [m/s] in the level frame, and build, the logarithm of
             the stature divided by the usual stature.
         covariance: (K, 7, 7) of the mean.
     """
@@ -57,30 +57,41 @@ class StateEstimates:
 NOBODY = StateEstimates(np.empty((0, STATE)), np.empty((0, STATE, STATE)))
 
 
-def initiate(boxes: Floats, view: Viewpoint, config: KalmanConfig) -> StateEstimates:
-    """Initiate states from detections (K, 4); the velocity is unknown."""
+class Linearised(NamedTuple):
+    """A measurement model at K states.
+
+    Attributes:
+        values: (K, 3) expected measurements.
+        slope: (K, 3, 7) their Jacobians.
+    """
+
+    values: Floats
+    slope: Floats
+
+
+def initiate(boxes: Floats, variance: Floats, view: Viewpoint, config: KalmanConfig) -> StateEstimates:
+    """Initiate states from boxes (K, 4) with variances (K, 3) [px^2]; the velocity is unknown."""
     feet = view.feet(boxes)
     build = np.zeros(len(feet))
     slope = view.slopes(feet, build)
     back = inverse(slope[:, :, :3])
     grown = back @ slope[:, :, 3:]
     covariance = np.zeros((len(feet), STATE, STATE))
-    noise = np.square(boxes[:, 3:] * _deviations(config))[:, :, None] * np.eye(3)
+    noise = variance[:, :, None] * np.eye(3)
     noise = noise + slope[:, :, 3:] @ slope[:, :, 3:].transpose(0, 2, 1) * config.build**2
     covariance[:, :3, :3] = back @ noise @ back.transpose(0, 2, 1)
     covariance[:, 3:6, 3:6] = np.diag(np.square(config.speed_m_s))
     covariance[:, 6, 6] = config.build**2
     covariance[:, :3, 6] = -grown[:, :, 0] * config.build**2
     covariance[:, 6, :3] = covariance[:, :3, 6]
-    begun_at = StateEstimates(np.concatenate([feet, np.zeros((len(feet), 4))], axis=1), covariance)
-    return begun_at if view.floor_m is None else _on_floor(begun_at, view.floor_m, config.floor_m)
+    return StateEstimates(np.concatenate([feet, np.zeros((len(feet), 4))], axis=1), covariance)
 
 
-def predict(paths: StateEstimates, dt_s: float, moved: Odometry, config: KalmanConfig) -> StateEstimates:
+def predict(states: StateEstimates, dt_s: float, moved: Odometry, config: KalmanConfig) -> StateEstimates:
     """Predict the states for the next frame, with white acceleration, in the frame of the moved robot."""
-    mean, covariance = np.empty_like(paths.mean), np.empty_like(paths.covariance)
+    mean, covariance = np.empty_like(states.mean), np.empty_like(states.covariance)
     pushed = np.square(config.acceleration_m_s2)
-    _walk_on(paths.mean, paths.covariance, dt_s, _turn(moved), pushed, config.posture**2, mean, covariance)
+    _walk_on(states.mean, states.covariance, dt_s, _turn(moved), pushed, config.posture**2, mean, covariance)
     mean[:, :3] = move_points(mean[:, :3], moved)
     mean[:, 2] = np.maximum(mean[:, 2], NEAREST_M)
     return StateEstimates(mean, covariance)
@@ -91,48 +102,65 @@ def move_points(points_m: Floats, moved: Odometry) -> Floats:
     return np.asarray((points_m - (-moved.aside_m, 0.0, moved.advance_m)) @ _turn(moved).T)
 
 
-def mahalanobis_distances(
-    paths: StateEstimates, boxes: Floats, view: Viewpoint, config: KalmanConfig
-) -> Floats:
-    """Return the Mahalanobis distances (K, M) of detections (M, 4) from the predictions."""
-    expected, slope = _expected(paths, view)
-    deviation = np.maximum(expected[:, 2:] - expected[:, 1:2], 1.0) * _deviations(config)
-    result = np.empty((len(paths), len(boxes)))
-    _measure(paths.covariance, slope, np.square(deviation), expected, _ends(boxes), result)
+def mahalanobis(states: StateEstimates, expected: Linearised, variance: Floats, seen: Floats) -> Floats:
+    """Return the Mahalanobis distances (K, M) of measurements (M, 3) from K states.
+
+    Args:
+        states: K predicted states.
+        expected: the measurement model at these states.
+        variance: (K, 3) of the measurement noise.
+        seen: (M, 3) measurements.
+    """
+    result = np.empty((len(states), len(seen)))
+    _measure(states.covariance, expected.slope, variance, expected.values, seen, result)
     return result
 
 
-def update_states(
-    paths: StateEstimates, boxes: Floats, view: Viewpoint, config: KalmanConfig
-) -> StateEstimates:
-    """Update each state with a box (K, 4), and with feet on the floor where the floor is known."""
-    if len(paths) == 0:
-        return paths
-    expected, slope = _expected(paths, view)
-    later = StateEstimates(paths.mean.copy(), paths.covariance.copy())
-    noise = np.square(boxes[:, 3:] * _deviations(config))
-    _learn(later.mean, later.covariance, slope, noise, _ends(boxes) - expected)
-    return later if view.floor_m is None else _on_floor(later, view.floor_m, config.floor_m)
+def update(states: StateEstimates, expected: Linearised, variance: Floats, seen: Floats) -> StateEstimates:
+    """Update each of K states with a measurement (K, 3) with variances (K, 3)."""
+    if len(states) == 0:
+        return states
+    later = StateEstimates(states.mean.copy(), states.covariance.copy())
+    _learn(later.mean, later.covariance, expected.slope, variance, seen - expected.values)
+    return later
 
 
-def predicted_boxes(paths: StateEstimates, view: Viewpoint, ratio: Floats) -> Floats:
+def linearise(states: StateEstimates, view: Viewpoint) -> Linearised:
+    """Return the expected middle columns, and rows of heads and feet, in a camera's image."""
+    feet, build = states.mean[:, :3], states.mean[:, 6]
+    slope = np.zeros((len(states), 3, STATE))
+    slope[:, :, (0, 1, 2, 6)] = view.slopes(feet, build)
+    return Linearised(view.seen(feet, build), slope)
+
+
+def constrain_to_floor(states: StateEstimates, floor_m: float, deviation_m: float) -> StateEstimates:
+    """Update states with feet on the floor, at a depth below the origin."""
+    covariance = states.covariance
+    gain = covariance[:, :, 1] / (covariance[:, 1, 1] + deviation_m**2)[:, None]
+    return StateEstimates(
+        states.mean + gain * (floor_m - states.mean[:, 1])[:, None],
+        covariance - gain[:, :, None] * covariance[:, 1, None, :],
+    )
+
+
+def predicted_boxes(states: StateEstimates, view: Viewpoint, ratio: Floats) -> Floats:
     """Return the boxes (K, 4) [px] of people of these widths (K,), in heights."""
-    column, head, foot = view.seen(paths.mean[:, :3], paths.mean[:, 6]).T
+    column, head, foot = view.seen(states.mean[:, :3], states.mean[:, 6]).T
     height = np.maximum(foot - head, 1.0)
     width = ratio * height
     boxes = np.stack([column - width / 2.0, foot - height, width, height], axis=1)
     return np.asarray(boxes, np.float64)
 
 
-def floor_positions(paths: StateEstimates, camera_m: tuple[float, float, float]) -> list[FloorPlace]:
-    """Return positions on the floor in the robot frame, given the camera's position [m]."""
-    forward, left, _ = camera_m
+def floor_positions(states: StateEstimates, origin_m: Position) -> list[FloorPlace]:
+    """Return positions on the floor in the robot frame, given the origin of the level frame."""
+    forward, left, _ = origin_m
     return [
         FloorPlace(
             position_m=(forward + float(mean[2]), left - float(mean[0])),
             covariance_m2=(float(spread[2, 2]), -float(spread[0, 2]), float(spread[0, 0])),
         )
-        for mean, spread in zip(paths.mean, paths.covariance, strict=True)
+        for mean, spread in zip(states.mean, states.covariance, strict=True)
     ]
 
 
@@ -140,34 +168,6 @@ def _turn(moved: Odometry) -> Floats:
     """Return the rotation (3, 3) of the level frame into that of a robot that turned."""
     cosine, sine = math.cos(moved.turn_rad), math.sin(moved.turn_rad)
     return np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]])
-
-
-def _expected(paths: StateEstimates, view: Viewpoint) -> tuple[Floats, Floats]:
-    """Return the predicted measurement (K, 3) and its Jacobian (K, 3, 7)."""
-    feet, build = paths.mean[:, :3], paths.mean[:, 6]
-    slope = np.zeros((len(paths), 3, STATE))
-    slope[:, :, (0, 1, 2, 6)] = view.slopes(feet, build)
-    return view.seen(feet, build), slope
-
-
-def _ends(boxes: Floats) -> Floats:
-    """Return the middle column and the rows of head and feet (M, 3) of boxes (M, 4)."""
-    left, top, width, height = boxes.T
-    return np.stack([left + width / 2.0, top, top + height], axis=1)
-
-
-def _deviations(config: KalmanConfig) -> Floats:
-    """Return the standard deviations (3,) of the measurement, in box heights."""
-    return np.array([config.column, config.head, config.foot])
-
-
-def _on_floor(paths: StateEstimates, floor_m: float, deviation_m: float) -> StateEstimates:
-    covariance = paths.covariance
-    gain = covariance[:, :, 1] / (covariance[:, 1, 1] + deviation_m**2)[:, None]
-    return StateEstimates(
-        paths.mean + gain * (floor_m - paths.mean[:, 1])[:, None],
-        covariance - gain[:, :, None] * covariance[:, 1, None, :],
-    )
 
 
 @njit(cache=True, nogil=True)

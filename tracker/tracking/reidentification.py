@@ -5,11 +5,20 @@ it, which is not updated while a person resembles another one.
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple, Self
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
-from peopleboy.tracker.tracking.appearance import colour_similarity
+from peopleboy.geometry.small_matrices import inverse
+from peopleboy.tracker.tracking.appearance import (
+    FEATURES,
+    Colours,
+    colour_similarities,
+    colour_similarity,
+)
 from peopleboy.tracker.tracking.config import ReidentificationConfig
+from peopleboy.tracker.tracking.motion_filter import Floats, StateEstimates
 from peopleboy.tracker.tracking.track_state import TrackState
 
 
@@ -37,19 +46,79 @@ def resolve_identity_swaps(
             _exchange(one, others[int(np.argmax(gains))])
 
 
-def reidentify(
-    target: TrackState, lost: Sequence[TrackState], config: ReidentificationConfig
-) -> TrackState | None:
-    """Return the lost track that a new track continues, by colours, or None.
+class Candidates(NamedTuple):
+    """People who may be the same as others: N of them.
+
+    Attributes:
+        places_m: (N, 2) to the right and ahead in the level frame.
+        variance_m2: (N, 2, 2) of the places.
+        build: (N, 2) logarithm of the stature, and its variance.
+        colours: (N, 512).
+    """
+
+    places_m: Floats
+    variance_m2: Floats
+    build: Floats
+    colours: Colours
+
+    @classmethod
+    def of(cls, states: StateEstimates, colours: Sequence[Colours] | Colours) -> Self:
+        """Take the positions and statures of states (N) and their colours."""
+        mean, covariance = states.mean, states.covariance
+        return cls(
+            mean[:, (0, 2)],
+            covariance[:, (0, 0, 2, 2), (0, 2, 0, 2)].reshape(-1, 2, 2),
+            np.column_stack([mean[:, 6], covariance[:, 6, 6]]),
+            np.reshape(colours, (len(mean), FEATURES)),
+        )
+
+
+def same_person_log_odds(
+    lost: Candidates, gone_s: Floats, found: Candidates, config: ReidentificationConfig
+) -> Floats:
+    """Return the log-odds (L, N) that lost people are the ones who are found, less those needed.
 
     Args:
-        target: the new track.
-        lost: candidate tracks.
-        config: required similarity.
+        lost: L people, at the places where they were last seen.
+        gone_s: (L,) time since then.
+        found: N people.
+        config: weights of colours, motion and stature.
     """
-    likeness = [colour_similarity(target.colours, other.colours) for other in lost]
-    best = int(np.argmax(likeness)) if likeness else -1
-    return lost[best] if best >= 0 and likeness[best] > config.same else None
+    same, is_known = colour_similarities(lost.colours, found.colours)
+    if not config.uses_place:
+        return np.where(is_known, same.astype(np.float64) - config.same, -np.inf)
+    by_colour = np.minimum(config.colour_gain * (same - config.colour_neutral), config.colour_most)
+    odds = np.where(is_known, by_colour, config.colour_unknown) - config.least
+    return np.asarray(
+        odds + _by_motion(lost, gone_s, found, config) + _by_stature(lost, found, config), np.float64
+    )
+
+
+def _by_motion(lost: Candidates, gone_s: Floats, found: Candidates, config: ReidentificationConfig) -> Floats:
+    """Return log-odds (L, N) by how far people would have walked in the time since they were seen."""
+    away = found.places_m[None] - lost.places_m[:, None]
+    walked_m2 = np.square(config.walk_m + config.walk_m_s * gone_s)[:, None, None, None] * np.eye(2)
+    spread = found.variance_m2[None] + lost.variance_m2[:, None] + walked_m2
+    squared = (away[:, :, None] @ inverse(spread) @ away[:, :, :, None])[:, :, 0, 0]
+    return np.asarray(np.maximum(config.near - 0.5 * squared, config.least_near))
+
+
+def _by_stature(lost: Candidates, found: Candidates, config: ReidentificationConfig) -> Floats:
+    """Return the likelihood ratios (L, N), as logarithms, of one person's stature and of two people's."""
+    off2 = np.square(lost.build[:, :1] - found.build[:, 0])
+    one = lost.build[:, 1:] + found.build[:, 1] + config.stature_error**2
+    two = one + 2.0 * config.statures**2
+    return np.asarray(0.5 * np.log(two / one) - 0.5 * off2 * (1.0 / one - 1.0 / two))
+
+
+def assign_lost(odds: Floats) -> dict[int, int]:
+    """Return the lost person, by the person found, for all that are clear, from log-odds (L, N)."""
+    if odds.size == 0:
+        return {}
+    rows, columns = linear_sum_assignment(-np.maximum(odds, 0.0))
+    return {
+        int(column): int(row) for row, column in zip(rows, columns, strict=True) if odds[row, column] > 0.0
+    }
 
 
 def _is_clear(target: TrackState, config: ReidentificationConfig) -> bool:

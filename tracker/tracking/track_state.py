@@ -1,4 +1,4 @@
-"""State of one track of the detection tracker, confirmed or tentative."""
+"""State of one track of the people tracker, confirmed or tentative."""
 
 import math
 from dataclasses import dataclass, field
@@ -10,7 +10,6 @@ from peopleboy.tracker.frame import Floats
 from peopleboy.tracker.track import Status
 from peopleboy.tracker.tracking.appearance import FEATURES, Colours, Pattern, blend_colours, colour_similarity
 from peopleboy.tracker.tracking.config import ExistenceConfig
-from peopleboy.tracker.tracking.template import Template
 
 _LEARNING: Final = 0.1  # share of the new appearance in the remembered one
 _LEARNING_SOON: Final = 0.2  # the same in the recent appearance that is compared with it
@@ -36,41 +35,37 @@ class TrackState:
     """State of a track apart from its motion filter.
 
     Attributes:
+        key: number of the track within the tracker, for its whole life.
         born_s: time of the first detection.
-        seen_s: time of the last detection.
+        seen_s: time of the last detection by any sensor.
         pattern: thermal appearance.
         colours: colours of the clothes; 0 where unknown.
         ratio: width of the box divided by its height.
-        shown: (4,) box in the image of the last detection [px].
+        shown: time [s] and box (4,) [px] of the last detection, by camera.
         watched_s: total time with detections.
-        trees: log-odds by the detector's trees alone, at the last search of the whole image.
-        score: log-odds when the detector last found it.
-        rescored_s: time of the last rescoring.
-        template: image template cut at that time.
-        searched_s: when trees last found it in a search of the whole image.
         log_odds: evidence that it is a person.
         surest: greatest evidence of a single image.
         id: 0 as long as it is tentative.
         sightings: number of images with a detection.
         confidence: 0..1, from the last images with a detection.
         occluder: id of the track that occludes it.
+        is_hidden: whether that track or a thing hides the person.
+        is_pinned: whether it stopped behind that, as the person would be visible otherwise.
+        present_s: when some of the hidden person was last visible where it is predicted.
         confirmed_s: time of the confirmation.
         recent: colours since the person was last seen apart from others.
         clear_s: how long the person has been seen apart from others.
+        separate_s: when the person was last seen apart from others.
     """
 
+    key: int
     born_s: float
     seen_s: float
     pattern: Pattern
     colours: Colours
     ratio: float
-    shown: Floats
+    shown: dict[str, tuple[float, Floats]]
     watched_s: float = 0.0
-    trees: float = 0.0
-    score: float = 0.0
-    rescored_s: float = -math.inf
-    template: Template | None = None
-    searched_s: float = -math.inf
     log_odds: float = 0.0
     surest: float = -math.inf
     id: int = 0
@@ -78,8 +73,12 @@ class TrackState:
     confidence: float = 0.5
     occluder: int | None = None
     confirmed_s: float = math.inf
+    is_hidden: bool = False
+    is_pinned: bool = False
+    present_s: float = -math.inf
     recent: Colours = field(default_factory=lambda: np.zeros(FEATURES, np.float32))
     clear_s: float = 0.0
+    separate_s: float = -math.inf
 
     @property
     def is_confirmed(self) -> bool:
@@ -91,6 +90,7 @@ class TrackState:
     ) -> None:
         """Update the evidence with a detection."""
         self.seen_s, self.occluder = time_s, None
+        self.is_hidden = self.is_pinned = False
         self.sightings += 1
         self.watched_s += dt_s
         doubt = 0.0 if self.is_confirmed else config.shared_doubt * seen.shared
@@ -104,18 +104,25 @@ class TrackState:
         self.log_odds = min(max(sum_of_both, evidence_gain, -config.highest), config.highest)
         self.confidence += _LEARNING * (1.0 / (1.0 + math.exp(-seen.score)) - self.confidence)
 
-    def update_box(self, box: Floats) -> None:
-        """Update the box (4,) and its width relative to the height."""
-        self.shown = box
-        self.ratio += _LEARNING * (float(box[2] / box[3]) - self.ratio)
+    def is_lost(self, time_s: float, lost_s: float) -> bool:
+        """Return whether a confirmed track has not been detected for some time."""
+        return self.is_confirmed and self.seen_s < time_s - lost_s
 
-    def mark_separate(self, dt_s: float) -> None:
-        """Record that the person is seen apart from others now."""
-        self.clear_s += dt_s
+    def update_box(self, camera: str, box: Floats, *, has_width: bool) -> None:
+        """Update the box (4,) in a camera's image and, if measured, the width relative to the height."""
+        self.shown[camera] = self.seen_s, box
+        if has_width:
+            self.ratio += _LEARNING * (float(box[2] / box[3]) - self.ratio)
+
+    def mark_separate(self, time_s: float, dt_s: float) -> None:
+        """Record that the person is seen apart from others now, by one sensor or several."""
+        if self.separate_s < time_s:
+            self.clear_s, self.separate_s = self.clear_s + dt_s, time_s
 
     def update_appearance(self, pattern: Pattern, colours: Colours) -> None:
         """Update the appearance of a person who is seen apart from others."""
-        self.pattern = self.pattern + np.float32(_LEARNING) * (pattern - self.pattern)
+        if pattern.any():
+            self.pattern = self.pattern + np.float32(_LEARNING) * (pattern - self.pattern)
         self.recent = blend_colours(self.recent, colours, _LEARNING_SOON)
         if not self.colours.any() or colour_similarity(self.recent, self.colours) > _OWN:
             self.colours = blend_colours(self.colours, colours, max(_LEARNING, 1.0 / self.sightings))
@@ -134,15 +141,21 @@ class TrackState:
         self.log_odds = max(self.log_odds, before.log_odds)
         before.id, before.seen_s = 0, -math.inf
 
-    def update_missed(self, occluder: int | None, dt_s: float, config: ExistenceConfig) -> None:
-        """Record a missed detection and the possible occluder.
+    def update_missed(
+        self, occluder: int | None, dt_s: float, config: ExistenceConfig, *, is_hidden: bool
+    ) -> None:
+        """Record a missed detection, the possible occluder, and whether something hides the person.
 
         However long a confirmed person is not found, one detection restores the track.
         """
-        self.occluder = occluder
-        loss = config.missed if occluder is None else config.missed_hidden
+        self.occluder, self.is_hidden = occluder, is_hidden or occluder is not None
+        loss = config.missed_hidden if self.is_hidden else config.missed
         least = min(self.log_odds, config.deletion_log_odds) if self.is_confirmed else -math.inf
         self.log_odds = max(self.log_odds - loss * dt_s / config.independent_s, least)
+
+    def update_absent(self, dt_s: float, config: ExistenceConfig) -> None:
+        """Record that the background is visible where the track is predicted."""
+        self.log_odds -= config.absent * dt_s / config.independent_s
 
     def status(self, time_s: float) -> Status:
         """Return the current status."""
@@ -150,15 +163,17 @@ class TrackState:
             return Status.TENTATIVE
         if self.seen_s >= time_s:
             return Status.TRACKED
-        return Status.PARTLY_OCCLUDED if self.occluder is None else Status.TOTALLY_OCCLUDED
+        return Status.TOTALLY_OCCLUDED if self.is_hidden else Status.PARTLY_OCCLUDED
 
     def is_output(self, time_s: float, config: ExistenceConfig) -> bool:
         """Return whether the track is still reported at its predicted position."""
         doubt = config.max_coast_s
-        if self.occluder is not None:
+        if self.is_hidden:
             doubt = max(doubt, min(config.max_coast_occluded_s, config.coast_occluded_share * self.watched_s))
         return (
-            self.is_confirmed and self.log_odds > config.deletion_log_odds and time_s - self.seen_s <= doubt
+            self.is_confirmed
+            and self.log_odds > config.deletion_log_odds
+            and time_s - max(self.seen_s, self.present_s if self.is_hidden else -math.inf) <= doubt
         )
 
     def is_deleted(self, time_s: float, config: ExistenceConfig) -> bool:

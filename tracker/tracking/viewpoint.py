@@ -1,10 +1,11 @@
-"""Projection from metres around a camera to its image: people are upright lines on their feet.
+"""Projection from metres around the robot to a camera's image: people are upright lines on their feet.
 
-The level frame has its origin in the camera: x to the right, y down, z ahead along the floor [m].
+The level frame moves with the robot: x to the right, y down, z ahead along the floor [m]. Its origin is the
+reference camera of the tracker.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
@@ -15,6 +16,8 @@ from peopleboy.geometry.camera_calibration import Calibration, PinholeCalibratio
 from peopleboy.tracker.tracking.config import STATURE_M
 
 Floats = NDArray[np.float64]
+Position = tuple[float, float, float]
+"""Forward, left, up in the robot frame [m]."""
 
 VIEW_ANGLE_DEG: Final = 44.0
 """Vertical field of view of an uncalibrated camera."""
@@ -26,19 +29,23 @@ _LEAST_DEPTH_M: Final = 0.05
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Viewpoint:
-    """Pose and intrinsics of a camera relative to its level frame.
+    """Pose and intrinsics of a camera in the level frame.
 
     Attributes:
         focal_px: focal lengths along columns and rows.
         centre_px: principal point.
         camera_from_level: (3, 3) rotation.
-        floor_m: depth of the floor below the camera; None if unknown.
+        floor_m: depth of the floor below the origin; None if unknown.
+        at_m: (3,) position of the camera.
+        toe_m: how much nearer than the middle of a person the lower end of the box is: the front foot.
     """
 
     focal_px: tuple[float, float]
     centre_px: tuple[float, float]
     camera_from_level: Floats
     floor_m: float | None
+    at_m: Floats = field(default_factory=lambda: np.zeros(3))
+    toe_m: float = 0.0
 
     @property
     def breadth(self) -> float:
@@ -46,24 +53,35 @@ class Viewpoint:
         return (self.centre_px[0] + 0.5) / self.focal_px[0]
 
     @classmethod
-    def of(cls, calibration: Calibration | None, shape: tuple[int, int]) -> "Viewpoint":
+    def of(
+        cls,
+        calibration: Calibration | None,
+        shape: tuple[int, int],
+        origin_m: Position | None = None,
+        toe_m: float = 0.0,
+    ) -> "Viewpoint":
         """Make the viewpoint of a camera; an uncalibrated camera is assumed to be level.
 
         Args:
             calibration: of the camera; None if unknown.
             shape: rows and columns of its image [px].
+            origin_m: of the level frame, in the robot frame; None for the camera's own position.
+            toe_m: how much nearer than the middle of a person the lower end of the box is.
         """
         if isinstance(calibration, PinholeCalibration):
             matrix = calibration.intrinsics
+            origin_m = calibration.position_m if origin_m is None else origin_m
             return cls(
                 (float(matrix[0, 0]), float(matrix[1, 1])),
                 (float(matrix[0, 2]), float(matrix[1, 2])),
                 calibration.robot_from_camera[:3, :3].T @ _ROBOT_FROM_LEVEL,
-                calibration.position_m[2],
+                origin_m[2],
+                np.subtract(calibration.position_m, origin_m) @ _ROBOT_FROM_LEVEL,
+                toe_m,
             )
         rows, columns = shape
         focal = rows / 2.0 / math.tan(math.radians(VIEW_ANGLE_DEG) / 2.0)
-        return cls((focal, focal), ((columns - 1) / 2.0, (rows - 1) / 2.0), np.eye(3), None)
+        return cls((focal, focal), ((columns - 1) / 2.0, (rows - 1) / 2.0), np.eye(3), None, toe_m=toe_m)
 
     def seen(self, feet_m: Floats, build: Floats) -> Floats:
         """Project people: (K, 3) middle column and rows of head and feet.
@@ -73,13 +91,21 @@ class Viewpoint:
             build: (K,) logarithm of the stature divided by the usual stature.
         """
         result = np.empty((len(feet_m), 3))
-        _see(feet_m, build, self.camera_from_level, self.focal_px, self.centre_px, result)
+        _see(
+            feet_m - self.at_m,
+            build,
+            self.toe_m,
+            self.camera_from_level,
+            self.focal_px,
+            self.centre_px,
+            result,
+        )
         return result
 
     def slopes(self, feet_m: Floats, build: Floats) -> Floats:
         """Return the derivatives (K, 3, 4) of `seen` by x, y, z of the feet, and the build."""
         slope = np.empty((len(feet_m), 3, 4))
-        _slope(feet_m, build, self.camera_from_level, self.focal_px, slope)
+        _slope(feet_m - self.at_m, build, self.toe_m, self.camera_from_level, self.focal_px, slope)
         return slope
 
     def feet(self, boxes: Floats) -> Floats:
@@ -88,9 +114,13 @@ class Viewpoint:
         aside = self._lean(boxes) * height / 2.0
         rays = self._rays(np.stack([left + width / 2.0 + aside, top + height], axis=1))
         heads = self._rays(np.stack([left + width / 2.0 - aside, top], axis=1))
-        # Both rays meet the upright line at one distance z: STATURE_M = z (slope of feet - slope of head).
-        ahead = STATURE_M / np.maximum(rays[:, 1] - heads[:, 1], 1e-3)
-        return rays * np.maximum(ahead, NEAREST_M)[:, None]
+        # The ray of the feet meets the front foot at a distance z ahead, and that of the head the upright
+        # line behind it: STATURE_M = z (slope of feet) - (z + toe) (slope of head).
+        toe = self.toe_m / np.hypot(rays[:, 0], 1.0)
+        ahead = (STATURE_M + toe * heads[:, 1]) / np.maximum(rays[:, 1] - heads[:, 1], 1e-3)
+        ahead = np.maximum(ahead, NEAREST_M)
+        middle = ahead + toe
+        return np.column_stack([rays[:, 0] * middle, rays[:, 1] * ahead, middle]) + self.at_m
 
     def _lean(self, boxes: Floats) -> Floats:
         """Return the slope (K,), in columns per row, of a plumb line through the middles of boxes."""
@@ -110,6 +140,7 @@ class Viewpoint:
 def _see(
     feet_m: Floats,
     build: Floats,
+    toe_m: float,
     camera_from_level: Floats,
     focal_px: tuple[float, float],
     centre_px: tuple[float, float],
@@ -117,7 +148,8 @@ def _see(
 ) -> None:  # pragma: no cover
     for number in range(len(feet_m)):
         x, y, z = feet_m[number]
-        foot = _seen_from(x, y, z, camera_from_level)
+        near = _nearness(x, z, toe_m)
+        foot = _seen_from(near * x, y, near * z, camera_from_level)
         head = _seen_from(x, y - STATURE_M * math.exp(build[number]), z, camera_from_level)
         middle = (foot[0] / foot[2] + head[0] / head[2]) / 2.0
         result[number, 0] = middle * focal_px[0] + centre_px[0]
@@ -127,21 +159,32 @@ def _see(
 
 @njit(cache=True, nogil=True)
 def _slope(
-    feet_m: Floats, build: Floats, camera_from_level: Floats, focal_px: tuple[float, float], slope: Floats
+    feet_m: Floats,
+    build: Floats,
+    toe_m: float,
+    camera_from_level: Floats,
+    focal_px: tuple[float, float],
+    slope: Floats,
 ) -> None:  # pragma: no cover
     across, down, ahead = camera_from_level
+    foot_across, foot_down = np.empty(3), np.empty(3)
     for number in range(len(feet_m)):
         x, y, z = feet_m[number]
         stature = STATURE_M * math.exp(build[number])
-        foot = _seen_from(x, y, z, camera_from_level)
+        near = _nearness(x, z, toe_m)
+        foot = _seen_from(near * x, y, near * z, camera_from_level)
         head = _seen_from(x, y - stature, z, camera_from_level)
         put = slope[number]
         for axis in range(3):
-            of_foot = (across[axis] - foot[0] / foot[2] * ahead[axis]) / foot[2]
+            foot_across[axis] = (across[axis] - foot[0] / foot[2] * ahead[axis]) / foot[2]
+            foot_down[axis] = (down[axis] - foot[1] / foot[2] * ahead[axis]) / foot[2]
+        _move_with_middle(x, z, near, foot_across)
+        _move_with_middle(x, z, near, foot_down)
+        for axis in range(3):
             of_head = (across[axis] - head[0] / head[2] * ahead[axis]) / head[2]
-            put[0, axis] = (of_foot + of_head) / 2.0 * focal_px[0]
+            put[0, axis] = (foot_across[axis] + of_head) / 2.0 * focal_px[0]
             put[1, axis] = (down[axis] - head[1] / head[2] * ahead[axis]) / head[2] * focal_px[1]
-            put[2, axis] = (down[axis] - foot[1] / foot[2] * ahead[axis]) / foot[2] * focal_px[1]
+            put[2, axis] = foot_down[axis] * focal_px[1]
             if axis == 1:
                 put[0, 3] = -of_head / 2.0 * focal_px[0] * stature
                 put[1, 3] = -put[1, 1] * stature
@@ -160,3 +203,22 @@ def _seen_from(
         down[0] * x + down[1] * y + down[2] * z,
         max(depth, _LEAST_DEPTH_M),
     )
+
+
+@njit(cache=True, nogil=True)
+def _nearness(x: float, z: float, toe_m: float) -> float:  # pragma: no cover
+    """Return the distance of the front foot on the floor, as a share of that of the middle."""
+    return max(1.0 - toe_m / max(math.hypot(x, z), _LEAST_DEPTH_M), 0.0)
+
+
+@njit(cache=True, nogil=True)
+def _move_with_middle(x: float, z: float, near: float, slope: Floats) -> None:  # pragma: no cover
+    """Turn derivatives (3,) by the position of the front foot into those by the position of the middle.
+
+    The foot keeps its distance from the middle, so that motion along the line of sight is that of the foot,
+    and motion across it is reduced.
+    """
+    away = max(math.hypot(x, z), _LEAST_DEPTH_M)
+    along = (slope[0] * x + slope[2] * z) / away
+    slope[0] = near * slope[0] + (1.0 - near) * along * x / away
+    slope[2] = near * slope[2] + (1.0 - near) * along * z / away

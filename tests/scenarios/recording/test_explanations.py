@@ -31,8 +31,8 @@ from peopleboy.tracker.frame import COLOUR
 from peopleboy.tracker.fusion.fused_explanations import BothExplanations
 from peopleboy.tracker.panoramic.paper.depth_cues import measure
 from peopleboy.tracker.panoramic.people.panoramic_observation import PeopleExplanation
+from peopleboy.tracker.sensors.thermal import DetectionExplanation
 from peopleboy.tracker.track import FloorPlace
-from peopleboy.tracker.tracking.association import DetectionExplanation
 from tests.helpers.runs import synthetic_ticks as made
 from tests.helpers.runs.hand_made_tracks import track
 from tests.helpers.runs.synthetic_ticks import explain

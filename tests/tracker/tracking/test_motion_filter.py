@@ -11,14 +11,12 @@ from hypothesis import strategies as st
 
 from peopleboy.tracker.frame import Odometry
 from peopleboy.tracker.tracking.config import KalmanConfig
+from peopleboy.tracker.tracking.measurement import BoxMeasurement
 from peopleboy.tracker.tracking.motion_filter import (
     StateEstimates,
     floor_positions,
-    initiate,
-    mahalanobis_distances,
     predict,
     predicted_boxes,
-    update_states,
 )
 from peopleboy.tracker.tracking.viewpoint import Viewpoint
 from tests.tracker.tracking.test_viewpoint import SHAPE, calibration
@@ -33,6 +31,16 @@ def box_at(feet: np.ndarray, build: float = 0.0) -> np.ndarray:
     column, head, foot = VIEW.seen(feet[None], np.array([build]))[0]
     height = foot - head
     return np.array([[column - 0.135 * height, foot - height, 0.27 * height, height]])
+
+
+def initiate(boxes: np.ndarray, view: Viewpoint, config: KalmanConfig) -> StateEstimates:
+    return BoxMeasurement(boxes, view, config).initiate(range(len(boxes)))
+
+
+def update_states(
+    states: StateEstimates, boxes: np.ndarray, view: Viewpoint, config: KalmanConfig
+) -> StateEstimates:
+    return BoxMeasurement(boxes, view, config).update(states, range(len(boxes)))
 
 
 def test_who_walks_evenly_is_expected_where_he_is() -> None:
@@ -94,7 +102,7 @@ def test_the_farther_a_proposal_lies_the_greater_is_its_distance() -> None:
     box = box_at(np.array([0.5, 1.2, 4.0]))
     paths = initiate(box, VIEW, CONFIG)
     there = np.concatenate([box, box + np.array([10.0, 0, 0, 0]), box + np.array([30.0, 0, 0, 0])])
-    own, near, far = mahalanobis_distances(paths, there, VIEW, CONFIG)[0]
+    own, near, far = BoxMeasurement(there, VIEW, CONFIG).distances(paths)[0]
     assert own == pytest.approx(0.0, abs=1e-6)
     assert 0.5 < near < far
 
@@ -156,7 +164,8 @@ def test_boxes_are_taken_in_and_told_apart_as_a_kalman_filter_does(seed: int, as
     view = replace(VIEW, floor_m=None)
     expected, slopes = seen_from(paths)
     boxes = predicted_boxes(paths, VIEW, np.full(4, 0.27)) + np.array([aside_px, 2.0, 0.0, 0.0])
-    ours, far = update_states(paths, boxes, view, CONFIG), mahalanobis_distances(paths, boxes, view, CONFIG)
+    measured = BoxMeasurement(boxes, view, CONFIG)
+    ours, far = measured.update(paths, range(4)), measured.distances(paths)
     parts = np.array([CONFIG.column, CONFIG.head, CONFIG.foot])
     for k in range(4):
         result, slope, covariance = ends_of(boxes), slopes[k], paths.covariance[k]

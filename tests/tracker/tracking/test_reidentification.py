@@ -7,7 +7,13 @@ import pytest
 
 from peopleboy.tracker.tracking.appearance import FEATURES, Colours
 from peopleboy.tracker.tracking.config import ReidentificationConfig
-from peopleboy.tracker.tracking.reidentification import reidentify, resolve_identity_swaps
+from peopleboy.tracker.tracking.motion_filter import STATE, StateEstimates
+from peopleboy.tracker.tracking.reidentification import (
+    Candidates,
+    assign_lost,
+    resolve_identity_swaps,
+    same_person_log_odds,
+)
 from peopleboy.tracker.tracking.track_state import TrackState
 
 CONFIG = ReidentificationConfig()
@@ -23,12 +29,13 @@ def wearing(red: float) -> Colours:
 
 def person(number: int, was: float, now: float | None, seen_s: float = NOW_S) -> TrackState:
     target = TrackState(
+        key=number,
         born_s=0.0,
         seen_s=seen_s,
         pattern=np.zeros(72, np.float32),
         colours=wearing(was),
         ratio=0.27,
-        shown=np.array([0.0, 0.0, 10.0, 40.0]),
+        shown={"thermal": (seen_s, np.array([0.0, 0.0, 10.0, 40.0]))},
         id=number,
     )
     if now is not None:
@@ -59,18 +66,49 @@ def test_nothing_is_decided_as_long_as_one_of_them_is_in_sight_but_not_apart() -
     assert one.id == 2
 
 
-def test_somebody_new_is_who_wore_the_same() -> None:
-    new = person(0, was=0.9, now=None)
-    lost = [person(1, was=0.0, now=None, seen_s=5.0), person(2, was=1.0, now=None, seen_s=5.0)]
-    assert reidentify(new, lost, CONFIG) is lost[1]
-    assert reidentify(new, lost[:1], CONFIG) is None
+def people(colours: list[Colours], places_m: list[tuple[float, float]], build: float = 0.0) -> Candidates:
+    """Return people at places to the right and ahead, known to 10 cm and 3 % of their stature."""
+    mean, covariance = np.zeros((len(colours), STATE)), np.zeros((len(colours), STATE, STATE))
+    mean[:, (0, 2)], mean[:, 6] = places_m, build
+    covariance[:, (0, 2, 6), (0, 2, 6)] = 0.01, 0.01, 0.0009
+    return Candidates.of(StateEstimates(mean, covariance), colours)
 
 
-def test_without_colours_somebody_new_is_nobody_who_was_lost() -> None:
-    new = person(0, was=0.9, now=None)
-    new.colours = np.zeros(FEATURES, np.float32)
-    lost = [person(number, was=0.0, now=None, seen_s=5.0) for number in (1, 2)]
-    assert reidentify(new, lost, CONFIG) is None
+def odds_of(lost: Candidates, found: Candidates, gone_s: float, config: ReidentificationConfig) -> np.ndarray:
+    return same_person_log_odds(lost, np.full(len(lost.colours), gone_s), found, config)
+
+
+BY_PLACE = ReidentificationConfig(uses_place=True)
+HERE, FAR = (0.0, 5.0), (3.0, 7.0)
+
+
+def test_a_new_track_continues_the_lost_one_with_the_same_colours() -> None:
+    lost, new = people([wearing(0.0), wearing(1.0)], [HERE, FAR]), people([wearing(0.9)], [HERE])
+    assert assign_lost(odds_of(lost, new, 15.0, CONFIG)) == {0: 1}
+    assert assign_lost(odds_of(people([wearing(0.0)], [HERE]), new, 15.0, CONFIG)) == {}
+
+
+def test_without_colours_a_new_track_continues_no_lost_one() -> None:
+    lost, new = people([wearing(0.0), wearing(0.0)], [HERE, FAR]), people([np.zeros(FEATURES)], [HERE])
+    assert assign_lost(odds_of(lost, new, 15.0, CONFIG)) == {}
+
+
+def test_of_two_dressed_alike_each_continues_the_track_that_was_lost_nearest() -> None:
+    lost = people([wearing(1.0), wearing(1.0)], [HERE, FAR])
+    found = people([wearing(1.0), wearing(1.0)], [(2.8, 6.9), (0.3, 5.1)])
+    assert assign_lost(odds_of(lost, found, 1.0, BY_PLACE)) == {0: 1, 1: 0}
+
+
+def test_a_person_who_cannot_have_walked_so_far_is_another_one() -> None:
+    lost, found = people([wearing(1.0)], [HERE]), people([wearing(1.0)], [FAR])
+    assert assign_lost(odds_of(lost, found, 0.3, BY_PLACE)) == {}
+    assert assign_lost(odds_of(lost, found, 8.0, BY_PLACE)) == {0: 0}
+
+
+def test_a_tall_person_does_not_come_back_short() -> None:
+    lost, same = people([wearing(1.0)], [HERE], build=0.1), people([wearing(1.0)], [HERE], build=0.1)
+    short = people([wearing(1.0)], [HERE], build=-0.1)
+    assert odds_of(lost, same, 1.0, BY_PLACE) > odds_of(lost, short, 1.0, BY_PLACE) + 3.0
 
 
 def test_who_was_lost_is_no_more_once_somebody_goes_on_as_him() -> None:
@@ -81,8 +119,8 @@ def test_who_was_lost_is_no_more_once_somebody_goes_on_as_him() -> None:
 
 def test_what_was_worn_is_not_unlearned_while_somebody_looks_unlike_himself() -> None:
     target = person(1, was=1.0, now=None)
-    for _ in range(30):
-        target.mark_separate(1 / 15)
+    for number in range(30):
+        target.mark_separate(float(number), 1 / 15)
         target.update_appearance(np.zeros(72, np.float32), wearing(0.0))
     assert target.colours == pytest.approx(wearing(1.0))
     assert target.recent == pytest.approx(wearing(0.0))

@@ -17,12 +17,13 @@ DT_S = 1.0 / 15.0
 
 def known() -> TrackState:
     return TrackState(
+        key=0,
         born_s=0.0,
         seen_s=0.0,
         pattern=np.zeros(4, np.float32),
         colours=np.zeros(FEATURES, np.float32),
         ratio=0.3,
-        shown=np.array([0.0, 0.0, 10.0, 40.0]),
+        shown={"thermal": (0.0, np.array([0.0, 0.0, 10.0, 40.0]))},
         log_odds=CONFIG.confirmed,
         id=1,
         confirmed_s=0.0,
@@ -49,7 +50,7 @@ def test_who_goes_on_to_look_like_nobody_is_told_no_more() -> None:
 def test_who_was_away_is_told_with_the_first_image_that_shows_him(hider: int | None) -> None:
     target = known()
     for _ in range(200):
-        target.update_missed(hider, DT_S, CONFIG)
+        target.update_missed(hider, DT_S, CONFIG, is_hidden=False)
     assert target.log_odds == CONFIG.deletion_log_odds
     time_s = seen(target, 0.5, 1, 200 * DT_S)
     assert target.is_output(time_s, CONFIG)
@@ -76,7 +77,7 @@ def test_an_image_that_says_less_than_those_before_adds_its_own_part(before: flo
 def test_who_was_never_told_fades_when_not_found() -> None:
     target = known()
     target.id, target.log_odds = 0, CONFIG.deletion_log_odds
-    target.update_missed(None, DT_S, CONFIG)
+    target.update_missed(None, DT_S, CONFIG, is_hidden=False)
     assert target.is_deleted(DT_S, CONFIG)
 
 
@@ -97,7 +98,7 @@ def test_hidden_people_are_told_for_a_share_of_how_long_they_were_watched(
     hidden, away = known(), known()
     for one in (hidden, away):
         one.watched_s, one.log_odds = watched_s, CONFIG.highest
-    hidden.occluder = 2
+    hidden.occluder, hidden.is_hidden = 2, True
     longest_s = max(
         min(CONFIG.coast_occluded_share * watched_s, CONFIG.max_coast_occluded_s), CONFIG.max_coast_s
     )

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from peopleboy.tracker.frame import DEPTH, Floats, Frame
-from peopleboy.tracker.fusion.depth_visibility import BODY_M, shoulders, surface_m, view_of, warm_share
+from peopleboy.tracker.sensors.depth_visibility import BODY_M, shoulders, surface_m, view_of, warm_share
 
 _LOW_M: Final = 0.8  # above the floor; legs spread below
 _HIGH: Final = 0.92  # share of the height up to which there are shoulders

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -10,11 +11,32 @@ from numpy.typing import NDArray
 from peopleboy.tracker.boxes import area, cover, intersection, outline
 from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.frame import Floats
+from peopleboy.tracker.sensors.template import Grey, Template
 from peopleboy.tracker.tracking.config import DetectionScheduleConfig
-from peopleboy.tracker.tracking.template import Grey
-from peopleboy.tracker.tracking.track_state import TrackState
+from peopleboy.tracker.tracking.sensor import Predictions
 
 _WHOLE: Final = 0.99  # share of a box that must be inside the image
+
+
+@dataclass(slots=True, eq=False)
+class ThermalMemory:
+    """What the detector found of one track.
+
+    Attributes:
+        seen_s: time of the last detection.
+        trees: log-odds by the detector's trees alone, at the last search of the whole image.
+        score: log-odds when the detector last found it.
+        rescored_s: time of the last rescoring.
+        searched_s: when trees last found it in a search of the whole image.
+        template: image template cut at the last rescoring.
+    """
+
+    seen_s: float
+    trees: float
+    score: float = 0.0
+    rescored_s: float = -math.inf
+    searched_s: float = -math.inf
+    template: Template | None = None
 
 
 class Schedule(NamedTuple):
@@ -31,21 +53,21 @@ class Schedule(NamedTuple):
     expected: Mapping[int, Floats]
     followed: Mapping[int, Floats]
 
-    def proposed(self, targets: Sequence[TrackState]) -> Detections:
+    def proposed(self, known: Sequence[ThermalMemory]) -> Detections:
         """Return the predicted boxes as detections with their last tree scores, the best first."""
-        trees = np.array([targets[row].trees for row in self.expected], np.float64)
+        trees = np.array([known[row].trees for row in self.expected], np.float64)
         found = Detections.from_trees(np.array(list(self.expected.values())).reshape(-1, 4), trees)
         return found.take(np.argsort(-trees, kind="stable"))
 
-    def with_followed(self, found: Detections, targets: Sequence[TrackState]) -> Detections:
+    def with_followed(self, found: Detections, known: Sequence[ThermalMemory]) -> Detections:
         """Return the detector's boxes, then the template boxes with their last rescored scores."""
         if not self.followed:
             return found
-        who = [targets[row] for row in self.followed]
+        these = [known[row] for row in self.followed]
         return Detections(
             np.concatenate([found.box, np.array(list(self.followed.values()))]),
-            np.concatenate([found.score, [target.score for target in who]]),
-            np.concatenate([found.trees, [target.trees for target in who]]),
+            np.concatenate([found.score, [one.score for one in these]]),
+            np.concatenate([found.trees, [one.trees for one in these]]),
         )
 
 
@@ -58,7 +80,8 @@ class DetectionSchedule:
     def schedule_next(
         self,
         grey: Grey,
-        targets: Sequence[TrackState],
+        predicted: Predictions,
+        known: Sequence[ThermalMemory],
         expected: Floats,
         time_s: float,
         breadth: float,
@@ -68,35 +91,37 @@ class DetectionSchedule:
 
         Args:
             grey: (H, W) the image.
-            targets: all K tracks.
+            predicted: all K tracks.
+            known: what is known of each.
             expected: (K, 4) their predicted boxes [px].
             time_s: when the image was taken.
             breadth: width of the field of view, as defined by `Viewpoint`.
             config: settings.
         """
         last_s, self._last_s = self._last_s, time_s
-        seen_s = np.array([target.seen_s for target in targets])
+        seen_s = np.array([one.seen_s for one in known])
         was_seen, is_recent = seen_s == last_s, seen_s > time_s - config.lost_s
         share = cover(intersection(expected, outline(grey)), area(expected))
         is_missed = ~was_seen & (share > 0.0) & is_recent
-        is_easy = was_seen & (share > _WHOLE) & _are_apart(expected, is_recent) & _are_sure(targets)
-        is_settled = bool(targets) and all(target.is_confirmed for target in targets) and not is_missed.any()
+        is_sure = predicted.is_confirmed & (predicted.log_odds >= 0.0)
+        is_easy = was_seen & (share > _WHOLE) & _are_apart(expected, is_recent) & is_sure
+        is_settled = bool(known) and bool(predicted.is_confirmed.all()) and not is_missed.any()
         settled_s = max(config.settled_s * min(breadth / config.breadth, 1.0), config.unsettled_s)
         if time_s - self._everywhere_s > (settled_s if is_settled else config.unsettled_s):
             self._everywhere_s = time_s
-            since_s = time_s - np.array([target.searched_s for target in targets])
+            since_s = time_s - np.array([one.searched_s for one in known])
             return Schedule(
-                True, _shown(is_easy & (since_s < config.anew_s), targets, grey, expected, config), {}
+                True, _shown(is_easy & (since_s < config.anew_s), known, grey, expected, config), {}
             )
-        since_s = time_s - np.array([target.rescored_s for target in targets])
-        followed = _shown(is_easy & (since_s < config.rescore_s), targets, grey, expected, config)
+        since_s = time_s - np.array([one.rescored_s for one in known])
+        followed = _shown(is_easy & (since_s < config.rescore_s), known, grey, expected, config)
         looked = [row for row in np.flatnonzero(was_seen & (share > 0.0)).tolist() if row not in followed]
         return Schedule(False, {row: expected[row] for row in looked}, followed)
 
 
 def _shown(
     these: NDArray[np.bool_],
-    targets: Sequence[TrackState],
+    known: Sequence[ThermalMemory],
     grey: Grey,
     expected: Floats,
     config: DetectionScheduleConfig,
@@ -104,15 +129,11 @@ def _shown(
     """Return the boxes (4,) of those of K tracks that are located by their templates, by row."""
     shown = {}
     for row in np.flatnonzero(these).tolist():
-        template = targets[row].template
+        template = known[row].template
         box = None if template is None else template.found(grey, expected[row], config.min_correlation)
         if box is not None:
             shown[row] = box
     return shown
-
-
-def _are_sure(targets: Sequence[TrackState]) -> NDArray[np.bool_]:
-    return np.array([target.is_confirmed and target.log_odds >= 0.0 for target in targets], np.bool_)
 
 
 def _are_apart(expected: Floats, counts: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -12,13 +12,24 @@ from peopleboy.bad_input import BadInput
 from peopleboy.geometry.camera_calibration import PinholeCalibration
 from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.sensors.thermal import ThermalSensor
 from peopleboy.tracker.track import Status, Track
-from peopleboy.tracker.tracking.config import AssociationConfig, DetectionTrackerConfig, ExistenceConfig
-from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
+from peopleboy.tracker.tracking.config import AssociationConfig, ExistenceConfig, PeopleTrackerConfig
+from peopleboy.tracker.tracking.measurement import BoxMeasurement
+from peopleboy.tracker.tracking.motion_filter import predicted_boxes
+from peopleboy.tracker.tracking.people_tracker import PeopleTracker
+from peopleboy.tracker.tracking.sensor import (
+    Predictions,
+    SensorDetections,
+    Settings,
+    Visibility,
+    no_appearance,
+)
+from peopleboy.tracker.tracking.viewpoint import Viewpoint
 
 RATE_HZ = 15.0
 RED, BLUE = (200, 30, 30), (30, 30, 200)
-AS_CALIBRATED = DetectionTrackerConfig(
+AS_CALIBRATED = PeopleTrackerConfig(
     existence_uncalibrated=ExistenceConfig(), association_uncalibrated=AssociationConfig()
 )
 Box = tuple[float, float, float, float]
@@ -77,9 +88,9 @@ def tracked(
     boxes: Sequence[Sequence[Box]],
     score: float = 3.0,
     clothes: Sequence[tuple[int, int, int]] = (),
-    config: DetectionTrackerConfig | None = None,
+    config: PeopleTrackerConfig | None = None,
 ) -> list[tuple[Track, ...]]:
-    tracker = DetectionTracker(config, find=FixedDetections(boxes, score))
+    tracker = PeopleTracker((ThermalSensor(config, FixedDetections(boxes, score)),), config)
     return [tracker.update(frame) for frame in frames(boxes, clothes)]
 
 
@@ -96,7 +107,7 @@ def test_who_walks_is_told_within_a_second_and_keeps_one_number() -> None:
 
 def test_who_is_seen_by_a_known_camera_has_a_place_on_the_floor_and_nobody_else() -> None:
     boxes = [[standing(0.8)]] * 10
-    tracker = DetectionTracker(find=FixedDetections(boxes))
+    tracker = PeopleTracker((ThermalSensor(find=FixedDetections(boxes)),))
     (track,) = [tracker.update(frame) for frame in calibrated(boxes)][-1]
     assert track.place is not None
     assert track.place.position_m == pytest.approx((5.0, -0.8), abs=0.02)
@@ -127,7 +138,7 @@ def test_whom_one_image_shows_beyond_doubt_is_told_at_once() -> None:
 
 
 def test_a_camera_that_is_calibrated_is_one_that_is_known() -> None:
-    tracker = DetectionTracker(find=FixedDetections([[standing(0.0)]] * 4))
+    tracker = PeopleTracker((ThermalSensor(find=FixedDetections([[standing(0.0)]] * 4)),))
     seen = [tracker.update(frame) for frame in calibrated([[standing(0.0)]] * 4)]
     assert [len(tracks) for tracks in seen] == [0, 1, 1, 1]
 
@@ -155,7 +166,7 @@ def test_who_comes_back_elsewhere_in_the_same_colours_keeps_the_number_and_nobod
 ) -> None:
     away = [[walker(60.0 + 3.0 * i)] for i in range(30)] + [[]] * 60
     back = [[walker(250.0 - 3.0 * i)] for i in range(30)]
-    tracker = DetectionTracker(find=FixedDetections(away + back))
+    tracker = PeopleTracker((ThermalSensor(find=FixedDetections(away + back)),))
     shots = [*frames(away, (RED,))]
     shots += [
         Frame(images=frame.images, time_s=frame.time_s + len(away) / RATE_HZ)
@@ -192,7 +203,7 @@ def test_nobody_is_told_outside_the_image() -> None:
 def test_in_five_of_six_images_only_who_was_just_seen_is_looked_for_where_he_is_expected() -> None:
     boxes = [[standing(0.05 * i - 1.0), standing(1.5)] for i in range(20)] + [[standing(1.5)]] * 4
     find = FixedDetections(boxes)
-    tracker = DetectionTracker(find=find)
+    tracker = PeopleTracker((ThermalSensor(find=find),))
     for frame in calibrated(boxes):
         tracker.update(frame)
     # Nobody is told in the first image; somebody is lost in that with number 20.
@@ -210,7 +221,7 @@ def test_who_stands_apart_is_followed_without_the_detector() -> None:
     find = FixedDetections(
         [box if number in (0, 1, 4, 6, 9, 12) else [] for number, box in enumerate(boxes)], score=4.5
     )
-    tracker, seen = DetectionTracker(find=find), []
+    tracker, seen = PeopleTracker((ThermalSensor(find=find),)), []
     for frame, ((left, top, width, height),) in zip(calibrated(boxes), boxes, strict=True):
         image = grey.copy()
         image[round(top) : round(top + height), round(left) : round(left + width)] = person[
@@ -229,7 +240,7 @@ def test_every_image_of_a_slow_camera_or_one_that_is_not_known_is_searched_every
     boxes = [[standing(0.0)]] * 10
     for shots in (calibrated(boxes, rate_hz=2.5), frames(boxes)):
         find = FixedDetections(boxes)
-        tracker = DetectionTracker(find=find)
+        tracker = PeopleTracker((ThermalSensor(find=find),))
         for frame in shots:
             tracker.update(frame)
         assert find.everywhere == list(range(10))
@@ -239,22 +250,88 @@ def test_nobody_new_is_begun_with_where_only_others_are_looked_for() -> None:
     one, other = standing(-1.0), standing(1.0)
     for later, result in (([[one, other], [one, other], [one]], {1}), ([[one], [one], [one, other]], {1, 2})):
         boxes = [[one]] * 10 + later * 5
-        tracker = DetectionTracker(find=FixedDetections(boxes, score=4.5))
+        tracker = PeopleTracker((ThermalSensor(find=FixedDetections(boxes, score=4.5)),))
         seen = [numbers(tracker.update(frame)) for frame in calibrated(boxes)]
         assert set().union(*seen) == result
 
 
 def test_who_is_pointed_out_is_told_at_once() -> None:
     boxes = [[walker(100.0 + 2.0 * i)] for i in range(5)]
-    tracker = DetectionTracker(find=FixedDetections(boxes))
+    tracker = PeopleTracker((ThermalSensor(find=FixedDetections(boxes)),))
     tracker.introduce(boxes[0][0])
     seen = [tracker.update(frame) for frame in frames(boxes)]
     assert all({track.id for track in tracks} == {1} for tracks in seen)
 
 
 def test_time_must_go_forward() -> None:
-    tracker = DetectionTracker(find=FixedDetections([[], []]))
+    tracker = PeopleTracker((ThermalSensor(find=FixedDetections([[], []])),))
     frame = next(frames([[]]))
     tracker.update(frame)
     with pytest.raises(BadInput, match="time_s must go forward"):
         tracker.update(frame)
+
+
+class Occluder:
+    """A sensor without detections, which knows what hides people."""
+
+    cameras = ("depth",)
+    explanation = None
+
+    def __init__(self, hidden: Sequence[float]) -> None:
+        self._hidden = iter(hidden)
+
+    def check_cameras(self, calibrations: object) -> None:
+        """Accept all."""
+
+    def detect(self, frame: Frame, predicted: Predictions) -> SensorDetections:  # noqa: ARG002
+        view = Viewpoint.of(None, (240, 320))
+        boxes = np.empty((0, 4))
+        pattern, colours = no_appearance(0)
+        config = PeopleTrackerConfig()
+        return SensorDetections(
+            camera="depth",
+            boxes=boxes,
+            scores=np.empty(0),
+            measurement=BoxMeasurement(boxes, view, config.motion),
+            expected=predicted_boxes(predicted.states, view, predicted.ratio),
+            pattern=pattern,
+            colours=colours,
+            settings=Settings(config.existence, config.association, config.reidentification),
+        )
+
+    def detect_in(self, frame: Frame, box: object, predicted: Predictions) -> None:
+        """Leave boxes to others."""
+
+    def visibility(self, frame: Frame, predicted: Predictions) -> Visibility:  # noqa: ARG002
+        count, hidden = len(predicted), next(self._hidden)
+        nothing = np.zeros(count, bool)
+        return Visibility(np.full(count, hidden), nothing, np.full(count, hidden < 0.0))
+
+    def project(self, frame: Frame, predicted: Predictions) -> None:
+        """Give no boxes."""
+
+    def remember(self, detections: object, found: object, keys: object) -> None:
+        """Remember nothing."""
+
+
+def statuses(hidden: float) -> list[list[Status]]:
+    """Detect a person for 20 images, and then no more, while something hides a share of the person."""
+    boxes = [[standing(0.8)]] * 20 + [[]] * 10
+    sensors = (ThermalSensor(find=FixedDetections(boxes)), Occluder([hidden] * 60))
+    tracker = PeopleTracker(sensors)
+    return [[track.status for track in tracker.update(frame)] for frame in calibrated(boxes)]
+
+
+def test_a_person_whom_a_thing_hides_coasts_as_one_whom_a_person_hides() -> None:
+    assert statuses(0.9)[21:28] == [[Status.TOTALLY_OCCLUDED]] * 7
+    assert statuses(0.0)[21] == [Status.PARTLY_OCCLUDED]
+    assert statuses(0.0)[-1] == []
+
+
+def test_a_track_in_front_of_visible_background_ends_at_once() -> None:
+    assert statuses(-1.0)[-5:] == [[]] * 5
+
+
+def test_the_trackers_of_several_sensors_want_all_cameras() -> None:
+    tracker = PeopleTracker((ThermalSensor(), Occluder([])))
+    assert tracker.cameras == (THERMAL, COLOUR, "depth")

@@ -14,11 +14,11 @@ from peopleboy.tracker.boxes import iou
 from peopleboy.tracker.detector.detections import Detections
 from peopleboy.tracker.detector.detector import PeopleDetector
 from peopleboy.tracker.frame import COLOUR, THERMAL, Frame
+from peopleboy.tracker.sensors.thermal import ColourFinder, ThermalFinder, ThermalSensor, merge_cameras
 from peopleboy.tracker.track import confirmed
 from peopleboy.tracker.trackers import make_tracker
-from peopleboy.tracker.tracking.config import ColourDetectionConfig, DetectionTrackerConfig
-from peopleboy.tracker.tracking.detection_tracker import DetectionTracker
-from peopleboy.tracker.tracking.people_finder import ColourFinder, ThermalFinder, merge_cameras
+from peopleboy.tracker.tracking.config import ColourDetectionConfig, PeopleTrackerConfig
+from peopleboy.tracker.tracking.people_tracker import PeopleTracker
 
 CONFIG = ColourDetectionConfig()
 NO_DETECTIONS = Detections.from_trees(np.empty((0, 4)), np.empty(0))
@@ -96,7 +96,7 @@ def without_warmth(frames: list[Frame]) -> Iterator[Frame]:
 
 @pytest.mark.slow
 def test_in_a_room_as_warm_as_people_they_are_found_by_colours(frames: list[Frame]) -> None:
-    tracker, thermal = DetectionTracker(), ThermalFinder(PeopleDetector())
+    tracker, thermal = PeopleTracker((ThermalSensor(),)), ThermalFinder(PeopleDetector())
     result, warm = 0, 0
     for frame in without_warmth(frames):
         warm += len(thermal(frame).score)
@@ -107,7 +107,7 @@ def test_in_a_room_as_warm_as_people_they_are_found_by_colours(frames: list[Fram
 
 def independent_per_s(frames: Iterable[Frame], thermal: Detections) -> list[float]:
     """When something came of looking."""
-    find = ColourFinder(CONFIG, DetectionTrackerConfig().existence.weakest)
+    find = ColourFinder(CONFIG, PeopleTrackerConfig().existence.weakest)
     return [frame.time_s for frame in frames if find(frame, thermal) is not thermal]
 
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from peopleboy.tracker.frame import Floats
-from peopleboy.tracker.tracking.template import Grey, Template
+from peopleboy.tracker.sensors.template import Grey, Template
 
 HERE = np.array([100.0, 60.0, 27.0, 100.0])
 

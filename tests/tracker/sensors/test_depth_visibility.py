@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.frame import DEPTH, DEPTH_COLOUR, Frame
-from peopleboy.tracker.fusion.depth_visibility import colours
 from peopleboy.tracker.rgbd.observation_model import similarity
+from peopleboy.tracker.sensors.depth_visibility import colours
 from tests.helpers.depth_scene import FOCAL_PX, HEIGHT, WIDTH, Block, depth_of, make_view
 
 TALL_M = 1.65

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from peopleboy.tracker.frame import DEPTH, THERMAL, Frame
-from peopleboy.tracker.fusion.depth_visibility import depth_visibility, is_warm
-from peopleboy.tracker.fusion.guided_search import search_near
 from peopleboy.tracker.rgbd.pre_detection import HumanSize, PreDetection, PreDetector
 from peopleboy.tracker.rgbd.u_depth import UDepthConfig
+from peopleboy.tracker.sensors.depth_visibility import depth_visibility, is_warm
+from peopleboy.tracker.sensors.guided_search import search_near
 from tests.helpers.depth_scene import HEIGHT, WIDTH, Block, depth_of, make_view
 
 BODY_M = 0.1

@@ -1,0 +1,1 @@
+"""Sensors of the people tracker: they turn frames into detections."""
